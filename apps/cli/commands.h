@@ -1,0 +1,11 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// One short file a subcommand. Each adds itself to the program, with its options and the callback that runs it; the callback
+// throws marey::Error for what went wrong, and CLI::RuntimeError for another exit code.
+namespace marey::cli {
+
+void add_evaluate(CLI::App& app);
+
+}  // namespace marey::cli

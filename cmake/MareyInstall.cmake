@@ -1,0 +1,11 @@
+# Installs the libraries, their headers, the program and a CMake package: find_package(marey).
+include(CMakePackageConfigHelpers)
+install(TARGETS marey marey_video EXPORT marey_targets)
+install(TARGETS marey_cli)
+install(DIRECTORY src/marey TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
+install(EXPORT marey_targets NAMESPACE marey:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marey)
+configure_package_config_file(cmake/marey-config.cmake.in marey-config.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marey)
+write_basic_package_version_file(marey-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/marey-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/marey-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marey)

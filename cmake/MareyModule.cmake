@@ -1,0 +1,32 @@
+# marey_module(NAME SOURCES ... [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
+#
+# Adds one folder of src/marey to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg or OpenCV's image
+# codecs, go into `marey_video`, because loading those at every start costs a hundred shared libraries. TESTS become one program, NAME_test.
+function(marey_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;VIDEO_SOURCES;TESTS;TEST_LIBRARIES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "marey_module(${name}): what is ${arg_UNPARSED_ARGUMENTS}?")
+  endif()
+  list(TRANSFORM arg_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  list(TRANSFORM arg_VIDEO_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  target_sources(marey PRIVATE ${arg_SOURCES})
+  target_sources(marey_video PRIVATE ${arg_VIDEO_SOURCES})
+  if(MAREY_TESTS AND arg_TESTS)
+    add_executable(${name}_test ${arg_TESTS})
+    target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings ${arg_TEST_LIBRARIES})
+    gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
+  endif()
+endfunction()
+
+# What every target of ours is compiled with: warnings, and the sanitizers where asked for.
+add_library(marey_warnings INTERFACE)
+target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       $<$<BOOL:${MAREY_WERROR}>:-Werror>)
+if(MAREY_SANITIZE)
+  add_compile_options(-fsanitize=${MAREY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${MAREY_SANITIZE})
+endif()
+if(MAREY_TESTS)
+  include(GoogleTest)
+  enable_testing()
+endif()

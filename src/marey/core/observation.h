@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "marey/core/ids.h"
+#include "marey/geometry/box.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// What a tracker is fed: a measured place. px in the image, m on the ground and in space.
+template <int D>
+struct Observation {
+  Vector<D> value = Vector<D>::Zero();
+  Matrix<D> covariance = Matrix<D>::Identity();
+  CameraId camera{};
+  double score = 1;        ///< in [0, 1]; a weak one may continue a track, not begin one
+  std::optional<Box> box;  ///< px, where the thing has an extent in the image
+  bool shared = false;     ///< part of a region that several targets share: its place is believed, its size is not
+};
+
+}  // namespace marey

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/frame.h"
+
+namespace marey {
+
+/// What is known of a source before its first frame.
+struct SourceInfo {
+  std::string name;                         ///< as the user would recognise it: the path given
+  cv::Size size;                            ///< px
+  std::optional<double> rate_hz;            ///< what the header says, or what the user said instead
+  std::optional<std::int64_t> frame_count;  ///< an estimate, for progress only
+};
+
+/// Where frames come from: video files, folders of pictures, cameras, the simulator.
+class Source {
+ public:
+  virtual ~Source() = default;
+
+  virtual const SourceInfo& info() const = 0;
+
+  /// The next frame, in order, its time later than the last one's; nothing at the end. Never throws for a file that breaks
+  /// off or a frame that cannot be decoded: what was lost is told by `warnings`.
+  virtual std::optional<Frame> next() = 0;
+
+  /// What went wrong so far without stopping the source, one sentence each: where a file breaks off, what was left out.
+  virtual std::vector<std::string> warnings() const { return {}; }
+};
+
+}  // namespace marey

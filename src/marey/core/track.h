@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "marey/core/ids.h"
+#include "marey/geometry/box.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// One target at one instant, as a tracker reports it. px and px/s in the image, m and m/s on the ground and in space.
+template <int D>
+struct Track {
+  enum class State { observed, predicted };
+
+  TrackId id{};
+  std::string label;  ///< empty where none was given
+  Vector<D> position = Vector<D>::Zero();
+  Vector<D> velocity = Vector<D>::Zero();
+  Matrix<D> covariance = Matrix<D>::Identity();  ///< of `position`
+  State state = State::observed;
+  std::optional<Box> box;  ///< px, where the target has an extent in the image
+  double score = 1;        ///< of the observation behind it, in [0, 1]
+};
+
+}  // namespace marey
