@@ -8,7 +8,8 @@ namespace marey {
 
 /// One target's state over time. A model of Filter is a value type for one dimension D:
 ///
-///   typename F::Options          its parameters, in physical units, with defaults
+///   typename F::Options          its parameters, in physical units, with defaults; Options::Model<D> is F, and
+///   options.scaled(factor)       the same for a unit of length that is 1 / factor of this one (people: body heights → px)
 ///   F::dimension                 D, 2 or 3
 ///   F(options, z, R)             begins at a first measurement z (px or m) with covariance R, at rest
 ///   f.predict(dt)                moves the state dt ≥ 0 seconds ahead
@@ -32,6 +33,8 @@ concept Filter = requires(F filter, const F constant, const typename F::Options 
   { constant.covariance() } -> std::convertible_to<Matrix<F::dimension>>;
   { constant.innovation_covariance(R) } -> std::convertible_to<Matrix<F::dimension>>;
   { constant.gate_distance(z, R) } -> std::convertible_to<double>;
+  { options.scaled(dt) } -> std::same_as<typename F::Options>;
+  requires std::same_as<typename F::Options::template Model<F::dimension>, F>;
 };
 
 }  // namespace marey
