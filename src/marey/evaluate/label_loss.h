@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// Where something is in one frame, under a name.
+struct NamedPlace {
+  std::string name;
+  Vector<2> place = Vector<2>::Zero();  ///< px
+};
+
+/// What became of one true marker's name.
+struct LabelFate {
+  std::string marker;          ///< its name in the truth
+  std::string given;           ///< the name that was on it when it was first seen; empty where none was
+  int visible = 0;             ///< frames in which the marker can be seen
+  int named = 0;               ///< of these, frames with the given name on it
+  bool named_at_last = false;  ///< whether the given name is on it in its last visible frame
+  bool lost() const { return !named_at_last || 10 * named < 9 * visible; }
+};
+
+/// Judges names by the rule of `marey experiment trackers`: a name is lost where it is not on its marker in the marker's last
+/// visible frame, or was on it in less than 90 % of the frames in which it can be seen. A name is on a marker where it is reported
+/// within `reach` px of it. `truth[i]` holds the visible markers of frame i, `tracks[i]` what was reported; both have as many
+/// frames.
+std::vector<LabelFate> judge_labels(std::span<const std::vector<NamedPlace>> truth, std::span<const std::vector<NamedPlace>> tracks,
+                                    double reach);
+
+}  // namespace marey
