@@ -1,0 +1,45 @@
+#include "marey/draw/chart.h"
+
+#include <gtest/gtest.h>
+
+namespace marey {
+namespace {
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+  return found;
+}
+
+TEST(Chart, BarsHaveHeightsInProportionAndMissingOnesAreNotDrawn) {
+  BarChart chart;
+  chart.title = "Losses < 20 & more";
+  chart.series = {"paper", "ours"};
+  chart.groups = {{"slow", {Bar{4, {}, {}}, Bar{2, 1.0, 3.0}}}, {"rapid", {std::nullopt, Bar{0, {}, {}}}}};
+  const std::string svg = to_svg(chart);
+  EXPECT_EQ(count(svg, "<title>"), 3u);
+  EXPECT_NE(svg.find("Losses &lt; 20 &amp; more"), std::string::npos);
+  EXPECT_NE(svg.find(R"(height="270.0")"), std::string::npos) << "the largest bar reaches the top of a 0-4 axis";
+  EXPECT_NE(svg.find(R"(height="135.0")"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(Chart, LinesGoThroughTheirPointsOnBothKindsOfAxis) {
+  LineChart chart;
+  chart.lines = {{"a", {{1, 0.01}, {30, 1}}}};
+  for (const bool logarithmic : {false, true}) {
+    chart.logarithmic_y = logarithmic;
+    const std::string svg = to_svg(chart);
+    EXPECT_EQ(count(svg, "<circle"), 2u);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+  }
+}
+
+TEST(Chart, AnEmptyChartIsStillAPicture) {
+  EXPECT_EQ(count(to_svg(LineChart{}), "</svg>"), 1u);
+  EXPECT_EQ(count(to_svg(BarChart{}), "</svg>"), 1u);
+}
+
+}  // namespace
+}  // namespace marey
