@@ -1,7 +1,7 @@
 # marey_module(NAME SOURCES ... [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
-# Adds one folder of src/marey to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg or OpenCV's image
-# codecs, go into `marey_video`, because loading those at every start costs a hundred shared libraries. TESTS become one program, NAME_test.
+# Adds one folder of src/marey to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
+# `marey_video`, because loading that costs a hundred shared libraries at every start. TESTS become one program, NAME_test.
 function(marey_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;VIDEO_SOURCES;TESTS;TEST_LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS)
@@ -14,6 +14,8 @@ function(marey_module name)
   if(MAREY_TESTS AND arg_TESTS)
     add_executable(${name}_test ${arg_TESTS})
     target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings ${arg_TEST_LIBRARIES})
+    target_include_directories(${name}_test PRIVATE "${PROJECT_SOURCE_DIR}/tests")  # for "support/..."
+    target_compile_definitions(${name}_test PRIVATE MAREY_ROOT="${PROJECT_SOURCE_DIR}")
     gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   endif()
 endfunction()

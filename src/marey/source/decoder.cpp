@@ -1,0 +1,180 @@
+// OpenCV's reader is not used because it converts every picture to BGR (half of the decoding time of a large one), counts
+// time as index / rate, does not tell a file that ends from one that breaks off, and loads 244 shared libraries.
+#include "marey/source/decoder.h"
+
+#include <cmath>
+
+#include "marey/core/error.h"
+#include "marey/source/decoded_picture.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/display.h>
+}
+
+namespace marey {
+namespace {
+
+template <typename T, void (*Free)(T**)>
+struct FreeBy {
+  void operator()(T* object) const { Free(&object); }
+};
+using FormatPtr = std::unique_ptr<AVFormatContext, FreeBy<AVFormatContext, avformat_close_input>>;
+using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+
+/// A decoder that is out of packets may refuse this many pictures in a row before it is given up.
+constexpr int kMostErrorsWhileDraining = 64;
+
+std::string reason(int code) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, text, sizeof text);
+  return text;
+}
+
+/// Degrees clockwise that a camera held askew asks its pictures to be turned by: 0, 90, 180 or 270.
+int turn_of(const AVStream& stream) {
+  std::size_t size = 0;
+  const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
+  if (data == nullptr || size < 9 * sizeof(std::int32_t)) return 0;
+  const double counter_clockwise = av_display_rotation_get(reinterpret_cast<const std::int32_t*>(data));
+  if (!std::isfinite(counter_clockwise)) return 0;
+  const int quarters = static_cast<int>(std::lround(-counter_clockwise / 90.0));
+  return ((quarters % 4 + 4) % 4) * 90;
+}
+
+FormatPtr open_format(const std::string& path) {
+  av_log_set_level(AV_LOG_QUIET);
+  AVFormatContext* opened = nullptr;
+  // "file:" keeps FFmpeg from reading a protocol out of a name that holds a colon.
+  if (const int code = avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr); code < 0) {
+    throw Error("{}: cannot be read as a video ({}); it is of another kind, damaged, or was cut off before its index was written",
+                path, reason(code));
+  }
+  return FormatPtr(opened);
+}
+
+}  // namespace
+
+struct Decoder::Parts {
+  FormatPtr format;
+  CodecPtr codec;
+  AVStream* stream = nullptr;
+  PacketPtr packet{av_packet_alloc()};
+  FramePtr frame{av_frame_alloc()};
+  PictureMaker maker;
+  cv::Size coded_size;
+  int turn = 0;
+  bool drained = false;
+  int errors_while_draining = 0;
+  Trouble trouble;
+
+  bool receive();
+  void feed();
+};
+
+Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique<Parts>()) {
+  Parts& p = *parts_;
+  p.format = open_format(path);
+  if (const int code = avformat_find_stream_info(p.format.get(), nullptr); code < 0) {
+    throw Error("{}: cannot be read as a video ({}); the file may be damaged", path, reason(code));
+  }
+  const AVCodec* codec = nullptr;
+  const int stream = av_find_best_stream(p.format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
+  if (stream < 0 || codec == nullptr)
+    throw Error("{}: holds no video that can be decoded; give a video file or a folder of pictures", path);
+  p.stream = p.format->streams[stream];
+  p.codec.reset(avcodec_alloc_context3(codec));
+  avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
+  p.codec->thread_count = threads;
+  if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
+    throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));
+  }
+  p.coded_size = {p.codec->width, p.codec->height};
+  if (p.coded_size.width <= 0 || p.coded_size.height <= 0) {
+    throw Error("{}: cannot be read as a video (its pictures have no size); give a video file or a folder of pictures", path);
+  }
+  p.turn = turn_of(*p.stream);
+  p.maker.turn_by(p.turn);
+}
+
+Decoder::~Decoder() = default;
+
+cv::Size Decoder::size() const {
+  const cv::Size coded = parts_->coded_size;
+  return parts_->turn % 180 == 0 ? coded : cv::Size(coded.height, coded.width);
+}
+
+std::optional<double> Decoder::rate_hz() const {
+  const AVRational guess = av_guess_frame_rate(parts_->format.get(), parts_->stream, nullptr);
+  if (guess.num <= 0 || guess.den <= 0) return std::nullopt;
+  return av_q2d(guess);
+}
+
+std::optional<std::int64_t> Decoder::frame_count() const {
+  if (parts_->stream->nb_frames > 0) return parts_->stream->nb_frames;
+  return std::nullopt;
+}
+
+std::optional<double> Decoder::duration_s() const {
+  const auto rate = rate_hz();
+  if (const auto count = frame_count(); count && rate) return static_cast<double>(*count) / *rate;
+  const AVFormatContext& format = *parts_->format;
+  if (format.duration > 0 && format.duration_estimation_method == AVFMT_DURATION_FROM_STREAM) {
+    return static_cast<double>(format.duration) / AV_TIME_BASE;
+  }
+  return std::nullopt;
+}
+
+const Decoder::Trouble& Decoder::trouble() const {
+  return parts_->trouble;
+}
+
+std::optional<Decoder::Decoded> Decoder::next() {
+  Parts& p = *parts_;
+  while (p.receive()) {
+    if (p.frame->decode_error_flags != 0 || (p.frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) ++p.trouble.damaged;
+    if (cv::Size(p.frame->width, p.frame->height) != p.coded_size) ++p.trouble.rescaled;
+    Decoded result{p.maker(*p.frame, p.coded_size), std::nullopt};
+    if (const std::int64_t stamp = p.frame->best_effort_timestamp; stamp != AV_NOPTS_VALUE) {
+      result.stamp_ns = av_rescale_q(stamp, p.stream->time_base, AVRational{1, 1'000'000'000});
+    }
+    av_frame_unref(p.frame.get());
+    if (!result.picture.empty()) return result;
+    ++p.trouble.undecodable;
+  }
+  return std::nullopt;
+}
+
+/// Puts the next decoded picture into `frame`; false at the end.
+bool Decoder::Parts::receive() {
+  for (;;) {
+    const int code = avcodec_receive_frame(codec.get(), frame.get());
+    if (code == 0) return true;
+    if (code == AVERROR_EOF) return false;
+    if (code != AVERROR(EAGAIN)) ++trouble.undecodable;
+    if (drained && ++errors_while_draining > kMostErrorsWhileDraining) return false;
+    if (!drained) feed();
+  }
+}
+
+/// Gives the decoder one more packet of the stream, or tells it that there are no more.
+void Decoder::Parts::feed() {
+  for (;;) {
+    av_packet_unref(packet.get());
+    const int code = av_read_frame(format.get(), packet.get());
+    if (code < 0) {
+      if (code != AVERROR_EOF) trouble.broken = reason(code);
+      avcodec_send_packet(codec.get(), nullptr);
+      drained = true;
+      return;
+    }
+    if (packet->stream_index != stream->index || packet->size == 0) continue;
+    if (avcodec_send_packet(codec.get(), packet.get()) == 0) return;
+    ++trouble.undecodable;
+  }
+}
+
+}  // namespace marey

@@ -1,0 +1,20 @@
+#include "marey/source/open_source.h"
+
+#include <filesystem>
+
+#include "marey/source/picture_files.h"
+#include "marey/source/video_source.h"
+
+namespace marey {
+
+std::unique_ptr<Source> open_source(const std::string& path, std::optional<double> rate_hz) {
+  std::error_code error;
+  const bool exists = std::filesystem::exists(path, error);
+  if (std::filesystem::is_directory(path, error) || (!exists && is_picture_pattern(path))) {
+    return open_pictures(path, find_pictures(path), rate_hz);
+  }
+  if (exists && is_picture_name(path)) return open_pictures(path, {path}, rate_hz);
+  return open_video(path, rate_hz);
+}
+
+}  // namespace marey

@@ -1,0 +1,183 @@
+#include "marey/source/picture_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <regex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/source/decoder.h"
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualRate = 25;
+constexpr std::array kEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm", ".pnm", ".webp", ".jp2"};
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Numbers within names compare by value, everything else by character.
+bool naturally_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    const auto number = [](const std::string& text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string x = number(a, i);
+    const std::string y = number(b, j);
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+  }
+  const std::size_t left_of_a = a.size() - i, left_of_b = b.size() - j;
+  return left_of_a != left_of_b ? left_of_a < left_of_b : a < b;
+}
+
+/// Length of a `%d`, `%4d` or `%04d` that begins at `at`; 0 where there is none.
+std::size_t number_mark(const std::string& text, std::size_t at) {
+  if (text[at] != '%') return 0;
+  std::size_t end = at + 1;
+  while (end < text.size() && is_digit(text[end])) ++end;
+  return end < text.size() && text[end] == 'd' ? end - at + 1 : 0;
+}
+
+std::regex matcher(const std::string& pattern) {
+  std::string expression;
+  for (std::size_t at = 0; at < pattern.size(); ++at) {
+    const char c = pattern[at];
+    if (const std::size_t length = number_mark(pattern, at); length > 0) {
+      expression += "[0-9]+";
+      at += length - 1;
+    } else if (c == '*') {
+      expression += ".*";
+    } else if (c == '?') {
+      expression += '.';
+    } else {
+      if (std::ispunct(static_cast<unsigned char>(c)) != 0) expression += '\\';
+      expression += c;
+    }
+  }
+  return std::regex(expression);
+}
+
+class PictureFiles final : public Source {
+ public:
+  PictureFiles(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz) : files_(std::move(files)) {
+    info_.name = name;
+    info_.rate_hz = rate_hz.value_or(kUsualRate);
+    info_.frame_count = static_cast<std::int64_t>(files_.size());
+    if (files_.empty())
+      throw Error("{}: no pictures found; give a video file, a folder of pictures or a pattern such as 'shot_%04d.png'", name);
+    if (!rate_hz) {
+      warnings_.push_back(fmt::format("{}: pictures do not tell their rate: {} a second were assumed; say otherwise with --rate",
+                                      name, kUsualRate));
+    }
+    for (const std::string& file : files_) {
+      const Picture picture = read(file);
+      if (picture.empty()) continue;
+      info_.size = picture.size();
+      return;
+    }
+    throw Error("{}: none of its {} pictures can be read", name, files_.size());
+  }
+
+  const SourceInfo& info() const override { return info_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
+
+  std::optional<Frame> next() override {
+    while (at_ < files_.size()) {
+      const std::size_t number = at_++;
+      Picture picture = read(files_[number]);
+      if (picture.empty() || picture.size() != info_.size) {
+        leave_out(files_[number], picture.empty() ? "cannot be read" : "has another size");
+        continue;
+      }
+      return Frame{CameraId{}, next_index_++, timestamp_from_seconds(static_cast<double>(number) / *info_.rate_hz),
+                   std::move(picture)};
+    }
+    tell_the_end();
+    return std::nullopt;
+  }
+
+ private:
+  static Picture read(const std::string& file) {
+    try {
+      Decoder decoder(file, 1);
+      auto decoded = decoder.next();
+      return decoded ? std::move(decoded->picture) : Picture();
+    } catch (const Error&) {
+      return {};
+    }
+  }
+
+  void leave_out(const std::string& file, const char* why) {
+    if (++left_out_ == 1) first_left_out_ = fmt::format("{} {}", fs::path(file).filename().string(), why);
+  }
+
+  void tell_the_end() {
+    if (std::exchange(ended_, true) || left_out_ == 0) return;
+    warnings_.push_back(
+        fmt::format("{}: {} of {} pictures left out; the first: {}", info_.name, left_out_, files_.size(), first_left_out_));
+  }
+
+  std::vector<std::string> files_;
+  SourceInfo info_;
+  std::size_t at_ = 0;
+  std::int64_t next_index_ = 0;
+  std::int64_t left_out_ = 0;
+  std::string first_left_out_;
+  std::vector<std::string> warnings_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+bool is_picture_name(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+bool is_picture_pattern(const std::string& path) {
+  const std::string name = fs::path(path).filename().string();
+  for (std::size_t at = 0; at < name.size(); ++at) {
+    if (name[at] == '*' || name[at] == '?' || number_mark(name, at) > 0) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> find_pictures(const std::string& path) {
+  std::error_code error;
+  const bool folder = fs::is_directory(path, error);
+  const fs::path where = folder ? fs::path(path) : fs::path(path).parent_path();
+  const std::regex wanted = folder ? std::regex(".*") : matcher(fs::path(path).filename().string());
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator(where.empty() ? fs::path(".") : where, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_regular_file(error) || (folder && (!is_picture_name(name) || name.starts_with('.')))) continue;
+    if (std::regex_match(name, wanted)) found.push_back(entry.path().string());
+  }
+  std::sort(found.begin(), found.end(), naturally_less);
+  return found;
+}
+
+std::unique_ptr<Source> open_pictures(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz) {
+  return std::make_unique<PictureFiles>(name, std::move(files), rate_hz);
+}
+
+}  // namespace marey
