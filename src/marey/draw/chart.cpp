@@ -86,37 +86,34 @@ class Svg {
 
   void frame(const std::string& title, const std::string& value_label, const Axis& axis) {
     add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kLeft, escaped(title));
-    add(R"svg(<text transform="translate(18 {}) rotate(-90)" text - anchor =
-            "middle" > {} < / text >) ", kTop + kPlotHeight / 2, escaped(value_label));
-        for (const double tick : axis.ticks) {
+    add(R"svg(<text transform="translate(18 {}) rotate(-90)" text-anchor="middle">{}</text>)svg", kTop + kPlotHeight / 2,
+        escaped(value_label));
+    for (const double tick : axis.ticks) {
       const double y = axis.y(tick);
       add(R"(<line x1="{}" x2="{}" y1="{:.1f}" y2="{:.1f}" stroke="#ddd"/>)", kLeft, width_ - 20, y, y);
-      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)svg",
-        kLeft - 6, y + 4, tick);
+      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)", kLeft - 6, y + 4, tick);
+    }
   }
-}
 
   void legend(const std::vector<std::string>& names) {
-  double x = kLeft, y = kHeight - 34;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const double width = 26 + 6.6 * static_cast<double>(names[i].size());
-    if (x + width > width_ - 10 && x > kLeft) {
-      x = kLeft;
-      y += 18;
+    double x = kLeft, y = kHeight - 34;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double width = 26 + 6.6 * static_cast<double>(names[i].size());
+      if (x + width > width_ - 10 && x > kLeft) {
+        x = kLeft;
+        y += 18;
+      }
+      add(R"(<rect x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", x, y, colour(i));
+      add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x + 15, y + 10, escaped(names[i]));
+      x += width;
     }
-    add(R"(<rect x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", x, y, colour(i));
-    add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x + 15, y + 10, escaped(names[i]));
-    x += width;
   }
-}
 
-std::string finish() && {
-  return std::move(text_) + "</svg>\n";
-}
+  std::string finish() && { return std::move(text_) + "</svg>\n"; }
 
-private:
-double width_;
-std::string text_;
+ private:
+  double width_;
+  std::string text_;
 };
 
 }  // namespace
