@@ -20,8 +20,9 @@ namespace marey {
 ///   f.gate_distance(z, R)        where z lies in the search area that the method defines: 0 at its centre, 1 on its border
 ///
 /// Invariants, tested for every model by filter/filter_invariants.h: predict(0) changes nothing; a measurement that lies at
-/// position() does not move it; covariances stay symmetric and positive; a target that moves as the model assumes is
-/// followed without bias; nothing becomes NaN for any finite input.
+/// position() does not move it (where position() is the mean of a mixture, by no more than a part of its spread); covariances stay
+/// symmetric and positive; a target that moves as the model assumes is followed without bias; nothing becomes NaN for any finite
+/// input.
 template <typename F>
 concept Filter = requires(F filter, const F constant, const typename F::Options options, double dt, const Vector<F::dimension>& z,
                           const Matrix<F::dimension>& R) {

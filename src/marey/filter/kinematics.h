@@ -1,0 +1,132 @@
+#pragma once
+
+// Linear motion models that treat every axis alike.
+//
+// A target's state is its position and the derivatives of it: Order = 2 stops at velocity, Order = 3 at acceleration. A model
+// that knows no preferred direction moves this state by F ⊗ I and adds the noise Q ⊗ I, with F and Q of size Order × Order
+// and I the D × D identity. So the covariance is kept as D × D blocks, one for each pair of derivatives, and a prediction is a
+// few sums of blocks instead of a product of (Order·D)² matrices; a measurement of the position costs one D × D inverse.
+// Nothing is approximated: measurement covariances that tie the axes together stay exact.
+//
+// Models: constant velocity with white acceleration; Singer's acceleration, which fades (R. A. Singer, "Estimating optimal
+// tracking filter performance for manned maneuvering targets", IEEE Trans. AES 6, 1970), with constant acceleration as its
+// limit; and the planar turn at a known rate (Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and
+// Navigation", 2001, section 4.2).
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "marey/geometry/vector.h"
+
+namespace marey::kinematics {
+
+/// x(t + dt) = (F ⊗ I) x(t) + noise of covariance Q ⊗ I. Orders the state as position, velocity, acceleration.
+template <int Order>
+struct Model {
+  Matrix<Order> F = Matrix<Order>::Identity();
+  Matrix<Order> Q = Matrix<Order>::Zero();
+};
+
+/// A Gaussian over position and derivatives. Units: px or m, per second, per second².
+template <int D, int Order>
+struct State {
+  static constexpr int kBlocks = Order * (Order + 1) / 2;
+
+  std::array<Vector<D>, Order> mean;
+  std::array<Matrix<D>, kBlocks> blocks;  ///< of the covariance, the upper half: rows above, left to right
+
+  static constexpr int index(int i, int j) { return i * Order - i * (i - 1) / 2 + (j - i); }
+
+  /// Covariance of derivative i with derivative j, i ≤ j.
+  Matrix<D>& cov(int i, int j) { return blocks[static_cast<std::size_t>(index(i, j))]; }
+  const Matrix<D>& cov(int i, int j) const { return blocks[static_cast<std::size_t>(index(i, j))]; }
+
+  /// The same for any i and j.
+  Matrix<D> covariance(int i, int j) const {
+    if (i <= j) return cov(i, j);
+    return cov(j, i).transpose();
+  }
+};
+
+/// At `z`, all derivatives zero, with independent covariances `z_covariance`, sigma₁² I, sigma₂² I, …
+template <int D, int Order>
+State<D, Order> at_rest(const Vector<D>& z, const Matrix<D>& z_covariance, const std::array<double, Order - 1>& sigmas) {
+  State<D, Order> state;
+  for (auto& mean : state.mean) mean.setZero();
+  for (auto& block : state.blocks) block.setZero();
+  state.mean[0] = z;
+  state.cov(0, 0) = z_covariance;
+  for (int i = 1; i < Order; ++i) {
+    const double sigma = sigmas[static_cast<std::size_t>(i - 1)];
+    state.cov(i, i) = Matrix<D>::Identity() * (sigma * sigma);
+  }
+  return state;
+}
+
+template <int D, int Order>
+void predict(State<D, Order>& state, const Model<Order>& model) {
+  const auto& F = model.F;
+  const State<D, Order> old = state;
+  // Half the product, P (F ⊗ I)ᵀ, then the upper half of (F ⊗ I) times that.
+  std::array<std::array<Matrix<D>, Order>, Order> half;
+  for (int i = 0; i < Order; ++i) {
+    state.mean[static_cast<std::size_t>(i)] = F(i, 0) * old.mean[0];
+    for (int k = 1; k < Order; ++k) state.mean[static_cast<std::size_t>(i)] += F(i, k) * old.mean[static_cast<std::size_t>(k)];
+    for (int j = 0; j < Order; ++j) {
+      Matrix<D> sum = F(j, 0) * old.covariance(i, 0);
+      for (int k = 1; k < Order; ++k) sum += F(j, k) * old.covariance(i, k);
+      half[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = sum;
+    }
+  }
+  for (int i = 0; i < Order; ++i) {
+    for (int j = i; j < Order; ++j) {
+      Matrix<D> sum = F(i, 0) * half[0][static_cast<std::size_t>(j)];
+      for (int k = 1; k < Order; ++k) sum += F(i, k) * half[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)];
+      sum.diagonal().array() += model.Q(i, j);
+      state.cov(i, j) = sum;
+    }
+    state.cov(i, i) = (0.5 * (state.cov(i, i) + state.cov(i, i).transpose())).eval();
+  }
+}
+
+/// Takes in a measured position. Returns the logarithm of its likelihood before it was taken in.
+template <int D, int Order>
+double correct(State<D, Order>& state, const Vector<D>& z, const Matrix<D>& R) {
+  const Matrix<D> S = state.cov(0, 0) + R;
+  const Matrix<D> inverse = S.inverse();
+  const Vector<D> innovation = z - state.mean[0];
+  const Vector<D> weighted = inverse * innovation;
+
+  std::array<Matrix<D>, Order> column;  // covariance of each derivative with the position
+  for (int i = 0; i < Order; ++i) column[static_cast<std::size_t>(i)] = state.covariance(i, 0);
+  for (int i = 0; i < Order; ++i) {
+    const Matrix<D> gain = column[static_cast<std::size_t>(i)] * inverse;
+    state.mean[static_cast<std::size_t>(i)] += column[static_cast<std::size_t>(i)] * weighted;
+    for (int j = i; j < Order; ++j) state.cov(i, j) -= gain * column[static_cast<std::size_t>(j)].transpose();
+  }
+  // The position's own rows by R S⁻¹ P instead of P − P S⁻¹ P: no digits are lost where P is far larger than R.
+  const Matrix<D> keep = R * inverse;
+  for (int j = 0; j < Order; ++j) state.cov(0, j) = keep * column[static_cast<std::size_t>(j)].transpose();
+  for (int i = 0; i < Order; ++i) state.cov(i, i) = (0.5 * (state.cov(i, i) + state.cov(i, i).transpose())).eval();
+
+  constexpr double kLogTwoPi = 1.8378770664093453;
+  return -0.5 * (innovation.dot(weighted) + std::log(S.determinant()) + D * kLogTwoPi);
+}
+
+/// Constant velocity under white acceleration of spectral density `density` (unit²/s³).
+Model<2> constant_velocity(double dt, double density);
+
+/// Acceleration of standard deviation `sigma` (unit/s²) that fades with `time` (s) and is renewed as much. With time → ∞ and
+/// 2 sigma²/time kept, this is constant acceleration under white jerk of that density.
+Model<3> singer(double dt, double sigma, double time);
+
+/// Constant acceleration under white jerk of spectral density `density` (unit²/s⁵).
+Model<3> constant_acceleration(double dt, double density);
+
+/// A turn at `rate` (rad/s) in the plane of velocity and acceleration: the third derivative is −rate² times the first. White
+/// noise of spectral density `density` (unit²/s⁵) drives the acceleration, as in `constant_acceleration`.
+Model<3> turn(double dt, double rate, double density);
+
+}  // namespace marey::kinematics
