@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/picture.h"
+
+namespace marey {
+
+struct Colour {
+  unsigned char red = 0, green = 0, blue = 0;
+};
+
+/// A colour that belongs to this number: neighbours differ, and it is the same in every run.
+Colour colour_of(int number);
+
+/// A picture of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
+/// are pixels; what lies outside is cut off. Full-range pictures are brought to video's range on the way in.
+class Canvas {
+ public:
+  explicit Canvas(const Picture& picture);
+
+  struct Stroke {
+    cv::Point2f from, to;
+    double opacity = 1;
+  };
+  /// Strokes of one colour, one after the other, blended as one: where they meet nothing is darker.
+  void strokes(const std::vector<Stroke>& strokes, const Colour& colour, double thickness);
+  void rectangle(const cv::Rect2f& where, const Colour& colour, double thickness, double opacity = 1);
+  /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the picture.
+  void tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height);
+
+  /// The picture as painted so far; colour, limited range. The canvas may not be used afterwards.
+  Picture take();
+
+ private:
+  /// Lays `colour` over the picture where `stencil`, whose top left pixel lies at `at` (even), is above 0 (255 hides the picture).
+  void lay(const cv::Mat& stencil, cv::Point at, const Colour& colour);
+  /// An empty stencil, with even corners, that covers `where` as far as it is within the picture.
+  cv::Rect even_part(const cv::Rect2f& where, double margin) const;
+
+  cv::Mat luma_, cb_, cr_;
+};
+
+}  // namespace marey

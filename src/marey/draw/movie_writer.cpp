@@ -1,0 +1,177 @@
+#include "marey/draw/movie_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/opt.h>
+}
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename T, void (*Free)(T**)>
+struct FreeBy {
+  void operator()(T* object) const { Free(&object); }
+};
+using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+struct CloseFormat {
+  void operator()(AVFormatContext* format) const {
+    avio_closep(&format->pb);
+    avformat_free_context(format);
+  }
+};
+
+constexpr AVRational kTick{1, 90'000};
+constexpr double kUsualRate = 25;
+constexpr int kSecondsBetweenKeyFrames = 2;  // a player seeks to these
+
+std::string reason(int code) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, text, sizeof text);
+  return text;
+}
+
+}  // namespace
+
+struct MovieWriter::Parts {
+  std::string path;
+  std::string part;  // beside `path`, until the film is whole
+  std::unique_ptr<AVFormatContext, CloseFormat> format;
+  CodecPtr codec;
+  AVStream* stream = nullptr;
+  PacketPtr packet{av_packet_alloc()};
+  std::int64_t last_tick = -1;
+  std::int64_t ticks_a_frame = 0;
+  bool finished = false;
+
+  void open_codec(cv::Size size, double rate);
+  void open_file();
+  void encode(const AVFrame* frame);
+  void check(int code) const {
+    if (code < 0) throw Error("{}: cannot be written ({})", path, reason(code));
+  }
+};
+
+void MovieWriter::Parts::open_codec(cv::Size size, double rate) {
+  const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
+  if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
+  if (encoder == nullptr) throw Error("{}: no H.264 encoder is installed; install FFmpeg's libraries built with x264", path);
+  codec.reset(avcodec_alloc_context3(encoder));
+  codec->width = (size.width + 1) & ~1;  // 4:2:0 wants even sides
+  codec->height = (size.height + 1) & ~1;
+  codec->pix_fmt = AV_PIX_FMT_YUV420P;
+  codec->color_range = AVCOL_RANGE_MPEG;
+  codec->time_base = kTick;
+  codec->framerate = av_d2q(rate, 1'000'000);
+  codec->gop_size = std::max(1, static_cast<int>(std::lround(kSecondsBetweenKeyFrames * rate)));
+  codec->thread_count = 0;
+  codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  // Fast enough that the film is not what one waits for; sharp enough to read the numbers.
+  av_opt_set(codec->priv_data, "preset", "superfast", 0);
+  av_opt_set(codec->priv_data, "crf", "22", 0);
+  if (const int code = avcodec_open2(codec.get(), encoder, nullptr); code < 0) {
+    throw Error("{}: the H.264 encoder ({}) cannot encode {} x {} pixels ({})", path, encoder->name, size.width, size.height,
+                reason(code));
+  }
+}
+
+void MovieWriter::Parts::open_file() {
+  AVFormatContext* opened = nullptr;
+  check(avformat_alloc_output_context2(&opened, nullptr, "mp4", ("file:" + part).c_str()));
+  format.reset(opened);
+  stream = avformat_new_stream(opened, nullptr);
+  check(avcodec_parameters_from_context(stream->codecpar, codec.get()));
+  stream->time_base = kTick;
+  stream->avg_frame_rate = codec->framerate;
+  check(avio_open(&opened->pb, opened->url, AVIO_FLAG_WRITE));
+  av_opt_set(opened->priv_data, "movflags", "+faststart", 0);
+  check(avformat_write_header(opened, nullptr));
+}
+
+/// A null frame asks for what the encoder still holds.
+void MovieWriter::Parts::encode(const AVFrame* frame) {
+  check(avcodec_send_frame(codec.get(), frame));
+  for (;;) {
+    const int code = avcodec_receive_packet(codec.get(), packet.get());
+    if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
+    check(code);
+    packet->stream_index = stream->index;
+    packet->duration = ticks_a_frame;
+    av_packet_rescale_ts(packet.get(), kTick, stream->time_base);
+    check(av_interleaved_write_frame(format.get(), packet.get()));
+    check(format->pb->error);
+  }
+}
+
+MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz)
+    : parts_(std::make_unique<Parts>()) {
+  av_log_set_level(AV_LOG_QUIET);
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
+  parts_->path = path;
+  parts_->part = path + ".part";
+  const double rate = rate_hz.value_or(kUsualRate);
+  parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
+  try {
+    parts_->open_codec(size, rate);
+    parts_->open_file();
+  } catch (...) {
+    fs::remove(parts_->part, error);
+    throw;
+  }
+}
+
+MovieWriter::~MovieWriter() {
+  if (parts_->finished) return;
+  parts_->format.reset();
+  std::error_code ignored;
+  fs::remove(parts_->part, ignored);
+}
+
+void MovieWriter::write(const Picture& picture, Timestamp time) {
+  Parts& p = *parts_;
+  const FramePtr frame(av_frame_alloc());
+  frame->format = p.codec->pix_fmt;
+  frame->width = p.codec->width;
+  frame->height = p.codec->height;
+  const std::int64_t tick = std::llround(seconds(time) * kTick.den);
+  frame->pts = p.last_tick = std::max(tick, p.last_tick + 1);
+  cv::Mat luma = picture.luma();
+  if (luma.cols != frame->width || luma.rows != frame->height) {
+    cv::copyMakeBorder(picture.luma(), luma, 0, frame->height - luma.rows, 0, frame->width - luma.cols, cv::BORDER_REPLICATE);
+  }
+  const cv::Mat* planes[] = {&luma, &picture.cb(), &picture.cr()};
+  for (int i = 0; i < 3; ++i) {
+    frame->data[i] = planes[i]->data;  // the encoder copies what it does not own
+    frame->linesize[i] = static_cast<int>(planes[i]->step);
+  }
+  p.encode(frame.get());
+}
+
+void MovieWriter::finish() {
+  Parts& p = *parts_;
+  p.encode(nullptr);
+  p.check(av_write_trailer(p.format.get()));
+  avio_flush(p.format->pb);
+  p.check(p.format->pb->error);
+  p.check(avio_closep(&p.format->pb));
+  p.format.reset();
+  std::error_code error;
+  fs::rename(p.part, p.path, error);
+  if (error) throw Error("{}: cannot be written ({})", p.path, error.message());
+  p.finished = true;
+}
+
+}  // namespace marey

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/picture.h"
+#include "marey/core/time.h"
+
+namespace marey {
+
+/// Writes a film that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. It is written beside its name and gets
+/// its name in `finish`: the file is there whole or not at all.
+class MovieWriter {
+ public:
+  /// `rate_hz` is what most frames follow each other at; each is shown at its own time all the same.
+  /// Throws Error where the file cannot be written or no H.264 encoder is installed.
+  MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz);
+  /// Without `finish`, nothing is left behind.
+  ~MovieWriter();
+  MovieWriter(const MovieWriter&) = delete;
+  MovieWriter& operator=(const MovieWriter&) = delete;
+
+  /// One picture of the size given above, in limited range, as Canvas makes them. `time` grows from call to call; a time that does
+  /// not is moved to just after the last. Throws Error where the place is full.
+  void write(const Picture& picture, Timestamp time);
+
+  /// Throws Error where the place is full.
+  void finish();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace marey

@@ -1,0 +1,64 @@
+#include "marey/draw/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "marey/draw/canvas.h"
+
+namespace marey {
+namespace {
+
+cv::Point2f to_point(const Vector<2>& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y())};
+}
+
+/// The outermost pixels that a box covers.
+cv::Rect2f edge_of(const Box& box) {
+  return {static_cast<float>(box.left), static_cast<float>(box.top), static_cast<float>(std::max(0.0, box.width - 1)),
+          static_cast<float>(std::max(0.0, box.height - 1))};
+}
+
+Vector<2> foot_of(const Track<2>& track) {
+  return track.box ? track.box->foot() : track.position;
+}
+
+}  // namespace
+
+Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks) {
+  Canvas canvas(picture);
+  // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
+  const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
+  for (const Track<2>& track : tracks) trails_[track.id].push_back({now, foot_of(track)});
+
+  for (auto trail = trails_.begin(); trail != trails_.end();) {
+    auto& steps = trail->second;
+    while (!steps.empty() && now - steps.front().time > options_.trail) steps.pop_front();
+    if (steps.empty()) {
+      trail = trails_.erase(trail);
+      continue;
+    }
+    std::vector<Canvas::Stroke> strokes;
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+      const double age = seconds(now - steps[i].time) / seconds(options_.trail);
+      strokes.push_back({to_point(steps[i - 1].foot), to_point(steps[i].foot), 0.9 * (1 - age)});
+    }
+    canvas.strokes(strokes, colour_of(number(trail->first)), 2 * unit);
+    ++trail;
+  }
+
+  for (const Track<2>& track : tracks) {
+    if (!track.box) continue;
+    const bool seen = track.state == Track<2>::State::observed;
+    canvas.rectangle(edge_of(*track.box), colour_of(number(track.id)), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+  }
+  for (const Track<2>& track : tracks) {
+    const Vector<2> corner = track.box ? Vector<2>(track.box->left - unit, track.box->top - unit) : track.position;
+    const std::string text = track.label.empty() ? std::to_string(number(track.id)) : track.label;
+    canvas.tag(text, to_point(corner), colour_of(number(track.id)), 10 * unit);
+  }
+  return canvas.take();
+}
+
+}  // namespace marey

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <span>
+
+#include "marey/core/ids.h"
+#include "marey/core/picture.h"
+#include "marey/core/time.h"
+#include "marey/core/track.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+struct OverlayOptions {
+  Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
+};
+
+/// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
+/// predicted, and a trail of where its foot was that fades with age. Colours are steady by number. Lines and numbers grow with the
+/// picture.
+class Overlay {
+ public:
+  explicit Overlay(const OverlayOptions& options = {}) : options_(options) {}
+
+  /// Frames come in order. Keeps trails of those targets alone that were seen within `trail`.
+  Picture draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks);
+
+ private:
+  struct Step {
+    Timestamp time;
+    Vector<2> foot;
+  };
+
+  OverlayOptions options_;
+  std::map<TrackId, std::deque<Step>> trails_;
+};
+
+}  // namespace marey

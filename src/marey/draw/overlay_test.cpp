@@ -1,0 +1,90 @@
+#include "marey/draw/overlay.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/draw/canvas.h"
+
+namespace marey {
+namespace {
+
+Picture grey(int width, int height) {
+  return Picture(cv::Mat(height, width, CV_8UC1, cv::Scalar(128)));
+}
+
+Track<2> at(int id, double left, double top, Track<2>::State state = Track<2>::State::observed) {
+  Track<2> track;
+  track.id = TrackId{id};
+  track.box = Box{left, top, 20, 50};
+  track.position = track.box->centre();
+  track.state = state;
+  return track;
+}
+
+/// How many pixels of `part` differ between two pictures by more than a rounding.
+int changed(const Picture& a, const Picture& b, const cv::Rect& part) {
+  cv::Mat difference;
+  cv::absdiff(a.luma()(part), b.luma()(part), difference);
+  return cv::countNonZero(difference > 2);
+}
+
+TEST(Canvas, PaintsTheColourThatWasAsked) {
+  Canvas canvas(grey(64, 48));
+  canvas.rectangle({20, 10, 20, 20}, {255, 0, 0}, 4);
+  const cv::Mat bgr = canvas.take().bgr();
+  const auto on_edge = bgr.at<cv::Vec3b>(20, 20);
+  EXPECT_GT(on_edge[2], 240);
+  EXPECT_LT(on_edge[1], 15);
+  EXPECT_LT(on_edge[0], 15);
+  const auto inside = bgr.at<cv::Vec3b>(20, 30);
+  EXPECT_NEAR(inside[0], 128, 2);
+  EXPECT_NEAR(inside[2], 128, 2);
+}
+
+TEST(Canvas, WhatLiesOutsideIsCutOffAtAnySize) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 5), cv::Size(65, 49)}) {
+    Canvas canvas(Picture::from_bgr(cv::Mat(size, CV_8UC3, cv::Scalar(1, 2, 3))));
+    canvas.rectangle({-10, -10, 200, 200}, {255, 0, 0}, 3);
+    canvas.rectangle({500, 500, 20, 20}, {255, 0, 0}, 3);
+    canvas.strokes({{{-50, -50}, {100, 100}, 1}}, {0, 255, 0}, 2);
+    canvas.tag("123", {-5, -5}, {0, 0, 255}, 11);
+    canvas.tag("123", {500, 500}, {0, 0, 255}, 11);
+    EXPECT_EQ(canvas.take().size(), size);
+  }
+}
+
+TEST(Canvas, NeighbouringNumbersLookDifferent) {
+  for (int i = 1; i < 200; ++i) {
+    for (int j = i + 1; j < i + 4; ++j) {
+      const Colour a = colour_of(i), b = colour_of(j);
+      EXPECT_GT(std::abs(a.red - b.red) + std::abs(a.green - b.green) + std::abs(a.blue - b.blue), 80) << i << " and " << j;
+    }
+  }
+}
+
+TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
+  Overlay overlay;
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
+  Picture last;
+  for (int i = 0; i <= 10; ++i) {
+    last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{at(7, 20 + 10.0 * i, 40)});
+  }
+  EXPECT_GT(changed(empty, last, {119, 39, 22, 52}), 200) << "the box";
+  EXPECT_GT(changed(empty, last, {115, 15, 30, 22}), 50) << "the number above it";
+  EXPECT_GT(changed(empty, last, {40, 85, 70, 8}), 70) << "the trail behind its foot";
+  last = overlay.draw(grey(200, 120), timestamp_from_seconds(20), {});
+  EXPECT_EQ(changed(empty, last, {0, 0, 200, 120}), 0) << "all of it has faded";
+}
+
+TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
+  const cv::Rect all(0, 42, 200, 60);
+  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40)});
+  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40, Track<2>::State::predicted)});
+  EXPECT_LT(changed(empty, predicted, all), changed(empty, seen, all));
+  EXPECT_GT(changed(empty, predicted, all), 50);
+}
+
+}  // namespace
+}  // namespace marey
