@@ -33,7 +33,7 @@ TEST(MovieWriter, WritesAFilmThatBrowsersPlay) {
   EXPECT_FALSE(std::filesystem::exists(path)) << "not before it is whole";
   writer.finish();
   EXPECT_EQ(probe(folder, path, "stream=codec_name,width,height,pix_fmt"), "h264,66,50,yuv420p\n");
-  EXPECT_EQ(probe(folder, path, "frame=pts_time").substr(0, 40), "0.000000\n0.100000\n0.200000\n0.500000\n0.60");
+  EXPECT_EQ(probe(folder, path, "packet=pts_time").substr(0, 40), "0.000000\n0.100000\n0.200000\n0.500000\n0.60");
   const std::string bytes = test::read_file(path);
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2)
