@@ -1,11 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "marey/core/observation.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
+#include "marey/filter/filters.h"
 
 namespace marey {
 
@@ -15,11 +16,36 @@ class Tracker {
  public:
   virtual ~Tracker() = default;
 
-  /// Takes in what was seen at `now`, later than the last call's, and reports every target that is followed.
-  virtual std::vector<Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) = 0;
+  /// Takes in what was seen at `now` and reports every target that is followed, in the order of their ids, those not yet
+  /// confirmed included and marked so. The span stays valid until the next call. Throws Error where `now` is not later than the
+  /// last call's or an observation is not finite.
+  virtual std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) = 0;
 
-  /// Where each target is expected at `now`, before it is looked at.
-  virtual std::vector<Track<D>> expected(Timestamp now) const = 0;
+  /// Where each confirmed target is expected at `now`, before it is looked at. Valid until the next call.
+  virtual std::span<const Track<D>> expected(Timestamp now) = 0;
 };
+
+/// Lengths are in sizes of the target where observations carry a box (its height in the image: a standing person moves as many
+/// body heights a second near the camera as far from it), else in the unit of the observations (px or m).
+struct TrackerOptions {
+  FilterOptions filter = KalmanOptions{.acceleration_noise = 0.6, .initial_speed = 0.8, .gate_sigmas = 3.5};
+  double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
+  double max_speed = 7;             ///< nothing moves faster, sizes/s: 12 m/s for a person
+  double place_noise = 0.05;        ///< standard deviation of a box's centre, sizes; added to the observation's covariance
+  double size_noise = 0.08;         ///< standard deviation of the logarithm of a box's width and height
+  double size_drift = 0.15;         ///< what that logarithm may change by in a second
+  double confident = 0.5;           ///< a target begins with scores of at least this; weaker ones only continue one
+  double weak = 0.05;               ///< scores below this are not looked at
+  double confirm = 3;               ///< evidence that makes a target: about so many confident observations
+  double patience = 1.2;            ///< a target that should be seen and is not is given up after this, s
+  double hidden_patience = 3;       ///< one that is hidden behind another or in a shared region after this, s
+};
+
+/// What fits points without an extent, such as markers: lengths in px.
+TrackerOptions point_tracker_options();
+
+/// The tracker that the options choose. Throws Error where an option is out of its domain.
+template <int D>
+std::unique_ptr<Tracker<D>> make_tracker(const TrackerOptions& options);
 
 }  // namespace marey

@@ -1,0 +1,314 @@
+// The tracker of the spine: predict, gate, assign, correct; birth and death by evidence.
+//
+// A pair of target and observation is gated by chi-square distance and by speed, and weighed by the logarithm of its likelihood
+// against that of clutter: place, size, overlap. The assignment that maximises the sum over all pairs wins (globally nearest
+// neighbour), confident observations first, then what weak ones can still explain (after Zhang et al., "ByteTrack", 2022).
+// A target begins with a confident observation that no target claims, is confirmed by further evidence, and is given up when it
+// has not been seen for too long: sooner where it should be visible, later where another target hides it.
+// Cost a frame: near linear in targets + observations while gates hold few observations (assign/gated_assignment.h).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "marey/assign/gated_assignment.h"
+#include "marey/assign/point_grid.h"
+#include "marey/core/error.h"
+#include "marey/geometry/chi_square.h"
+#include "marey/track/target.h"
+#include "marey/track/tracker.h"
+
+namespace marey {
+
+template <typename F>
+class FilterTracker final : public Tracker<F::dimension> {
+ public:
+  static constexpr int D = F::dimension;
+
+  FilterTracker(const TrackerOptions& options, const typename F::Options& filter_options)
+      : options_(options),
+        filter_options_(filter_options),
+        size_options_{.noise = options.size_noise, .drift = options.size_drift},
+        gate_(chi_square_quantile(D, options.gate_probability)) {}
+
+  std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
+    check(now, seen);
+    predict_to(now);
+    claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
+    claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
+    correct(now, seen);
+    retire_lost(now);
+    start_unclaimed(now, seen);
+    return report(now);
+  }
+
+  std::span<const Track<D>> expected(Timestamp now) override {
+    const double dt = now_ ? std::max(0.0, seconds(now - *now_)) : 0.0;
+    tracks_.clear();
+    for (const Target<F>& target : targets_) {
+      if (!target.confirmed) continue;
+      Target<F> ahead = target;
+      ahead.filter.predict(dt);
+      tracks_.push_back(track_of(ahead));
+      tracks_.back().state = Track<D>::State::predicted;
+    }
+    return tracks_;
+  }
+
+ private:
+  void check(Timestamp now, std::span<const Observation<D>> seen) const {
+    if (now_ && now <= *now_) {
+      throw Error("the frame at {:.6f} s does not come after the one at {:.6f} s; the times of frames must grow", seconds(now),
+                  seconds(*now_));
+    }
+    for (const Observation<D>& observation : seen) {
+      const bool box_is_finite =
+          !observation.box || (std::isfinite(observation.box->left) && std::isfinite(observation.box->top) &&
+                               std::isfinite(observation.box->width) && std::isfinite(observation.box->height));
+      if (!observation.value.allFinite() || !observation.covariance.allFinite() || !std::isfinite(observation.score) ||
+          !box_is_finite) {
+        throw Error("an observation at {:.6f} s is not a finite number; leave it out", seconds(now));
+      }
+    }
+  }
+
+  void predict_to(Timestamp now) {
+    const double dt = now_ ? seconds(now - *now_) : 0.0;
+    now_ = now;
+    for (Target<F>& target : targets_) {
+      target.filter.predict(dt);
+      if (target.size) target.size->predict(dt, size_options_);
+      target.observation = -1;
+      target.hidden = false;
+    }
+  }
+
+  /// Where the observation puts the target: the centre of its box, if need be corrected for a size that is not believed.
+  Vector<D> place_of(const Observation<D>& observation, const Target<F>& target) const {
+    if constexpr (D == 2) {
+      if (observation.box && !observation.box->empty()) {
+        if (!target.size) return observation.box->centre();
+        return target.size->centre_in(*observation.box, target.filter.position(), size_options_);
+      }
+    }
+    return observation.value;
+  }
+
+  Matrix<D> noise_of(const Observation<D>& observation, const Target<F>& target) const {
+    Matrix<D> R = observation.covariance;
+    if (!target.size || !observation.box) return R;
+    const bool believed = !observation.shared && target.size->believes(*observation.box, size_options_);
+    const double sigma = options_.place_noise * target.unit * (believed ? 1 : doubt);
+    R.diagonal().array() += sigma * sigma;
+    return R;
+  }
+
+  /// How far from its prediction a target may be: as far as it can have gone since it was last seen.
+  double reach(const Target<F>& target) const {
+    const double since = seconds(*now_ - target.last_seen);
+    return target.unit * (options_.max_speed * since + 4 * options_.place_noise);
+  }
+
+  /// What the pair is worth: logarithm of its likelihood against that of clutter; 0 or less where it is out of the question.
+  double gain(const Target<F>& target, const Observation<D>& observation) const {
+    const Matrix<D> R = noise_of(observation, target);
+    const Matrix<D> S = target.filter.innovation_covariance(R);
+    const Vector<D> residual = place_of(observation, target) - target.filter.position();
+    const double distance = residual.dot(S.inverse() * residual);
+    if (!(distance <= gate_) || residual.norm() > reach(target)) return 0;
+    double cost = distance + std::log(S.determinant() / std::pow(target.unit * reference_sigma, 2 * D));
+    double room = gate_ + confirmed_room;
+    if (target.size && observation.box && !observation.shared) {
+      cost += std::min(target.size->distance(*observation.box, size_options_), size_limit);
+      room += size_limit / 2;
+    }
+    if (!target.confirmed) cost += newcomer_cost;
+    return (room - cost) / 2;
+  }
+
+  template <typename Chosen>
+  void claim(std::span<const Observation<D>> seen, Chosen&& chosen) {
+    candidates_.clear();
+    points_.clear();
+    for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
+      if (!chosen(seen[i])) continue;
+      candidates_.push_back(i);
+      points_.push_back(centre_of(seen[i]));
+    }
+    free_targets_.clear();
+    double widest = 0;
+    for (int i = 0; i < static_cast<int>(targets_.size()); ++i) {
+      if (targets_[i].observation >= 0) continue;
+      free_targets_.push_back(i);
+      widest += search_radius(targets_[i]);
+    }
+    if (candidates_.empty() || free_targets_.empty()) return;
+    grid_.build(points_, std::max(1e-9, 2 * widest / static_cast<double>(free_targets_.size())));
+    pairs_.clear();
+    for (int row = 0; row < static_cast<int>(free_targets_.size()); ++row) {
+      const Target<F>& target = targets_[free_targets_[row]];
+      grid_.for_each_near(target.filter.position(), search_radius(target), [&](int column) {
+        const double worth = gain(target, seen[candidates_[column]]);
+        if (worth > 0) pairs_.push_back({row, column, worth});
+      });
+    }
+    const auto columns = assigner_.assign(static_cast<int>(free_targets_.size()), static_cast<int>(candidates_.size()), pairs_);
+    for (int row = 0; row < static_cast<int>(free_targets_.size()); ++row) {
+      if (columns[row] != GatedAssigner::nobody) targets_[free_targets_[row]].observation = candidates_[columns[row]];
+    }
+  }
+
+  static Vector<D> centre_of(const Observation<D>& observation) {
+    if constexpr (D == 2) {
+      if (observation.box) return observation.box->centre();
+    }
+    return observation.value;
+  }
+
+  /// No observation farther than this can pass the gate: a box whose size is not believed may lie off by half a size more.
+  double search_radius(const Target<F>& target) const { return reach(target) + (target.size ? target.unit : 0.0); }
+
+  void correct(Timestamp now, std::span<const Observation<D>> seen) {
+    for (Target<F>& target : targets_) {
+      if (target.observation < 0) {
+        target.evidence -= miss_evidence;
+        continue;
+      }
+      const Observation<D>& observation = seen[target.observation];
+      target.filter.correct(place_of(observation, target), noise_of(observation, target));
+      if (observation.box && !observation.box->empty() && !observation.shared) {
+        if (target.size) {
+          target.size->correct(*observation.box, size_options_);
+          target.unit = target.size->height();
+        }
+      }
+      target.last_seen = now;
+      target.score = observation.score;
+      target.evidence += evidence_of(observation.score);
+      if (target.evidence >= options_.confirm) target.confirmed = true;
+    }
+    mark_hidden(seen);
+  }
+
+  static double evidence_of(double score) { return 0.4 + 0.8 * std::clamp(score, 0.0, 1.0); }
+
+  /// A target that is not seen is hidden where a larger region or a nearer target (its feet lower in the picture) covers it.
+  void mark_hidden(std::span<const Observation<D>> seen) {
+    for (Target<F>& target : targets_) {
+      if (target.observation >= 0 || !target.size) continue;
+      if constexpr (D == 2) {
+        const Box box = target.size->around(target.filter.position());
+        const auto covers = [&](const Box& other) { return intersection(box, other).area() > covered_share * box.area(); };
+        target.hidden = std::any_of(targets_.begin(), targets_.end(), [&](const Target<F>& other) {
+          return other.observation >= 0 && other.size && seen[other.observation].box &&
+                 (covers(other.size->around(other.filter.position())) || covers(*seen[other.observation].box));
+        });
+      }
+    }
+  }
+
+  void retire_lost(Timestamp now) {
+    std::erase_if(targets_, [&](const Target<F>& target) {
+      const double unseen = seconds(now - target.last_seen);
+      if (unseen <= 0) return false;
+      if (!target.confirmed) return target.evidence < 0 || unseen > tentative_patience;
+      const double patience = target.hidden ? options_.hidden_patience : options_.patience;
+      return unseen > std::min(patience, seconds(target.last_seen - target.born) + young_patience);
+    });
+  }
+
+  void start_unclaimed(Timestamp now, std::span<const Observation<D>> seen) {
+    claimed_.assign(seen.size(), 0);
+    for (const Target<F>& target : targets_) {
+      if (target.observation >= 0) claimed_[target.observation] = 1;
+    }
+    for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
+      if (claimed_[i] || seen[i].score < options_.confident || is_duplicate(i, seen)) continue;
+      start(now, seen[i], i);
+      claimed_[i] = 1;
+    }
+  }
+
+  /// A detector's second box around what a target has claimed already.
+  bool is_duplicate(int index, std::span<const Observation<D>> seen) const {
+    if (!seen[index].box) return false;
+    for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
+      if (claimed_[i] && seen[i].box && iou(*seen[i].box, *seen[index].box) > duplicate_iou) return true;
+    }
+    return false;
+  }
+
+  void start(Timestamp now, const Observation<D>& observation, int index) {
+    const bool has_box = observation.box && !observation.box->empty();
+    const double unit = has_box ? observation.box->height : 1.0;
+    Matrix<D> R = observation.covariance;
+    if (has_box) R.diagonal().array() += std::pow(options_.place_noise * unit, 2);
+    Target<F> target{.id = TrackId{next_id_++},
+                     .filter = F(filter_options_.scaled(unit), centre_of(observation), R),
+                     .size = {},
+                     .unit = unit,
+                     .born = now,
+                     .last_seen = now,
+                     .evidence = evidence_of(observation.score),
+                     .confirmed = false,
+                     .score = observation.score,
+                     .observation = index,
+                     .hidden = false};
+    if (has_box) target.size.emplace(*observation.box, size_options_);
+    target.confirmed = target.evidence >= options_.confirm;
+    targets_.push_back(target);
+  }
+
+  Track<D> track_of(const Target<F>& target) const {
+    Track<D> track;
+    track.id = target.id;
+    track.position = target.filter.position();
+    track.velocity = target.filter.velocity();
+    track.covariance = target.filter.covariance();
+    track.state = target.observation >= 0 ? Track<D>::State::observed : Track<D>::State::predicted;
+    track.confirmed = target.confirmed;
+    if constexpr (D == 2) {
+      if (target.size) track.box = target.size->around(track.position);
+    }
+    track.score = target.score;
+    return track;
+  }
+
+  std::span<const Track<D>> report(Timestamp /*now*/) {
+    tracks_.clear();
+    for (const Target<F>& target : targets_) tracks_.push_back(track_of(target));
+    return tracks_;
+  }
+
+  static constexpr double doubt = 2.5;             // an unbelieved box places its target this much less surely
+  static constexpr double reference_sigma = 0.12;  // sizes: innovations of a well followed target
+  static constexpr double confirmed_room = 6;      // how many log-likelihoods clutter is behind
+  static constexpr double size_limit = 9;          // a box whose size is not believed costs no more than this
+  static constexpr double newcomer_cost = 1;       // a confirmed target has the first claim
+  static constexpr double miss_evidence = 0.7;
+  static constexpr double covered_share = 0.5;
+  static constexpr double tentative_patience = 0.4;  // s
+  static constexpr double young_patience = 0.4;      // s
+  static constexpr double duplicate_iou = 0.75;
+
+  TrackerOptions options_;
+  typename F::Options filter_options_;
+  BoxSizeOptions size_options_;
+  double gate_;
+  std::optional<Timestamp> now_;
+  int next_id_ = 1;
+  std::vector<Target<F>> targets_;  // in the order of their ids
+  std::vector<Track<D>> tracks_;
+  // What a frame needs, kept so that it is allocated once.
+  std::vector<int> candidates_, free_targets_;
+  std::vector<Vector<D>> points_;
+  std::vector<GatedPair> pairs_;
+  std::vector<char> claimed_;
+  PointGrid<D> grid_;
+  GatedAssigner assigner_;
+};
+
+}  // namespace marey

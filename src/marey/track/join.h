@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "marey/track/recording.h"
+
+namespace marey {
+
+/// Lengths in body heights where targets have boxes, else in px.
+struct JoinOptions {
+  double longest_gap = 4;       ///< s; who reappears later is somebody new
+  double longest_filled = 2.5;  ///< s; a longer gap is joined, but nothing is said of where the target was meanwhile
+  double place_noise = 0.12;    ///< standard deviation of an end of a tracklet
+  double speed_noise = 0.35;    ///< by how much the mean speed in a gap differs from that at its ends, 1/s
+  double size_noise = 0.15;     ///< of the logarithm of the height
+  double shortest = 0.35;       ///< s; what is seen for less is taken for a false alarm
+  int fewest = 3;               ///< observations; likewise
+  double smoothing = 0.12;      ///< s; standard deviation of the kernel that smooths places
+  double size_smoothing = 0.4;  ///< s; the same for sizes
+};
+
+/// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with
+/// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given anew from 1 in the order of
+/// first appearance. Rows in the order of frames, then ids. The recording's tracklets are used up.
+std::vector<TrackRow> join(Recording& recording, const JoinOptions& options = {});
+
+}  // namespace marey

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "marey/track/recording.h"
+
+namespace marey {
+
+struct Smoothing {
+  double place = 0.12;  ///< standard deviation of the kernel over time, s
+  double size = 0.4;
+};
+
+/// Rows between two observed ones are put on the straight way between them, as predicted, where that lasts at most `longest`
+/// seconds; where it lasts longer they are left out. `rows` are one target's, in the order of frames; frames may be missing.
+void fill_gaps(Recording::Tracklet& rows, const Recording& recording, double longest);
+
+/// Replaces places, sizes and velocities by local straight-line fits under a Gaussian kernel that looks both ways, so that
+/// nothing lags. Observed rows weigh more than predicted ones.
+void smooth(Recording::Tracklet& rows, const Recording& recording, const Smoothing& smoothing);
+
+}  // namespace marey

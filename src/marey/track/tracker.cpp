@@ -1,0 +1,43 @@
+#include "marey/track/tracker.h"
+
+#include "marey/core/error.h"
+#include "marey/track/filter_tracker.h"
+
+namespace marey {
+namespace {
+
+void check(bool good, const char* name, double value, const char* domain) {
+  if (!good) throw Error("the tracker's {} is {}; it must be {}", name, value, domain);
+}
+
+void check(const TrackerOptions& o) {
+  check(o.gate_probability > 0 && o.gate_probability < 1, "gate_probability", o.gate_probability, "between 0 and 1");
+  check(o.max_speed > 0, "max_speed", o.max_speed, "positive");
+  check(o.place_noise > 0, "place_noise", o.place_noise, "positive");
+  check(o.size_noise > 0, "size_noise", o.size_noise, "positive");
+  check(o.size_drift >= 0, "size_drift", o.size_drift, "0 or more");
+  check(o.patience >= 0, "patience", o.patience, "0 or more");
+  check(o.hidden_patience >= 0, "hidden_patience", o.hidden_patience, "0 or more");
+}
+
+}  // namespace
+
+TrackerOptions point_tracker_options() {
+  TrackerOptions options;
+  options.filter = KalmanOptions{};
+  options.max_speed = 5000;
+  return options;
+}
+
+template <int D>
+std::unique_ptr<Tracker<D>> make_tracker(const TrackerOptions& options) {
+  check(options);
+  return with_filter<D>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
+    return std::make_unique<FilterTracker<F>>(options, filter);
+  });
+}
+
+template std::unique_ptr<Tracker<2>> make_tracker<2>(const TrackerOptions& options);
+template std::unique_ptr<Tracker<3>> make_tracker<3>(const TrackerOptions& options);
+
+}  // namespace marey
