@@ -12,68 +12,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
-#include <numeric>
+#include <utility>
+
+#include "marey/detect/runs.h"
 
 namespace marey {
 namespace {
-
-class Forest {
- public:
-  explicit Forest(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int root(int node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-void append_runs(const std::uint8_t* pixels, int row, int width, std::vector<PixelRun>& runs) {
-  for (int x = 0; x < width;) {
-    std::uint64_t eight = 0;
-    if (x + 8 <= width) {
-      std::memcpy(&eight, pixels + x, sizeof eight);
-      if (eight == 0) {
-        x += 8;
-        continue;
-      }
-    }
-    if (pixels[x] == 0) {
-      ++x;
-      continue;
-    }
-    const int begin = x;
-    while (x < width && pixels[x] != 0) ++x;
-    runs.push_back({row, begin, x});
-  }
-}
 
 std::vector<PixelRun> runs_of(const cv::Mat& mask) {
   std::vector<PixelRun> runs;
   for (int row = 0; row < mask.rows; ++row) append_runs(mask.ptr<std::uint8_t>(row), row, mask.cols, runs);
   return runs;
-}
-
-/// Joins every two runs of neighbouring rows that overlap when one is widened by `reach` columns: 0 joins by edges, 1 by corners
-/// too.
-void join_neighbours(std::span<const PixelRun> runs, int reach, Forest& forest) {
-  std::size_t above = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const PixelRun& run = runs[i];
-    while (runs[above].row < run.row - 1 || (runs[above].row == run.row - 1 && runs[above].end + reach <= run.begin)) ++above;
-    for (std::size_t j = above; runs[j].row == run.row - 1 && runs[j].begin < run.end + reach; ++j) {
-      forest.join(static_cast<int>(j), static_cast<int>(i));
-    }
-  }
 }
 
 /// What is left of the rows and columns of `size` without `runs`.
