@@ -48,11 +48,10 @@ void print_parameters(const CondensationOptions& o) {
   fmt::print("particles={}\n", o.particles);
 }
 void print_parameters(const InteractingModelsOptions& o) {
-  fmt::print(
-      "cruise_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} share_0={} share_1={} share_2={} "
-      "initial_speed={}\n",
-      o.cruise_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.shares[0], o.shares[1],
-      o.shares[2], o.initial_speed);
+  fmt::print("cruise_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} initial_speed={} ",
+             o.cruise_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
+  fmt::print("swerve_rate={} swerve_speed={} swerve_share={} share_0={} share_1={} share_2={}\n", o.swerve_rate, o.swerve_speed,
+             o.swerve_share, o.shares[0], o.shares[1], o.shares[2]);
 }
 
 template <typename Entries>

@@ -228,9 +228,9 @@ class Interacting(Reference):
     def __init__(self, p, z, R):
         super().__init__(p, z, R)
         D = self.D
-        self.shares = np.array([p["share_0"], p["share_1"], p["share_2"]])
+        self.shares = np.array([p["share_0"], p["share_1"], p["share_2"], 0])
         filters = []
-        for model in (self.cruise, self.pull, self.turn):
+        for model in (self.cruise, self.pull, self.turn, self.swerve):
             f = KalmanFilter(dim_x=3 * D, dim_z=D)
             f.x = np.concatenate([z, np.zeros(2 * D)])
             f.P = kron(np.diag([0.0, p["initial_speed"] ** 2, p["acceleration"] ** 2]), D)
@@ -244,7 +244,7 @@ class Interacting(Reference):
 
             f.predict = predict
             filters.append(f)
-        self.f = IMMEstimator(filters, self.shares.copy(), np.eye(3))
+        self.f = IMMEstimator(filters, self.shares.copy(), np.full((4, 4), 0.25))
 
     def cruise(self, f):
         F, Q = np.zeros((3, 3)), np.zeros((3, 3))
@@ -267,12 +267,23 @@ class Interacting(Reference):
         A = np.array([[0, 1, 0], [0, 0, 1], [0, -rate ** 2, 0]])
         return expm(A * self.dt), white(3, 2 * self.sigma ** 2 / self.p["acceleration_time"], self.dt)[1]
 
+    def swerve(self, f):
+        F, Q = np.zeros((3, 3)), np.zeros((3, 3))
+        F[:2, :2] = [[1, self.dt], [0, 1]]
+        Q[:2, :2] = self.jump ** 2 * np.array([[self.dt ** 2 / 3, self.dt / 2], [self.dt / 2, 1]])
+        Q[2, 2] = self.sigma ** 2
+        return F, Q
+
     def predict(self, dt):
         D = self.D
         self.dt = dt
-        self.sigma = self.p["acceleration"] + self.p["agility"] * np.linalg.norm(self.f.x[D:2 * D])
-        stay = np.exp(-dt / self.p["mode_time"])
-        self.f.M = stay * np.eye(3) + (1 - stay) * np.tile(self.shares, (3, 1))
+        speed = np.linalg.norm(self.f.x[D:2 * D])
+        self.sigma = self.p["acceleration"] + self.p["agility"] * speed
+        self.jump = self.p["swerve_speed"] + self.p["swerve_share"] * speed
+        keep = np.diag([np.exp(-dt / self.p["mode_time"])] * 3 + [0])
+        swerves = 1 - np.exp(-dt * self.p["swerve_rate"])
+        M = keep + (np.eye(4) - keep) @ np.tile(self.shares, (4, 1))
+        self.f.M = (1 - swerves) * M + swerves * np.array([0, 0, 0, 1])
         self.f._compute_mixing_probabilities()
         self.f.predict()
         self.f.mu = self.f.cbar.copy()
@@ -282,7 +293,7 @@ class Interacting(Reference):
         for f in self.f.filters:
             f.R = R
         self.f.cbar = self.f.mu.copy()
-        self.f.M = np.eye(3)  # the change of model is in mu already; update() forms cbar of the next step with M
+        self.f.M = np.eye(4)  # the change of model is in mu already; update() forms cbar of the next step with M
         self.f.update(z)
 
 

@@ -98,11 +98,11 @@ TEST(FitNoise, AFittedKalmanPredictsBestWithItsOwnNoise) {
 }
 
 TEST(FitNoise, EveryFilterTakesItOrStaysAsItIs) {
-  const NoiseFit fit{.measurement_sigma = 0.2, .acceleration_noise = 30, .acceleration = 160, .speed = 20};
+  const NoiseFit fit{.measurement_sigma = 0.2, .acceleration_noise = 30, .acceleration = 160, .speed = 10};
   for (const NamedFilter& filter : named_filters()) EXPECT_EQ(name_of(with_noise(filter.options, fit)), filter.name);
   EXPECT_EQ(std::get<ExtendedKalmanOptions>(with_noise(ExtendedKalmanOptions{}, fit)).noise.acceleration_noise, 30);
   const auto imm = std::get<InteractingModelsOptions>(with_noise(InteractingModelsOptions{}, fit));
-  EXPECT_NEAR(imm.acceleration, std::sqrt(160 * 160 - std::pow(imm.agility * 20, 2)), 1e-9);
+  EXPECT_NEAR(imm.acceleration, std::sqrt(160 * 160 - std::pow(imm.agility * 10, 2)), 1e-9);
 }
 
 }  // namespace

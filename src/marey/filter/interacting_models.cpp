@@ -6,15 +6,68 @@
 namespace marey {
 namespace {
 
-/// Cruising: straight on, and the acceleration is one drawn anew.
-kinematics::Model<3> cruise(double dt, double density, double acceleration) {
-  const kinematics::Model<2> straight = kinematics::constant_velocity(dt, density);
-  kinematics::Model<3> model;
-  model.F.setZero();
-  model.F.topLeftCorner<2, 2>() = straight.F;
-  model.Q.topLeftCorner<2, 2>() = straight.Q;
-  model.Q(2, 2) = acceleration * acceleration;
-  return model;
+using kinematics::Model;
+using kinematics::State;
+
+/// Moves position and velocity straight on; the acceleration is one drawn anew, of this standard deviation.
+template <int D>
+void predict_straight(State<D, 3>& state, double dt, const Matrix<2>& Q, double acceleration) {
+  state.mean[0] += dt * state.mean[1];
+  state.mean[2].setZero();
+  Matrix<D>& pp = state.cov(0, 0);
+  Matrix<D>& pv = state.cov(0, 1);
+  Matrix<D>& vv = state.cov(1, 1);
+  pp += dt * (pv + pv.transpose()) + (dt * dt) * vv;
+  pv += dt * vv;
+  pp.diagonal().array() += Q(0, 0);
+  pv.diagonal().array() += Q(0, 1);
+  vv.diagonal().array() += Q(1, 1);
+  state.cov(0, 2).setZero();
+  state.cov(1, 2).setZero();
+  state.cov(2, 2) = (acceleration * acceleration) * Matrix<D>::Identity();
+}
+
+/// A jump of the velocity, of this standard deviation, at any moment of the step alike.
+Matrix<2> jump(double dt, double sigma) {
+  Matrix<2> Q;
+  Q << dt * dt / 3, dt / 2, dt / 2, 1;
+  return sigma * sigma * Q;
+}
+
+/// The update where the acceleration is tied to nothing.
+template <int D>
+kinematics::Innovation correct_straight(State<D, 3>& state, const Vector<D>& z, const Matrix<D>& R) {
+  State<D, 2> straight;
+  straight.mean = {state.mean[0], state.mean[1]};
+  straight.blocks = {state.cov(0, 0), state.cov(0, 1), state.cov(1, 1)};
+  const kinematics::Innovation innovation = kinematics::correct(straight, z, R);
+  state.mean[0] = straight.mean[0];
+  state.mean[1] = straight.mean[1];
+  state.cov(0, 0) = straight.cov(0, 0);
+  state.cov(0, 1) = straight.cov(0, 1);
+  state.cov(1, 1) = straight.cov(1, 1);
+  return innovation;
+}
+
+/// Mean and covariance of position and `Derivatives` − 1 derivatives of a mixture.
+template <std::size_t Derivatives, int D, std::size_t Models>
+void mix_into(State<D, 3>& mixed, const std::array<State<D, 3>, Models>& states, const std::array<double, Models>& weights) {
+  for (std::size_t r = 0; r < Derivatives; ++r) {
+    mixed.mean[r] = weights[0] * states[0].mean[r];
+    for (std::size_t i = 1; i < Models; ++i) mixed.mean[r] += weights[i] * states[i].mean[r];
+    for (std::size_t c = r; c < Derivatives; ++c) {
+      mixed.cov(r, c) = weights[0] * states[0].cov(r, c);
+      for (std::size_t i = 1; i < Models; ++i) mixed.cov(r, c) += weights[i] * states[i].cov(r, c);
+    }
+  }
+  for (std::size_t i = 0; i < Models; ++i) {
+    std::array<Vector<D>, Derivatives> apart;
+    for (std::size_t r = 0; r < Derivatives; ++r) apart[r] = states[i].mean[r] - mixed.mean[r];
+    for (std::size_t r = 0; r < Derivatives; ++r) {
+      const Vector<D> scaled = weights[i] * apart[r];
+      for (std::size_t c = r; c < Derivatives; ++c) mixed.cov(r, c) += scaled * apart[c].transpose();
+    }
+  }
 }
 
 }  // namespace
@@ -30,47 +83,38 @@ double turn_rate(const Vector<D>& velocity, const Matrix<D>& covariance, const V
 
 template <int D>
 InteractingModels<D>::InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R)
-    : options_(options), probabilities_(options.shares), position_(z), covariance_(R) {
+    : options_(options),
+      probabilities_({options.shares[kCruise], options.shares[kPull], options.shares[kTurn], 0}),
+      position_(z),
+      covariance_(R) {
   states_.fill(kinematics::at_rest<D, 3>(z, R, {options.initial_speed, options.acceleration}));
+}
+
+/// `keep` is the chance to stay in a model that lasts, `swerve` that of a swerve.
+template <int D>
+double InteractingModels<D>::chance_of_change(std::size_t from, std::size_t to, double keep, double swerve) const {
+  if (to == kSwerve) return swerve;
+  if (from == kSwerve) return (1 - swerve) * options_.shares[to];
+  return (1 - swerve) * ((from == to ? keep : 0) + (1 - keep) * options_.shares[to]);
 }
 
 template <int D>
 void InteractingModels<D>::mix(double dt) {
-  const double stay = std::exp(-dt / options_.mode_time);
-  const std::array<kinematics::State<D, 3>, kModels> old = states_;
+  const double keep = std::exp(-dt / options_.mode_time);
+  const double swerve = 1 - std::exp(-dt * options_.swerve_rate);
+  const std::array<State, kModels> old = states_;
   const std::array<double, kModels> before = probabilities_;
-
-  // Outer products of the differences of the means, for the pairs (0, 1), (0, 2), (1, 2).
-  constexpr std::array<std::array<std::size_t, 2>, 3> kPairs = {{{0, 1}, {0, 2}, {1, 2}}};
-  std::array<std::array<Vector<D>, 3>, 3> difference;
-  for (std::size_t p = 0; p < kPairs.size(); ++p) {
-    for (std::size_t i = 0; i < 3; ++i) difference[p][i] = old[kPairs[p][0]].mean[i] - old[kPairs[p][1]].mean[i];
-  }
-
   for (std::size_t j = 0; j < kModels; ++j) {
-    std::array<double, kModels> weight;  // chance of having been in i, now in j
+    std::array<double, kModels> weights;  // chance of having been in i, now in j
     double sum = 0;
-    for (std::size_t i = 0; i < kModels; ++i) {
-      weight[i] = before[i] * ((i == j ? stay : 0) + (1 - stay) * options_.shares[j]);
-      sum += weight[i];
-    }
+    for (std::size_t i = 0; i < kModels; ++i) sum += weights[i] = before[i] * chance_of_change(i, j, keep, swerve);
     probabilities_[j] = sum;
     if (!(sum > 0)) continue;  // a model that has no share of the time: left to itself
-    for (double& w : weight) w /= sum;
-
-    kinematics::State<D, 3>& mixed = states_[j];
-    for (std::size_t i = 0; i < 3; ++i) {
-      mixed.mean[i] = weight[0] * old[0].mean[i] + weight[1] * old[1].mean[i] + weight[2] * old[2].mean[i];
-    }
-    for (std::size_t b = 0; b < mixed.blocks.size(); ++b) {
-      mixed.blocks[b] = weight[0] * old[0].blocks[b] + weight[1] * old[1].blocks[b] + weight[2] * old[2].blocks[b];
-    }
-    for (std::size_t p = 0; p < kPairs.size(); ++p) {
-      const double both = weight[kPairs[p][0]] * weight[kPairs[p][1]];
-      for (int r = 0; r < 3; ++r) {
-        const Vector<D> scaled = both * difference[p][static_cast<std::size_t>(r)];
-        for (int c = r; c < 3; ++c) mixed.cov(r, c) += scaled * difference[p][static_cast<std::size_t>(c)].transpose();
-      }
+    for (double& weight : weights) weight /= sum;
+    if (is_curved(j)) {
+      mix_into<3>(states_[j], old, weights);
+    } else {
+      mix_into<2>(states_[j], old, weights);
     }
   }
 }
@@ -78,34 +122,66 @@ void InteractingModels<D>::mix(double dt) {
 template <int D>
 void InteractingModels<D>::predict(double dt) {
   if (dt == 0) return;
-  const double acceleration = options_.acceleration + options_.agility * velocity_.norm();
+  const double speed = velocity_.norm();
+  const double acceleration = options_.acceleration + options_.agility * speed;
   mix(dt);
-  const kinematics::State<D, 3>& turning = states_[kTurn];
+  const State& turning = states_[kTurn];
   const double rate = turn_rate<D>(turning.mean[1], turning.cov(1, 1), turning.mean[2], options_.turn_limit);
   const double jerk_density = 2 * acceleration * acceleration / options_.acceleration_time;
-  kinematics::predict(states_[kCruise], cruise(dt, options_.cruise_noise * options_.cruise_noise, acceleration));
+  const double cruise_density = options_.cruise_noise * options_.cruise_noise;
+  const double swerve_sigma = options_.swerve_speed + options_.swerve_share * speed;
+  predict_straight(states_[kCruise], dt, kinematics::constant_velocity(dt, cruise_density).Q, acceleration);
   kinematics::predict(states_[kPull], kinematics::singer(dt, acceleration, options_.acceleration_time));
   kinematics::predict(states_[kTurn], kinematics::turn(dt, rate, jerk_density));
+  predict_straight(states_[kSwerve], dt, jump(dt, swerve_sigma), acceleration);
   summarise();
 }
 
 template <int D>
 void InteractingModels<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
-  std::array<double, kModels> likelihood;
-  double largest = -std::numeric_limits<double>::infinity();
+  std::array<kinematics::Innovation, kModels> innovations;
+  double least = std::numeric_limits<double>::max();
   for (std::size_t j = 0; j < kModels; ++j) {
-    likelihood[j] = kinematics::correct(states_[j], z, R);
-    if (!std::isfinite(likelihood[j])) likelihood[j] = -std::numeric_limits<double>::max();
-    largest = std::max(largest, likelihood[j]);
+    innovations[j] = is_curved(j) ? kinematics::correct(states_[j], z, R) : correct_straight(states_[j], z, R);
+    least = std::min(least, innovations[j].squared);
   }
   double sum = 0;
-  for (std::size_t j = 0; j < kModels; ++j) sum += probabilities_[j] *= std::exp(likelihood[j] - largest);
-  if (!(sum > 0)) {
-    probabilities_ = options_.shares;
-    sum = 1;
+  for (std::size_t j = 0; j < kModels; ++j) {
+    probabilities_[j] *= std::exp(-0.5 * (innovations[j].squared - least)) / std::sqrt(innovations[j].determinant);
+    sum += probabilities_[j];
   }
-  for (double& probability : probabilities_) probability /= sum;
+  if (sum > 0 && std::isfinite(sum)) {
+    for (double& probability : probabilities_) probability /= sum;
+  } else {  // so far from all that doubles cannot tell which is nearest
+    probabilities_ = {options_.shares[kCruise], options_.shares[kPull], options_.shares[kTurn], 0};
+  }
   summarise();
+}
+
+template <int D>
+double InteractingModels<D>::log_likelihood(const Vector<D>& z, const Matrix<D>& R) const {
+  constexpr double kLogTwoPi = 1.8378770664093453;
+  std::array<double, kModels> terms;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < kModels; ++j) {
+    const Matrix<D> S = states_[j].cov(0, 0) + R;
+    const Vector<D> residual = z - states_[j].mean[0];
+    terms[j] =
+        std::log(probabilities_[j]) - 0.5 * (residual.dot(S.inverse() * residual) + std::log(S.determinant()) + D * kLogTwoPi);
+    largest = std::max(largest, terms[j]);
+  }
+  double sum = 0;
+  for (const double term : terms) sum += std::exp(term - largest);
+  return largest + std::log(sum);
+}
+
+template <int D>
+double InteractingModels<D>::gate_distance(const Vector<D>& z, const Matrix<D>& R) const {
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t j = 0; j < kModels; ++j) {
+    if (probabilities_[j] > 0) least = std::min(least, mahalanobis<D>(z - states_[j].mean[0], states_[j].cov(0, 0) + R));
+  }
+  return least / options_.gate_sigmas;
 }
 
 template <int D>

@@ -17,12 +17,13 @@ template <int D>
 struct Textbook {
   static constexpr int N = 3 * D;
   InteractingModelsOptions options;
-  std::array<Vector<N>, 3> x;
-  std::array<Matrix<N>, 3> P;
-  std::array<double, 3> mu;
+  std::array<Vector<N>, 4> x;
+  std::array<Matrix<N>, 4> P;
+  std::array<double, 4> mu;
 
-  Textbook(const InteractingModelsOptions& o, const Vector<D>& z, const Matrix<D>& R) : options(o), mu(o.shares) {
-    for (std::size_t j = 0; j < 3; ++j) {
+  Textbook(const InteractingModelsOptions& o, const Vector<D>& z, const Matrix<D>& R)
+      : options(o), mu({o.shares[0], o.shares[1], o.shares[2], 0}) {
+    for (std::size_t j = 0; j < 4; ++j) {
       x[j].setZero();
       x[j].template head<D>() = z;
       P[j].setZero();
@@ -40,38 +41,45 @@ struct Textbook {
     return full;
   }
 
-  Vector<N> mean() const { return mu[0] * x[0] + mu[1] * x[1] + mu[2] * x[2]; }
+  Vector<N> mean() const { return mu[0] * x[0] + mu[1] * x[1] + mu[2] * x[2] + mu[3] * x[3]; }
 
   Matrix<N> covariance() const {
     Matrix<N> sum = Matrix<N>::Zero();
-    for (std::size_t j = 0; j < 3; ++j) sum += mu[j] * (P[j] + (x[j] - mean()) * (x[j] - mean()).transpose());
+    for (std::size_t j = 0; j < 4; ++j) sum += mu[j] * (P[j] + (x[j] - mean()) * (x[j] - mean()).transpose());
     return sum;
   }
 
   void predict(double dt) {
-    const double sigma = options.acceleration + options.agility * mean().template segment<D>(D).norm();
+    const double speed = mean().template segment<D>(D).norm();
+    const double sigma = options.acceleration + options.agility * speed;
     const double stay = std::exp(-dt / options.mode_time);
-    Matrix<3> change;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) change(i, j) = (1 - stay) * options.shares[static_cast<std::size_t>(j)] + (i == j ? stay : 0);
+    const double swerve = 1 - std::exp(-dt * options.swerve_rate);
+    Matrix<4> change;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double share = options.shares[static_cast<std::size_t>(j)];
+        change(i, j) = (1 - swerve) * (i == 3 ? share : (1 - stay) * share + (i == j ? stay : 0));
+      }
+      change(i, 3) = swerve;
     }
+    EXPECT_LE((change.rowwise().sum() - Vector<4>::Ones()).norm(), 1e-14);
     const auto x0 = x;
     const auto P0 = P;
     const auto mu0 = mu;
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t j = 0; j < 4; ++j) {
       mu[j] = 0;
-      for (std::size_t i = 0; i < 3; ++i) mu[j] += mu0[i] * change(static_cast<int>(i), static_cast<int>(j));
+      for (std::size_t i = 0; i < 4; ++i) mu[j] += mu0[i] * change(static_cast<int>(i), static_cast<int>(j));
       x[j].setZero();
-      for (std::size_t i = 0; i < 3; ++i) x[j] += mu0[i] * change(static_cast<int>(i), static_cast<int>(j)) / mu[j] * x0[i];
+      for (std::size_t i = 0; i < 4; ++i) x[j] += mu0[i] * change(static_cast<int>(i), static_cast<int>(j)) / mu[j] * x0[i];
       P[j].setZero();
-      for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t i = 0; i < 4; ++i) {
         P[j] += mu0[i] * change(static_cast<int>(i), static_cast<int>(j)) / mu[j] *
                 (P0[i] + (x0[i] - x[j]) * (x0[i] - x[j]).transpose());
       }
     }
     const double rate =
         turn_rate<D>(x[2].template segment<D>(D), P[2].template block<D, D>(D, D), x[2].template tail<D>(), options.turn_limit);
-    std::array<kinematics::Model<3>, 3> models;
+    std::array<kinematics::Model<3>, 4> models;
     const auto straight = kinematics::constant_velocity(dt, options.cruise_noise * options.cruise_noise);
     models[0].F.setZero();
     models[0].F.topLeftCorner<2, 2>() = straight.F;
@@ -79,7 +87,11 @@ struct Textbook {
     models[0].Q(2, 2) = sigma * sigma;
     models[1] = kinematics::singer(dt, sigma, options.acceleration_time);
     models[2] = kinematics::turn(dt, rate, 2 * sigma * sigma / options.acceleration_time);
-    for (std::size_t j = 0; j < 3; ++j) {
+    const double jump = options.swerve_speed + options.swerve_share * speed;
+    models[3] = models[0];
+    models[3].Q.topLeftCorner<2, 2>() << dt * dt / 3, dt / 2, dt / 2, 1;
+    models[3].Q.topLeftCorner<2, 2>() *= jump * jump;
+    for (std::size_t j = 0; j < 4; ++j) {
       const Matrix<N> F = widened(models[j].F);
       x[j] = (F * x[j]).eval();
       P[j] = (F * P[j] * F.transpose() + widened(models[j].Q)).eval();
@@ -88,12 +100,14 @@ struct Textbook {
 
   void correct(const Vector<D>& z, const Matrix<D>& R) {
     double sum = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t j = 0; j < 4; ++j) {
       const Matrix<D> S = P[j].template topLeftCorner<D, D>() + R;
       const Vector<D> residual = z - x[j].template head<D>();
       const Eigen::Matrix<double, N, D> K = P[j].template leftCols<D>() * S.inverse();
       x[j] += K * residual;
-      P[j] = (P[j] - K * S * K.transpose()).eval();
+      Matrix<N> kept = Matrix<N>::Identity();
+      kept.template leftCols<D>() -= K;
+      P[j] = (kept * P[j] * kept.transpose() + K * R * K.transpose()).eval();
       mu[j] *= std::exp(-0.5 * residual.dot(S.inverse() * residual)) / std::sqrt(S.determinant());
       sum += mu[j];
     }
@@ -130,17 +144,17 @@ TYPED_TEST(InteractingTwin, AgreesWithTheTextbook) {
     EXPECT_LE((fast.velocity() - slow.mean().template segment<D>(D)).norm(), 1e-8 * (1 + velocity.norm())) << step;
     const Matrix<D> covariance = slow.covariance().template topLeftCorner<D, D>();
     EXPECT_LE((fast.covariance() - covariance).norm(), 1e-8 * covariance.norm()) << step;
-    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(fast.probabilities()[j], slow.mu[j], 1e-9) << step;
+    for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(fast.probabilities()[j], slow.mu[j], 1e-9) << step;
   }
 }
 
 /// Follows `place` for `duration` seconds at 100 Hz.
 template <typename Place>
-InteractingModels<2> followed(Place place, double duration) {
+InteractingModels<2> followed(Place place, double duration, const InteractingModelsOptions& options = {}) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal(0, 0.1);
   const Matrix<2> R = 0.01 * Matrix<2>::Identity();
-  InteractingModels<2> filter({}, place(0), R);
+  InteractingModels<2> filter(options, place(0), R);
   for (int i = 1; i <= std::lround(100 * duration); ++i) {
     filter.predict(0.01);
     filter.correct(place(0.01 * i) + Vector<2>(normal(random), normal(random)), R);
@@ -151,16 +165,54 @@ InteractingModels<2> followed(Place place, double duration) {
 TEST(InteractingModels, KnowsWhatTheTargetIsDoing) {
   const auto cruising = followed([](double t) { return Vector<2>(100 * t, 50 * t); }, 1.5);
   EXPECT_GT(cruising.probabilities()[InteractingModels<2>::kCruise], 0.6);
-  const auto pulling = followed([](double t) { return Vector<2>(600 * t * t, 0); }, 1.5);
+  const InteractingModelsOptions calm{.acceleration = 600, .agility = 1};
+  const auto pulling = followed([](double t) { return Vector<2>(600 * t * t, 0); }, 1.5, calm);
   EXPECT_LT(pulling.probabilities()[InteractingModels<2>::kCruise], 0.4);
   const auto turning = followed([](double t) { return Vector<2>(100 * std::cos(4 * t), 100 * std::sin(4 * t)); }, 1.5);
   EXPECT_LT(turning.probabilities()[InteractingModels<2>::kCruise], 0.4);
   EXPECT_NEAR(turning.velocity().norm(), 400, 20);
 }
 
+TEST(InteractingModels, ACornerIsInsideTheSearchAreaAndRecognised) {
+  const auto zigzag = [](double t) { return t <= 1 ? Vector<2>(600 * t, 300 * t) : Vector<2>(1200 - 600 * t, 300 * t); };
+  for (const double rate : {30.0, 120.0}) {
+    const Matrix<2> R = 0.01 * Matrix<2>::Identity();
+    InteractingModels<2> filter({}, zigzag(0), R);
+    for (int k = 1; k <= rate + 2; ++k) {
+      filter.predict(1 / rate);
+      EXPECT_LE(filter.gate_distance(zigzag(k / rate), R), 1) << rate << " Hz, frame " << k;
+      filter.correct(zigzag(k / rate), R);
+      const auto& probabilities = filter.probabilities();
+      if (k == rate) {
+        EXPECT_GT(probabilities[InteractingModels<2>::kCruise], 0.6);
+      } else if (k == rate + 1) {
+        EXPECT_GT(probabilities[InteractingModels<2>::kSwerve], 0.9);
+      }
+    }
+    EXPECT_LE((filter.velocity() - Vector<2>(-600, 300)).norm(), 100) << rate << " Hz";
+  }
+}
+
+TEST(InteractingModels, TheLikelihoodIsADensity) {
+  InteractingModels<2> filter({}, {0, 0}, Matrix<2>::Identity());
+  for (int k = 1; k < 10; ++k) {
+    filter.predict(0.04);
+    filter.correct({4.0 * k, 0}, Matrix<2>::Identity());
+  }
+  filter.predict(0.04);
+  double sum = 0;
+  for (double x = -60; x < 60; x += 0.5) {
+    for (double y = -60; y < 60; y += 0.5) {
+      sum += 0.25 * std::exp(filter.log_likelihood(filter.position() + Vector<2>(x, y), Matrix<2>::Identity()));
+    }
+  }
+  EXPECT_NEAR(sum, 1, 1e-3);
+}
+
 TEST(InteractingModels, AModelWithoutAShareOfTheTimeStaysOut) {
   InteractingModelsOptions options;
   options.shares = {1, 0, 0};
+  options.swerve_rate = 0;
   InteractingModels<2> filter(options, {0, 0}, Matrix<2>::Identity());
   for (int i = 0; i < 50; ++i) {
     filter.predict(0.04);
@@ -176,7 +228,9 @@ TEST(InteractingModels, AMeasurementFarFromEveryModelIsSurvived) {
   filter.correct({1e12, -1e12}, 1e-6 * Matrix<2>::Identity());
   filter.predict(0.04);
   EXPECT_TRUE(filter.position().allFinite());
-  EXPECT_NEAR(filter.probabilities()[0] + filter.probabilities()[1] + filter.probabilities()[2], 1, 1e-12);
+  double sum = 0;
+  for (const double probability : filter.probabilities()) sum += probability;
+  EXPECT_NEAR(sum, 1, 1e-12);
 }
 
 TEST(TurnRate, IsZeroAtRestAndHeldBackWhereTheVelocityIsUncertain) {

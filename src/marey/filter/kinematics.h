@@ -37,18 +37,23 @@ struct State {
   std::array<Vector<D>, Order> mean;
   std::array<Matrix<D>, kBlocks> blocks;  ///< of the covariance, the upper half: rows above, left to right
 
-  static constexpr int index(int i, int j) { return i * Order - i * (i - 1) / 2 + (j - i); }
+  static constexpr std::size_t index(std::size_t i, std::size_t j) { return i * (2 * Order - i - 1) / 2 + j; }
 
   /// Covariance of derivative i with derivative j, i ≤ j.
-  Matrix<D>& cov(int i, int j) { return blocks[static_cast<std::size_t>(index(i, j))]; }
-  const Matrix<D>& cov(int i, int j) const { return blocks[static_cast<std::size_t>(index(i, j))]; }
+  Matrix<D>& cov(std::size_t i, std::size_t j) { return blocks[index(i, j)]; }
+  const Matrix<D>& cov(std::size_t i, std::size_t j) const { return blocks[index(i, j)]; }
 
   /// The same for any i and j.
-  Matrix<D> covariance(int i, int j) const {
+  Matrix<D> covariance(std::size_t i, std::size_t j) const {
     if (i <= j) return cov(i, j);
     return cov(j, i).transpose();
   }
 };
+
+template <int D>
+void make_symmetric(Matrix<D>& P) {
+  P = (0.5 * (P + P.transpose())).eval();
+}
 
 /// At `z`, all derivatives zero, with independent covariances `z_covariance`, sigma₁² I, sigma₂² I, …
 template <int D, int Order>
@@ -58,61 +63,66 @@ State<D, Order> at_rest(const Vector<D>& z, const Matrix<D>& z_covariance, const
   for (auto& block : state.blocks) block.setZero();
   state.mean[0] = z;
   state.cov(0, 0) = z_covariance;
-  for (int i = 1; i < Order; ++i) {
-    const double sigma = sigmas[static_cast<std::size_t>(i - 1)];
-    state.cov(i, i) = Matrix<D>::Identity() * (sigma * sigma);
-  }
+  for (std::size_t i = 1; i < Order; ++i) state.cov(i, i) = Matrix<D>::Identity() * (sigmas[i - 1] * sigmas[i - 1]);
   return state;
 }
 
+/// No model here knows an absolute place: the first column of F must be (1, 0, …).
 template <int D, int Order>
 void predict(State<D, Order>& state, const Model<Order>& model) {
   const auto& F = model.F;
   const State<D, Order> old = state;
   // Half the product, P (F ⊗ I)ᵀ, then the upper half of (F ⊗ I) times that.
   std::array<std::array<Matrix<D>, Order>, Order> half;
-  for (int i = 0; i < Order; ++i) {
-    state.mean[static_cast<std::size_t>(i)] = F(i, 0) * old.mean[0];
-    for (int k = 1; k < Order; ++k) state.mean[static_cast<std::size_t>(i)] += F(i, k) * old.mean[static_cast<std::size_t>(k)];
-    for (int j = 0; j < Order; ++j) {
-      Matrix<D> sum = F(j, 0) * old.covariance(i, 0);
-      for (int k = 1; k < Order; ++k) sum += F(j, k) * old.covariance(i, k);
-      half[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = sum;
+  for (std::size_t i = 0; i < Order; ++i) {
+    for (std::size_t j = 0; j < Order; ++j) {
+      Matrix<D> sum = F(j, 1) * old.covariance(i, 1);
+      for (std::size_t k = 2; k < Order; ++k) sum += F(j, k) * old.covariance(i, k);
+      half[i][j] = j == 0 ? Matrix<D>(sum + old.covariance(i, 0)) : sum;
     }
   }
-  for (int i = 0; i < Order; ++i) {
-    for (int j = i; j < Order; ++j) {
-      Matrix<D> sum = F(i, 0) * half[0][static_cast<std::size_t>(j)];
-      for (int k = 1; k < Order; ++k) sum += F(i, k) * half[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)];
+  for (std::size_t i = 0; i < Order; ++i) {
+    Vector<D> mean = F(i, 1) * old.mean[1];
+    for (std::size_t k = 2; k < Order; ++k) mean += F(i, k) * old.mean[k];
+    state.mean[i] = i == 0 ? Vector<D>(mean + old.mean[0]) : mean;
+    for (std::size_t j = i; j < Order; ++j) {
+      Matrix<D> sum = F(i, 1) * half[1][j];
+      for (std::size_t k = 2; k < Order; ++k) sum += F(i, k) * half[k][j];
+      if (i == 0) sum += half[0][j];
       sum.diagonal().array() += model.Q(i, j);
       state.cov(i, j) = sum;
     }
-    state.cov(i, i) = (0.5 * (state.cov(i, i) + state.cov(i, i).transpose())).eval();
+    make_symmetric(state.cov(i, i));
   }
 }
 
-/// Takes in a measured position. Returns the logarithm of its likelihood before it was taken in.
+/// How far off a measurement was: its squared Mahalanobis distance, and the determinant of its covariance S.
+struct Innovation {
+  double squared = 0;
+  double determinant = 1;
+};
+
+/// Takes in a measured position.
 template <int D, int Order>
-double correct(State<D, Order>& state, const Vector<D>& z, const Matrix<D>& R) {
+Innovation correct(State<D, Order>& state, const Vector<D>& z, const Matrix<D>& R) {
   const Matrix<D> S = state.cov(0, 0) + R;
   const Matrix<D> inverse = S.inverse();
   const Vector<D> innovation = z - state.mean[0];
   const Vector<D> weighted = inverse * innovation;
 
-  std::array<Matrix<D>, Order> column;  // covariance of each derivative with the position
-  for (int i = 0; i < Order; ++i) column[static_cast<std::size_t>(i)] = state.covariance(i, 0);
-  for (int i = 0; i < Order; ++i) {
-    const Matrix<D> gain = column[static_cast<std::size_t>(i)] * inverse;
-    state.mean[static_cast<std::size_t>(i)] += column[static_cast<std::size_t>(i)] * weighted;
-    for (int j = i; j < Order; ++j) state.cov(i, j) -= gain * column[static_cast<std::size_t>(j)].transpose();
+  std::array<Matrix<D>, Order> row = {};  // covariance of the position with each derivative
+  for (std::size_t j = 0; j < Order; ++j) row[j] = state.cov(0, j);
+  for (std::size_t i = 0; i < Order; ++i) state.mean[i] += row[i].transpose() * weighted;
+  for (std::size_t i = 1; i < Order; ++i) {
+    const Matrix<D> gain = row[i].transpose() * inverse;
+    for (std::size_t j = i; j < Order; ++j) state.cov(i, j) -= gain * row[j];
+    make_symmetric(state.cov(i, i));
   }
-  // The position's own rows by R S⁻¹ P instead of P − P S⁻¹ P: no digits are lost where P is far larger than R.
+  // The position's own row by R S⁻¹ P instead of P − P S⁻¹ P: no digits are lost where P is far larger than R.
   const Matrix<D> keep = R * inverse;
-  for (int j = 0; j < Order; ++j) state.cov(0, j) = keep * column[static_cast<std::size_t>(j)].transpose();
-  for (int i = 0; i < Order; ++i) state.cov(i, i) = (0.5 * (state.cov(i, i) + state.cov(i, i).transpose())).eval();
-
-  constexpr double kLogTwoPi = 1.8378770664093453;
-  return -0.5 * (innovation.dot(weighted) + std::log(S.determinant()) + D * kLogTwoPi);
+  for (std::size_t j = 0; j < Order; ++j) state.cov(0, j) = keep * row[j];
+  make_symmetric(state.cov(0, 0));
+  return {innovation.dot(weighted), S.determinant()};
 }
 
 /// Constant velocity under white acceleration of spectral density `density` (unit²/s³).
