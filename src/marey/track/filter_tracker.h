@@ -18,6 +18,7 @@
 #include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
 #include "marey/geometry/chi_square.h"
+#include "marey/track/common_motion.h"
 #include "marey/track/target.h"
 #include "marey/track/tracker.h"
 
@@ -37,6 +38,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
     check(now, seen);
     predict_to(now);
+    follow_camera(seen);
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     correct(now, seen);
@@ -86,15 +88,35 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
+  /// Filters run in coordinates that stand still while the camera turns and shakes: pixels less `camera_`.
+  void follow_camera(std::span<const Observation<D>> seen) {
+    if constexpr (D == 2) {
+      if (options_.steady_camera) return;
+      expected_.clear();
+      sightings_.clear();
+      for (const Target<F>& target : targets_) {
+        if (target.confirmed && target.size && seconds(*now_ - target.last_seen) < recently)
+          expected_.push_back({in_view(target), target.unit});
+      }
+      for (const Observation<D>& one : seen) {
+        if (one.box && one.score >= options_.confident && !one.box->empty())
+          sightings_.push_back({one.box->centre(), one.box->height});
+      }
+      camera_ += common_motion(expected_, sightings_);
+    }
+  }
+
+  Vector<D> in_view(const Target<F>& target) const { return target.filter.position() + camera_; }
+
   /// Where the observation puts the target: the centre of its box, if need be corrected for a size that is not believed.
   Vector<D> place_of(const Observation<D>& observation, const Target<F>& target) const {
     if constexpr (D == 2) {
       if (observation.box && !observation.box->empty()) {
-        if (!target.size) return observation.box->centre();
-        return target.size->centre_in(*observation.box, target.filter.position(), size_options_);
+        if (!target.size) return observation.box->centre() - camera_;
+        return target.size->centre_in(*observation.box, in_view(target), size_options_) - camera_;
       }
     }
-    return observation.value;
+    return observation.value - camera_;
   }
 
   Matrix<D> noise_of(const Observation<D>& observation, const Target<F>& target) const {
@@ -120,10 +142,10 @@ class FilterTracker final : public Tracker<F::dimension> {
     const double distance = residual.dot(S.inverse() * residual);
     if (!(distance <= gate_) || residual.norm() > reach(target)) return 0;
     double cost = distance + std::log(S.determinant() / std::pow(target.unit * reference_sigma, 2 * D));
-    double room = gate_ + confirmed_room;
+    double room = clutter_room - 2 * seconds(*now_ - target.last_seen) / fading;
     if (target.size && observation.box && !observation.shared) {
       cost += std::min(target.size->distance(*observation.box, size_options_), size_limit);
-      room += size_limit / 2;
+      room += size_room;
     }
     if (!target.confirmed) cost += newcomer_cost;
     return (room - cost) / 2;
@@ -150,7 +172,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     pairs_.clear();
     for (int row = 0; row < static_cast<int>(free_targets_.size()); ++row) {
       const Target<F>& target = targets_[free_targets_[row]];
-      grid_.for_each_near(target.filter.position(), search_radius(target), [&](int column) {
+      grid_.for_each_near(in_view(target), search_radius(target), [&](int column) {
         const double worth = gain(target, seen[candidates_[column]]);
         if (worth > 0) pairs_.push_back({row, column, worth});
       });
@@ -174,7 +196,6 @@ class FilterTracker final : public Tracker<F::dimension> {
   void correct(Timestamp now, std::span<const Observation<D>> seen) {
     for (Target<F>& target : targets_) {
       if (target.observation < 0) {
-        target.evidence -= miss_evidence;
         continue;
       }
       const Observation<D>& observation = seen[target.observation];
@@ -187,10 +208,13 @@ class FilterTracker final : public Tracker<F::dimension> {
       }
       target.last_seen = now;
       target.score = observation.score;
-      target.evidence += evidence_of(observation.score);
+      target.evidence = std::min(most_evidence, target.evidence + evidence_of(observation.score));
       if (target.evidence >= options_.confirm) target.confirmed = true;
     }
     mark_hidden(seen);
+    for (Target<F>& target : targets_) {
+      if (target.observation < 0) target.evidence -= target.hidden ? hidden_evidence : miss_evidence;
+    }
   }
 
   static double evidence_of(double score) { return 0.4 + 0.8 * std::clamp(score, 0.0, 1.0); }
@@ -200,11 +224,11 @@ class FilterTracker final : public Tracker<F::dimension> {
     for (Target<F>& target : targets_) {
       if (target.observation >= 0 || !target.size) continue;
       if constexpr (D == 2) {
-        const Box box = target.size->around(target.filter.position());
+        const Box box = target.size->around(in_view(target));
         const auto covers = [&](const Box& other) { return intersection(box, other).area() > covered_share * box.area(); };
         target.hidden = std::any_of(targets_.begin(), targets_.end(), [&](const Target<F>& other) {
           return other.observation >= 0 && other.size && seen[other.observation].box &&
-                 (covers(other.size->around(other.filter.position())) || covers(*seen[other.observation].box));
+                 (covers(other.size->around(in_view(other))) || covers(*seen[other.observation].box));
         });
       }
     }
@@ -214,7 +238,8 @@ class FilterTracker final : public Tracker<F::dimension> {
     std::erase_if(targets_, [&](const Target<F>& target) {
       const double unseen = seconds(now - target.last_seen);
       if (unseen <= 0) return false;
-      if (!target.confirmed) return target.evidence < 0 || unseen > tentative_patience;
+      if (target.evidence < 0) return true;
+      if (!target.confirmed) return unseen > tentative_patience;
       const double patience = target.hidden ? options_.hidden_patience : options_.patience;
       return unseen > std::min(patience, seconds(target.last_seen - target.born) + young_patience);
     });
@@ -247,7 +272,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     Matrix<D> R = observation.covariance;
     if (has_box) R.diagonal().array() += std::pow(options_.place_noise * unit, 2);
     Target<F> target{.id = TrackId{next_id_++},
-                     .filter = F(filter_options_.scaled(unit), centre_of(observation), R),
+                     .filter = F(filter_options_.scaled(unit), centre_of(observation) - camera_, R),
                      .size = {},
                      .unit = unit,
                      .born = now,
@@ -265,7 +290,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   Track<D> track_of(const Target<F>& target) const {
     Track<D> track;
     track.id = target.id;
-    track.position = target.filter.position();
+    track.position = in_view(target);
     track.velocity = target.filter.velocity();
     track.covariance = target.filter.covariance();
     track.state = target.observation >= 0 ? Track<D>::State::observed : Track<D>::State::predicted;
@@ -284,11 +309,16 @@ class FilterTracker final : public Tracker<F::dimension> {
   }
 
   static constexpr double doubt = 2.5;             // an unbelieved box places its target this much less surely
-  static constexpr double reference_sigma = 0.12;  // sizes: innovations of a well followed target
-  static constexpr double confirmed_room = 6;      // how many log-likelihoods clutter is behind
+  static constexpr double reference_sigma = 0.08;  // sizes: innovations of a well followed target
+  static constexpr double clutter_room = 6;        // twice the log-likelihood ratio of a perfect fit against clutter
+  static constexpr double size_room = 2;           // the same for its size
+  static constexpr double recently = 0.35;         // s; a target seen since tells of the camera's motion
+  static constexpr double fading = 0.6;            // s unseen after which a target is e times less likely to be there
   static constexpr double size_limit = 9;          // a box whose size is not believed costs no more than this
   static constexpr double newcomer_cost = 1;       // a confirmed target has the first claim
   static constexpr double miss_evidence = 0.7;
+  static constexpr double hidden_evidence = 0.1;
+  static constexpr double most_evidence = 10;
   static constexpr double covered_share = 0.5;
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
@@ -299,12 +329,14 @@ class FilterTracker final : public Tracker<F::dimension> {
   BoxSizeOptions size_options_;
   double gate_;
   std::optional<Timestamp> now_;
+  Vector<D> camera_ = Vector<D>::Zero();  // by how far the camera has moved the picture since the beginning
   int next_id_ = 1;
   std::vector<Target<F>> targets_;  // in the order of their ids
   std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> candidates_, free_targets_;
   std::vector<Vector<D>> points_;
+  std::vector<Sighting> expected_, sightings_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_;
   PointGrid<D> grid_;

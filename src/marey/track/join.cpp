@@ -34,6 +34,9 @@ constexpr double prior_speed = 0.6;     // sizes/s; what is known before two obs
 constexpr double worth_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
 constexpr double gate = 16;             // chi-square, place and size: 4 degrees of freedom
 
+constexpr double weak_lasting = 1.5;  // s that weak observations must last to be believed
+constexpr double weak_share = 0.6;    // and of the frames, the share they must be in
+
 class Joiner {
  public:
   Joiner(const Recording& recording, const JoinOptions& options) : recording_(recording), options_(options) {}
@@ -151,11 +154,46 @@ void trim(Tracklet& rows) {
   rows.erase(rows.begin(), first);
 }
 
-bool is_false_alarm(const Tracklet& rows, const Recording& recording, const JoinOptions& options) {
-  if (rows.empty()) return true;
-  const auto seen = std::count_if(rows.begin(), rows.end(), [](const TrackRow& row) { return row.observed(); });
-  const double lasted = seconds(recording.time_of(rows.back().frame) - recording.time_of(rows.front().frame));
-  return seen < options.fewest || lasted < options.shortest;
+/// What the observations of one target say of it.
+struct Standing {
+  std::int64_t seen = 0;
+  double lasted = 0;  // s
+  double share = 0;   // of its frames in which it was seen
+  double score = 0;   // mean
+};
+
+Standing standing_of(const Tracklet& rows, const Recording& recording) {
+  Standing standing;
+  for (const TrackRow& row : rows) {
+    if (!row.observed()) continue;
+    ++standing.seen;
+    standing.score += row.score;
+  }
+  standing.score /= static_cast<double>(std::max<std::int64_t>(1, standing.seen));
+  standing.lasted = seconds(recording.time_of(rows.back().frame) - recording.time_of(rows.front().frame));
+  standing.share = static_cast<double>(standing.seen) / (rows.back().frame - rows.front().frame + 1);
+  return standing;
+}
+
+/// The score that half of the observations reach.
+double usual_score(std::span<const Tracklet> tracklets) {
+  std::vector<float> scores;
+  for (const Tracklet& tracklet : tracklets) {
+    for (const TrackRow& row : tracklet) {
+      if (row.observed()) scores.push_back(row.score);
+    }
+  }
+  if (scores.empty()) return 1;
+  const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(scores.size() / 2);
+  std::nth_element(scores.begin(), middle, scores.end());
+  return *middle;
+}
+
+/// Too short, seen too rarely, or both rather short or rarely seen and unusually weak.
+bool is_false_alarm(const Standing& standing, double usual, const JoinOptions& options) {
+  if (standing.seen < options.fewest || standing.lasted < options.shortest || standing.share < options.rarest) return true;
+  const bool weak = standing.score < usual - options.weaker;
+  return weak && (standing.lasted < weak_lasting || standing.share < weak_share);
 }
 
 std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
@@ -188,7 +226,8 @@ std::vector<TrackRow> join(Recording& recording, const JoinOptions& options) {
   Joiner joiner(recording, options);
   joiner.join(tracklets, std::min(1.0, options.longest_gap));
   joiner.join(tracklets, options.longest_gap);
-  std::erase_if(tracklets, [&](const Tracklet& tracklet) { return is_false_alarm(tracklet, recording, options); });
+  const double usual = usual_score(tracklets);
+  std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, recording), usual, options); });
   for (Tracklet& tracklet : tracklets) {
     fill_gaps(tracklet, recording, options.longest_filled);
     smooth(tracklet, recording, {.place = options.smoothing, .size = options.size_smoothing});

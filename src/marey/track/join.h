@@ -15,6 +15,8 @@ struct JoinOptions {
   double size_noise = 0.15;     ///< of the logarithm of the height
   double shortest = 0.35;       ///< s; what is seen for less is taken for a false alarm
   int fewest = 3;               ///< observations; likewise
+  double rarest = 0.35;         ///< share of its frames; what is seen in fewer likewise
+  double weaker = 0.15;         ///< what scores this much below the usual must last longer and be seen more often
   double smoothing = 0.12;      ///< s; standard deviation of the kernel that smooths places
   double size_smoothing = 0.4;  ///< s; the same for sizes
 };

@@ -38,6 +38,7 @@ struct TrackerOptions {
   double weak = 0.05;               ///< scores below this are not looked at
   double confirm = 3;               ///< evidence that makes a target: about so many confident observations
   double patience = 1.2;            ///< a target that should be seen and is not is given up after this, s
+  bool steady_camera = false;       ///< true where the camera is known to stand still; else its turning is read off the targets
   double hidden_patience = 3;       ///< one that is hidden behind another or in a shared region after this, s
 };
 
