@@ -1,9 +1,171 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/evaluate/evaluation.h"
+#include "marey/format/mot.h"
+
 #include "commands.h"
 
 namespace marey::cli {
+namespace {
+
+struct EvaluateOptions {
+  std::string truth;
+  std::string tracks;
+  double iou = 0.5;
+  bool json = false;
+};
+
+std::string percent(std::optional<double> share) {
+  return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
+}
+
+nlohmann::json or_null(std::optional<double> value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+std::string frames_of(const std::vector<LabelledBox>& boxes) {
+  return fmt::format("frames {} to {}", boxes.front().frame + 1, boxes.back().frame + 1);
+}
+
+/// What a user should know before believing the figures.
+std::vector<std::string> doubts(const EvaluateOptions& options, const MotTable& truth, const MotTable& tracks,
+                                const Evaluation& result) {
+  std::vector<std::string> sentences = truth.warnings;
+  sentences.insert(sentences.end(), tracks.warnings.begin(), tracks.warnings.end());
+  if (truth.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box that is to be judged", options.truth));
+  if (tracks.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box", options.tracks));
+  if (truth.boxes.empty() || tracks.boxes.empty()) return sentences;
+  const bool apart = truth.boxes.back().frame < tracks.boxes.front().frame || tracks.boxes.back().frame < truth.boxes.front().frame;
+  if (result.common_frames == 0 || apart) {
+    sentences.push_back(fmt::format("truth ({}) and tracks ({}) have no frame in common; do both count frames from 1?",
+                                    frames_of(truth.boxes), frames_of(tracks.boxes)));
+  } else if (tracks.boxes.back().frame > truth.boxes.back().frame || tracks.boxes.front().frame < truth.boxes.front().frame) {
+    sentences.push_back(fmt::format("the tracks ({}) go beyond the truth ({}); what lies beyond counts as false",
+                                    frames_of(tracks.boxes), frames_of(truth.boxes)));
+  }
+  return sentences;
+}
+
+nlohmann::json as_json(const Evaluation& result, double iou, const std::vector<std::string>& warnings) {
+  const ClearScores& clear = result.clear;
+  return {{"iou", iou},
+          {"frames", result.frames},
+          {"objects", result.objects},
+          {"tracks", result.tracks},
+          {"true_boxes", result.true_boxes},
+          {"track_boxes", result.track_boxes},
+          {"matches", clear.matches},
+          {"mota", or_null(clear.mota)},
+          {"motp", or_null(clear.motp)},
+          {"recall", or_null(clear.recall)},
+          {"precision", or_null(clear.precision)},
+          {"fp", clear.false_positives},
+          {"fn", clear.misses},
+          {"idsw", clear.switches},
+          {"frag", clear.fragmentations},
+          {"mt", clear.mostly_tracked},
+          {"pt", clear.partially_tracked},
+          {"ml", clear.mostly_lost},
+          {"idf1", or_null(result.identity.f1)},
+          {"idp", or_null(result.identity.precision)},
+          {"idr", or_null(result.identity.recall)},
+          {"idtp", result.identity.true_positives},
+          {"idfp", result.identity.false_positives},
+          {"idfn", result.identity.false_negatives},
+          {"hota", result.hota.hota},
+          {"deta", result.hota.detection},
+          {"assa", result.hota.association},
+          {"loca", result.hota.localisation},
+          {"warnings", warnings}};
+}
+
+std::string verdict(const Evaluation& result) {
+  if (!result.clear.mota) return "There is no truth, so nothing can be said of the tracks.";
+  const double hota = result.hota.hota;
+  const char* grade = hota >= 0.75 ? "Excellent" : hota >= 0.6 ? "Good" : hota >= 0.45 ? "Fair" : hota >= 0.3 ? "Poor" : "Bad";
+  if (result.track_boxes == 0) return "Bad: there are no tracks, so everything was missed.";
+  return fmt::format(
+      "{}: {} of what there was to see was found, {} of what was reported is false, and {} of {} bear the right name; "
+      "names changed {} times on {} objects.",
+      grade, percent(result.clear.recall), percent(1 - result.clear.precision.value_or(0)), percent(result.identity.f1),
+      "all boxes", result.clear.switches, result.objects);
+}
+
+void print_row(const char* name, const std::string& value, const char* meaning) {
+  fmt::print("  {:<5} {:>9}   {}\n", name, value, meaning);
+}
+
+void print_table(const Evaluation& result, double iou) {
+  const ClearScores& clear = result.clear;
+  fmt::print("{} frames; truth: {} objects, {} boxes; tracks: {}, {} boxes. A box counts as found from an overlap (IoU) of {}.\n\n",
+             result.frames, result.objects, result.true_boxes, result.tracks, result.track_boxes, iou);
+  fmt::print("Overall\n");
+  print_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true boxes; 100 % is perfect, below 0 is possible");
+  print_row("IDF1", percent(result.identity.f1), "boxes that bear the right name throughout, of both files' boxes");
+  print_row("HOTA", percent(result.hota.hota), "finding and naming weighed alike, over overlaps of 0.05 to 0.95");
+  fmt::print("Finding\n");
+  print_row("FP", fmt::format("{}", clear.false_positives), "reported boxes where nothing is");
+  print_row("FN", fmt::format("{}", clear.misses), "true boxes that were missed");
+  print_row("DetA", percent(result.hota.detection), "HOTA's share for finding");
+  fmt::print("Naming\n");
+  print_row("IDSW", fmt::format("{}", clear.switches), "times an object's track became another one");
+  print_row("FRAG", fmt::format("{}", clear.fragmentations), "times an object was lost and found again");
+  print_row("IDP", percent(result.identity.precision), "of the reported boxes bear the right name");
+  print_row("IDR", percent(result.identity.recall), "of the true boxes bear the right name");
+  print_row("AssA", percent(result.hota.association), "HOTA's share for naming");
+  fmt::print("Placing\n");
+  print_row("MOTP", clear.motp ? fmt::format("{:.3f}", *clear.motp) : "none",
+            "mean distance 1 - IoU of the boxes found; 0 is perfect");
+  print_row("LocA", percent(result.hota.localisation), "mean overlap of HOTA's matches");
+  fmt::print("Objects\n");
+  print_row("MT", fmt::format("{}", clear.mostly_tracked), "mostly tracked: found in 80 % of their frames or more");
+  print_row("PT", fmt::format("{}", clear.partially_tracked), "partially tracked");
+  print_row("ML", fmt::format("{}", clear.mostly_lost), "mostly lost: found in less than 20 %");
+  fmt::print("\n{}\n", verdict(result));
+}
+
+void run(const EvaluateOptions& options) {
+  if (options.truth == "-" && options.tracks == "-") throw Error("only one of --truth and --tracks can be standard input");
+  const MotTable truth = read_mot(options.truth, MotKind::truth);
+  const MotTable tracks = read_mot(options.tracks, MotKind::tracks);
+  const Evaluation result = evaluate(truth.boxes, tracks.boxes, options.iou);
+  const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
+  for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (options.json) {
+    fmt::print("{}\n", as_json(result, options.iou, warnings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    print_table(result, options.iou);
+  }
+  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
+}
+
+}  // namespace
 
 void add_evaluate(CLI::App& app) {
-  app.add_subcommand("evaluate", "Judge tracks against the truth");
+  auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command = app.add_subcommand("evaluate", "Judge tracks against the truth");
+  command->add_option("--truth", options->truth, "the truth, MOTChallenge text; - for standard input")->required();
+  command->add_option("--tracks", options->tracks, "the tracks to judge, MOTChallenge text; - for standard input")->required();
+  command->add_option("--iou", options->iou, "overlap (IoU) from which a box counts as found, above 0 and up to 1")
+      ->capture_default_str()
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            double value = 0;
+            const bool valid = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
+            return valid ? "" : "\"" + text + "\" is no overlap; it must be above 0 and at most 1";
+          },
+          "0..1"));
+  command->add_flag("--json", options->json, "print all figures as JSON, shares between 0 and 1");
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace marey::cli

@@ -1,0 +1,108 @@
+// HOTA: J. Luiten et al., "HOTA: a higher order metric for evaluating multi-object tracking", IJCV 129 (2021), as trackeval
+// computes it. First every object and track that overlap are given a score of how well they go together over the whole
+// recording; then each frame is matched for the largest sum of score × overlap, once for all 19 levels of overlap; at each level
+// the matches that reach it are counted, DetA over boxes and AssA over the pairs of ids they belong to.
+#include "marey/evaluate/hota.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace marey {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// How many of the levels this overlap reaches.
+int levels_reached(double overlap) {
+  int level = 0;
+  while (level < hota_levels && overlap >= 0.05 + level * 0.05 - epsilon) ++level;
+  return level;
+}
+
+}  // namespace
+
+void HotaCounter::see(const FrameWalk& frame) {
+  for (const int object : frame.objects()) ++object_frames_[object];
+  for (const int track : frame.tracks()) ++track_frames_[track];
+  row_sums_.assign(frame.objects().size(), 0);
+  column_sums_.assign(frame.tracks().size(), 0);
+  for (std::size_t row = 0; row < row_sums_.size(); ++row) {
+    const auto overlaps = frame.overlaps_of(row);
+    for (std::size_t column = 0; column < overlaps.size(); ++column) {
+      row_sums_[row] += overlaps[column];
+      column_sums_[column] += overlaps[column];
+    }
+  }
+  for (std::size_t row = 0; row < row_sums_.size(); ++row) {
+    if (row_sums_[row] <= 0) continue;
+    const auto overlaps = frame.overlaps_of(row);
+    for (std::size_t column = 0; column < overlaps.size(); ++column) {
+      const double all = row_sums_[row] + column_sums_[column] - overlaps[column];
+      if (overlaps[column] <= 0 || all <= epsilon) continue;
+      pairs_.at(frame.objects()[row], frame.tracks()[column]).likeness += overlaps[column] / all;
+    }
+  }
+}
+
+void HotaCounter::align() {
+  for (IdPair& pair : pairs_.pairs()) {
+    pair.alignment = pair.likeness / (object_frames_[pair.object] + track_frames_[pair.track] - pair.likeness);
+  }
+}
+
+void HotaCounter::match(const FrameWalk& frame) {
+  costs_.assign(frame.overlaps().size(), 0);
+  const std::size_t columns = frame.tracks().size();
+  bool any = false;
+  for (std::size_t row = 0; row < frame.objects().size(); ++row) {
+    const auto overlaps = frame.overlaps_of(row);
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (overlaps[column] <= 0) continue;
+      costs_[row * columns + column] = -pairs_.at(frame.objects()[row], frame.tracks()[column]).alignment * overlaps[column];
+      any = true;
+    }
+  }
+  if (!any) return;
+  const auto column_of_row = assigner_.assign(static_cast<int>(frame.objects().size()), static_cast<int>(columns), costs_);
+  for (std::size_t row = 0; row < column_of_row.size(); ++row) {
+    if (column_of_row[row] == LinearAssigner::nobody) continue;
+    const double overlap = frame.overlaps_of(row)[column_of_row[row]];
+    const int level = levels_reached(overlap);
+    if (level == 0) continue;
+    ++pairs_.at(frame.objects()[row], frame.tracks()[column_of_row[row]]).at_level[level];
+    overlap_at_level_[level] += overlap;
+  }
+}
+
+HotaScores HotaCounter::scores() const {
+  const double true_boxes = std::accumulate(object_frames_.begin(), object_frames_.end(), 0.0);
+  const double track_boxes = std::accumulate(track_frames_.begin(), track_frames_.end(), 0.0);
+  HotaScores scores;
+  if (true_boxes == 0 || track_boxes == 0) return scores;
+  scores.localisation = 0;
+  std::vector<std::int64_t> matched(pairs_.pairs().size(), 0);
+  double overlap = 0;
+  for (int level = hota_levels; level > 0; --level) {
+    overlap += overlap_at_level_[level];
+    double matches = 0;
+    double association = 0;
+    for (std::size_t i = 0; i < matched.size(); ++i) {
+      const IdPair& pair = pairs_.pairs()[i];
+      matched[i] += pair.at_level[level];
+      const auto count = static_cast<double>(matched[i]);
+      matches += count;
+      association += count * count / std::max(1.0, object_frames_[pair.object] + track_frames_[pair.track] - count);
+    }
+    association /= std::max(1.0, matches);
+    const double detection = matches / std::max(1.0, true_boxes + track_boxes - matches);
+    scores.detection += detection / hota_levels;
+    scores.association += association / hota_levels;
+    scores.hota += std::sqrt(detection * association) / hota_levels;
+    scores.localisation += std::max(1e-10, overlap) / std::max(1e-10, matches) / hota_levels;
+  }
+  return scores;
+}
+
+}  // namespace marey

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "marey/assign/linear_assignment.h"
+#include "marey/evaluate/evaluation.h"
+#include "marey/evaluate/frame_walk.h"
+#include "marey/evaluate/pair_table.h"
+
+namespace marey {
+
+/// Counts HOTA in two passes: `see` every frame, `align` once, `match` every frame.
+class HotaCounter {
+ public:
+  /// `pairs` is shared with whoever else counts by pairs of ids, and outlives this.
+  HotaCounter(int objects, int tracks, PairTable& pairs) : pairs_(pairs), object_frames_(objects), track_frames_(tracks) {}
+
+  void see(const FrameWalk& frame);
+  void align();
+  void match(const FrameWalk& frame);
+  HotaScores scores() const;
+
+ private:
+  PairTable& pairs_;
+  std::vector<double> object_frames_, track_frames_;  // in how many frames each is
+  std::vector<double> row_sums_, column_sums_, costs_;
+  LinearAssigner assigner_;
+  std::array<double, hota_levels + 1> overlap_at_level_{};
+};
+
+}  // namespace marey
