@@ -1,7 +1,6 @@
 #include "marey/assign/gated_assignment.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -34,8 +33,9 @@ void GatedAssigner::find_components(int rows, int columns, std::span<const Gated
 std::span<const int> GatedAssigner::assign(int rows, int columns, std::span<const GatedPair> pairs) {
   column_of_row_.assign(rows, nobody);
   column_slot_.assign(columns, nobody);
+  taken_.assign(columns, 0);
   find_components(rows, columns, pairs);
-  const std::span<const GatedPair> all(grouped_);
+  const std::span<GatedPair> all(grouped_);
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
     const int root = root_of(all[begin].row);
     while (end < all.size() && root_of(all[end].row) == root) ++end;
@@ -48,78 +48,47 @@ std::span<const int> GatedAssigner::assign(int rows, int columns, std::span<cons
   return column_of_row_;
 }
 
-void GatedAssigner::solve_component(std::span<const GatedPair> pairs) {
+void GatedAssigner::name_nodes(std::span<const GatedPair> pairs) {
   row_names_.clear();
   column_names_.clear();
   for (const GatedPair& pair : pairs) {
     if (row_names_.empty() || row_names_.back() != pair.row) row_names_.push_back(pair.row);
-    if (column_slot_[pair.column] == nobody) {
-      column_slot_[pair.column] = static_cast<int>(column_names_.size());
-      column_names_.push_back(pair.column);
-    }
-  }
-  const int rows = static_cast<int>(row_names_.size());
-  const int real = static_cast<int>(column_names_.size());
-  const int columns = real + rows;  // each row may have a column of its own that means nobody
-  cost_.assign(static_cast<std::size_t>(rows) * columns, 0);
-  int row = 0;
-  for (const GatedPair& pair : pairs) {
-    if (row_names_[row] != pair.row) ++row;
-    cost_[static_cast<std::size_t>(row) * columns + column_slot_[pair.column]] = -pair.gain;
-  }
-  row_price_.assign(rows, 0);
-  column_price_.assign(columns, 0);
-  row_of_column_.assign(columns, nobody);
-  for (row = 0; row < rows; ++row) augment(row, columns);
-  for (int slot = 0; slot < real; ++slot) {
-    row = row_of_column_[slot];
-    // A pair outside the gate costs 0 as nobody does, and means nobody.
-    if (row != nobody && cost_[static_cast<std::size_t>(row) * columns + slot] < 0)
-      column_of_row_[row_names_[row]] = column_names_[slot];
+    if (column_slot_[pair.column] != nobody) continue;
+    column_slot_[pair.column] = static_cast<int>(column_names_.size());
+    column_names_.push_back(pair.column);
   }
 }
 
-// Dijkstra from `row` over reduced costs to the nearest free column; then prices and matches change along the path.
-void GatedAssigner::augment(int row, int columns) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  shortest_.assign(columns, infinity);
-  from_column_.assign(columns, nobody);
-  done_.assign(columns, 0);
-  int current_row = row;
-  int current_column = nobody;
-  double length = 0;
-  int sink = nobody;
-  while (sink == nobody) {
-    int nearest = nobody;
-    const double* costs = &cost_[static_cast<std::size_t>(current_row) * columns];
-    for (int column = 0; column < columns; ++column) {
-      if (done_[column]) continue;
-      const double reached = length + costs[column] - row_price_[current_row] - column_price_[column];
-      if (reached < shortest_[column]) {
-        shortest_[column] = reached;
-        from_column_[column] = current_column;
-      }
-      if (nearest == nobody || shortest_[column] < shortest_[nearest]) nearest = column;
-    }
-    length = shortest_[nearest];
-    done_[nearest] = 1;
-    current_column = nearest;
-    if (row_of_column_[nearest] == nobody) {
-      sink = nearest;
-    } else {
-      current_row = row_of_column_[nearest];
-    }
+void GatedAssigner::solve_component(std::span<GatedPair> pairs) {
+  name_nodes(pairs);
+  const int rows = static_cast<int>(row_names_.size());
+  const int columns = static_cast<int>(column_names_.size());
+  if (std::max(rows, columns) > largest_component) {
+    solve_greedily(pairs);
+    return;
   }
-  row_price_[row] += length;
-  for (int column = 0; column < columns; ++column) {
-    if (!done_[column] || column == sink) continue;
-    row_price_[row_of_column_[column]] += length - shortest_[column];
-    column_price_[column] -= length - shortest_[column];
+  const auto at = [columns](int row, int slot) { return static_cast<std::size_t>(row) * columns + slot; };
+  costs_.assign(static_cast<std::size_t>(rows) * columns, 0);
+  int row = 0;
+  for (const GatedPair& pair : pairs) {
+    if (row_names_[row] != pair.row) ++row;
+    costs_[at(row, column_slot_[pair.column])] = -pair.gain;
   }
-  for (int column = sink; column != nobody;) {
-    const int previous = from_column_[column];
-    row_of_column_[column] = previous == nobody ? row : row_of_column_[previous];
-    column = previous;
+  const auto slots = dense_.assign(rows, columns, costs_);
+  for (row = 0; row < rows; ++row) {
+    const int slot = slots[row];
+    if (slot != LinearAssigner::nobody && costs_[at(row, slot)] < 0) column_of_row_[row_names_[row]] = column_names_[slot];
+  }
+}
+
+void GatedAssigner::solve_greedily(std::span<GatedPair> pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const GatedPair& a, const GatedPair& b) {
+    return a.gain != b.gain ? a.gain > b.gain : std::tuple(a.row, a.column) < std::tuple(b.row, b.column);
+  });
+  for (const GatedPair& pair : pairs) {
+    if (taken_[pair.column] || column_of_row_[pair.row] != nobody) continue;
+    column_of_row_[pair.row] = pair.column;
+    taken_[pair.column] = 1;
   }
 }
 

@@ -2,13 +2,17 @@
 // connected components; each is solved on its own, optimally. With targets spread over the scene the components stay small, so
 // that the whole costs little more than listing the pairs.
 //
-// A row may stay without a column: the gains of the chosen pairs are maximised, not their number. A component is solved by
-// shortest augmenting paths (Jonker & Volgenant 1987), its missing pairs and "nobody" being columns of gain 0.
+// A row may stay without a column: the gains of the chosen pairs are maximised, not their number. A pair outside the gate costs
+// 0 to the dense solver (linear_assignment.h), as nobody does, and means nobody: gains are positive, so that any choice can be
+// completed by such pairs. A component of more than `largest_component` rows or columns, which no gate worth its name leaves, is
+// settled greedily, the greatest gain first, so that time and memory stay bounded.
 // Cost: pairs · log + Σ rows² · columns over the components. Deterministic: equal gains are settled by index.
 #pragma once
 
 #include <span>
 #include <vector>
+
+#include "marey/assign/linear_assignment.h"
 
 namespace marey {
 
@@ -22,6 +26,7 @@ struct GatedPair {
 class GatedAssigner {
  public:
   static constexpr int nobody = -1;
+  static constexpr int largest_component = 1000;
 
   /// For every row its column, or `nobody`; valid until the next call. Rows lie in [0, rows), columns in [0, columns), gains are
   /// finite. Allocates only where a frame is larger than all before.
@@ -30,16 +35,17 @@ class GatedAssigner {
  private:
   int root_of(int node);
   void find_components(int rows, int columns, std::span<const GatedPair> pairs);
-  void solve_component(std::span<const GatedPair> pairs);
-  void augment(int row, int columns);
+  void solve_component(std::span<GatedPair> pairs);
+  void name_nodes(std::span<const GatedPair> pairs);
+  void solve_greedily(std::span<GatedPair> pairs);
 
   std::vector<int> parent_;         // union-find over rows, then columns
   std::vector<GatedPair> grouped_;  // pairs ordered by component, row, column
   std::vector<int> column_of_row_;
   std::vector<int> row_names_, column_names_, column_slot_;  // of the component at hand
-  std::vector<double> cost_, row_price_, column_price_, shortest_;
-  std::vector<int> row_of_column_, from_column_;
-  std::vector<char> done_;
+  std::vector<char> taken_;                                  // columns given greedily
+  std::vector<double> costs_;
+  LinearAssigner dense_;
 };
 
 }  // namespace marey

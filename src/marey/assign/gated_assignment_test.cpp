@@ -1,6 +1,7 @@
 #include "marey/assign/gated_assignment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -76,6 +77,18 @@ TEST(GatedAssigner, DoesNotDependOnTheOrderOfPairs) {
     const auto again = assigner.assign(30, 30, pairs);
     EXPECT_TRUE(std::equal(before.begin(), before.end(), again.begin()));
   }
+}
+
+TEST(GatedAssigner, AnEndlessComponentTakesBoundedTime) {
+  const int n = 3 * GatedAssigner::largest_component;
+  std::vector<GatedPair> chain;  // each row may have its own column or the next one's, which is worth less
+  for (int row = 0; row < n; ++row) {
+    chain.push_back({row, row, 2});
+    if (row + 1 < n) chain.push_back({row, row + 1, 1});
+  }
+  GatedAssigner assigner;
+  const auto result = assigner.assign(n, n, chain);
+  for (int row = 0; row < n; ++row) ASSERT_EQ(result[row], row);
 }
 
 TEST(GatedAssigner, NothingToAssign) {
