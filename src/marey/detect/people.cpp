@@ -1,0 +1,208 @@
+// From foreground to people. Regions that may belong together (by the size a person has there) form a cluster. A cluster that
+// looks like one whole person, and where at most one is expected, is reported as it was measured. Any other (a group, a body in
+// pieces, a body of which a pole hides half) is explained by whole bodies: people_fit.h. What neither explains is left out and
+// counted.
+#include "marey/detect/people.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace marey {
+namespace {
+
+constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
+constexpr double kGapDown = 0.3;                               // of a person's height
+constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
+constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
+constexpr double kLeastFilled = 0.3;                           // of its box
+constexpr double kOverlapExpected = 0.3;                       // of the smaller of the two boxes
+constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
+constexpr double kUnknownSmallest = 50;                        // px²
+
+double gap(double begin_a, double end_a, double begin_b, double end_b) {
+  return std::max({0.0, begin_b - end_a, begin_a - end_b});
+}
+
+bool at_border(const Box& box, cv::Size image) {
+  return box.left <= 1 || box.top <= 1 || box.right() >= image.width - 1 || box.bottom() >= image.height - 1;
+}
+
+Box clipped(const Box& box, cv::Size image) {
+  return intersection(box, {0, 0, static_cast<double>(image.width), static_cast<double>(image.height)});
+}
+
+/// The part of `runs` within `box`.
+std::vector<PixelRun> runs_within(std::span<const PixelRun> runs, const Box& box) {
+  const int top = static_cast<int>(std::lround(box.top)), bottom = static_cast<int>(std::lround(box.bottom()));
+  const int left = static_cast<int>(std::lround(box.left)), right = static_cast<int>(std::lround(box.right()));
+  std::vector<PixelRun> result;
+  auto run = std::lower_bound(runs.begin(), runs.end(), top, [](const PixelRun& a, int row) { return a.row < row; });
+  for (; run != runs.end() && run->row < bottom; ++run) {
+    const PixelRun part{run->row, std::max(run->begin, left), std::min(run->end, right)};
+    if (part.begin < part.end) result.push_back(part);
+  }
+  return result;
+}
+
+Detection detection_of(const Box& box, std::span<const PixelRun> runs, double score, cv::Size image) {
+  Detection detection;
+  detection.box = clipped(box, image);
+  detection.centre = detection.box.centre();
+  const double across = 1 + 0.08 * box.width, down = 1 + 0.04 * box.height;
+  const double doubt = 1 / std::max(score, 0.2);
+  detection.covariance = Vector<2>(across * across * doubt, down * down * doubt).asDiagonal();
+  detection.score = score;
+  std::vector<PixelRun> part = runs_within(runs, box);
+  for (const PixelRun& run : part) detection.area += run.end - run.begin;
+  detection.outline = outline_of(part);
+  return detection;
+}
+
+}  // namespace
+
+PeopleDetector::PeopleDetector(std::unique_ptr<Background> background, const PeopleOptions& options)
+    : background_(std::move(background)), options_(options) {}
+
+void PeopleDetector::prime(std::span<const Frame> samples) {
+  background_->prime(samples);
+  for (const Frame& sample : samples) {
+    // Held everywhere: the model says what it sees and learns nothing, so that the first frame finds it as it was primed.
+    const cv::Size image = sample.picture.size();
+    const Box everywhere{0, 0, static_cast<double>(image.width), static_cast<double>(image.height)};
+    const Foreground foreground = background_->apply(sample, std::span(&everywhere, 1));
+    learn(clusters_of(find_regions(foreground.mask, {.min_area = options_.min_area}), {}), image);
+  }
+  sizes_.fit();
+  background_->prime(samples);
+}
+
+Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> expected) {
+  std::vector<Box> held;
+  held.reserve(expected.size());
+  for (const Expected& one : expected) held.push_back(one.box);
+  Detections result;
+  result.foreground = background_->apply(frame, held);
+  groups_ = 0;
+  const cv::Size image = frame.picture.size();
+  const auto clusters = clusters_of(find_regions(result.foreground.mask, {.min_area = options_.min_area}), expected);
+  for (const Cluster& cluster : clusters) {
+    if (cluster.expected.size() <= 1 && is_alone(cluster, image)) {
+      result.detections.push_back(whole(cluster, image));
+    } else {
+      explain(cluster, expected, image, result.detections);
+    }
+  }
+  learn(clusters, image);
+  if (sizes_.wants_fit()) sizes_.fit();
+  return result;
+}
+
+double PeopleDetector::least_area(const Region& region) const {
+  const auto foot = region.box.foot();
+  const auto size = sizes_.at(foot.x(), foot.y());
+  return size ? options_.min_share * size->height * size->width : options_.min_area;
+}
+
+std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions, std::span<const Expected> expected) {
+  const auto noise = std::remove_if(regions.begin(), regions.end(), [&](const Region& r) { return r.area < least_area(r); });
+  counts_.noise += regions.end() - noise;
+  regions.erase(noise, regions.end());
+
+  std::vector<int> parent(regions.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int node) {
+    while (parent[node] != node) node = parent[node];
+    return node;
+  };
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    for (std::size_t j = i + 1; j < regions.size(); ++j) {
+      const Box& a = regions[i].box;
+      const Box& b = regions[j].box;
+      const auto foot = hull(a, b).foot();
+      const auto size = sizes_.at(foot.x(), foot.y());
+      if (!size) continue;
+      if (gap(a.left, a.right(), b.left, b.right()) > kGapAcross * size->width) continue;
+      if (gap(a.top, a.bottom(), b.top, b.bottom()) > kGapDown * size->height) continue;
+      const int one = root(static_cast<int>(i)), other = root(static_cast<int>(j));
+      parent[std::max(one, other)] = std::min(one, other);
+    }
+  }
+  std::vector<Cluster> clusters;
+  std::vector<int> cluster_of(regions.size(), -1);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    int& index = cluster_of[root(static_cast<int>(i))];
+    if (index < 0) {
+      index = static_cast<int>(clusters.size());
+      clusters.push_back({{}, regions[i].box, 0, 0, {}});
+    }
+    Cluster& cluster = clusters[index];
+    cluster.box = hull(cluster.box, regions[i].box);
+    cluster.area += regions[i].area;
+    ++cluster.regions;
+    cluster.runs.insert(cluster.runs.end(), regions[i].runs.begin(), regions[i].runs.end());
+  }
+  for (Cluster& cluster : clusters) {
+    if (cluster.regions > 1) {
+      std::sort(cluster.runs.begin(), cluster.runs.end(),
+                [](const PixelRun& a, const PixelRun& b) { return a.row != b.row ? a.row < b.row : a.begin < b.begin; });
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const double shared = intersection(expected[i].box, cluster.box).area();
+      if (shared > kOverlapExpected * std::min(expected[i].box.area(), cluster.box.area())) {
+        cluster.expected.push_back(static_cast<int>(i));
+      }
+    }
+  }
+  return clusters;
+}
+
+void PeopleDetector::learn(const std::vector<Cluster>& clusters, cv::Size image) {
+  for (const Cluster& cluster : clusters) {
+    if (cluster.expected.size() > 1 || at_border(cluster.box, image)) continue;
+    if (cluster.area < kLeastFilled * cluster.box.area()) continue;
+    sizes_.see(cluster.box, image);
+  }
+}
+
+bool PeopleDetector::is_alone(const Cluster& cluster, cv::Size image) const {
+  const Box& box = cluster.box;
+  const auto foot = box.foot();
+  const auto size = sizes_.at(foot.x(), foot.y());
+  if (!size) {
+    const double tall = box.height / box.width;
+    return box.area() >= kUnknownSmallest && tall > kUnknownFlattest && tall < kUnknownTallest;
+  }
+  return !at_border(box, image) && box.height > kLowest * size->height && box.height < kHighest * size->height &&
+         box.width > kNarrowest * size->width && box.width < kWidest * size->width && cluster.area > kLeastFilled * box.area();
+}
+
+Detection PeopleDetector::whole(const Cluster& cluster, cv::Size image) const {
+  const auto foot = cluster.box.foot();
+  const auto size = sizes_.at(foot.x(), foot.y());
+  const double filled = std::min(1.0, cluster.area / (0.6 * cluster.box.area()));
+  if (!size) return detection_of(cluster.box, cluster.runs, 0.5 * filled, image);
+  const double off = (cluster.box.height / size->height - 1) / 0.3;
+  return detection_of(cluster.box, cluster.runs, filled * (1 - 0.3 * off * off), image);
+}
+
+void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image,
+                             std::vector<Detection>& found) {
+  std::vector<Box> known;
+  for (const int who : cluster.expected) known.push_back(expected[who].box);
+  const SizeAt size_at = [&](double x, double y) { return sizes_.at(x, y); };
+  const std::vector<Placed> placed = fit_people(cluster.runs, image, known, size_at, options_.fit);
+  if (placed.empty()) ++counts_.misfits;
+  if (placed.size() == 1) ++counts_.completed;
+  if (placed.size() > 1) {
+    ++groups_;
+    counts_.shared += static_cast<std::int64_t>(placed.size());
+  }
+  for (const Placed& one : placed) {
+    Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.0, 1.0), image);
+    if (placed.size() > 1) detection.group = groups_ - 1;
+    found.push_back(std::move(detection));
+  }
+}
+
+}  // namespace marey

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "marey/detect/background.h"
+#include "marey/detect/detector.h"
+#include "marey/detect/people_fit.h"
+#include "marey/detect/people_size.h"
+
+namespace marey {
+
+struct PeopleOptions {
+  FitOptions fit;
+  double min_share = 0.04;  ///< of a person's box; smaller regions are noise
+  double min_area = 12;     ///< px²; smaller regions are noise, while the size of people is not known
+};
+
+/// People who move, or moved, before a fixed camera: foreground of a background model, cut into people by the size that they
+/// have at each place, which is learned from the recording itself. Boxes hold whole bodies, also where a part is hidden, and end
+/// at the picture's border. A detection's centre is the middle of its box.
+class PeopleDetector final : public Detector {
+ public:
+  /// What was seen and not reported, or reported with doubt, since the beginning.
+  struct Counts {
+    std::int64_t noise = 0;      ///< regions too small to be a part of a person
+    std::int64_t misfits = 0;    ///< regions that no person-sized body explains: cars, swaying trees, lights
+    std::int64_t shared = 0;     ///< people found in a region with others
+    std::int64_t completed = 0;  ///< people of whom a part was seen
+  };
+
+  explicit PeopleDetector(std::unique_ptr<Background> background, const PeopleOptions& options = {});
+
+  void prime(std::span<const Frame> samples) override;
+  Detections detect(const Frame& frame, std::span<const Expected> expected) override;
+
+  const Counts& counts() const { return counts_; }
+  const PersonSizeModel& sizes() const { return sizes_; }
+
+ private:
+  struct Cluster {
+    std::vector<PixelRun> runs;
+    Box box;
+    double area = 0;
+    int regions = 0;
+    std::vector<int> expected;  ///< whose box lies on it
+  };
+
+  double least_area(const Region& region) const;
+  std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
+  void learn(const std::vector<Cluster>& clusters, cv::Size image);
+  bool is_alone(const Cluster& cluster, cv::Size image) const;
+  Detection whole(const Cluster& cluster, cv::Size image) const;
+  void explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image, std::vector<Detection>& found);
+
+  std::unique_ptr<Background> background_;
+  PeopleOptions options_;
+  PersonSizeModel sizes_;
+  Counts counts_;
+  int groups_ = 0;  ///< numbers given to shared regions in this frame
+};
+
+}  // namespace marey
