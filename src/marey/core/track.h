@@ -20,9 +20,10 @@ struct Track {
   Vector<D> velocity = Vector<D>::Zero();
   Matrix<D> covariance = Matrix<D>::Identity();  ///< of `position`
   State state = State::observed;
-  bool confirmed = true;   ///< false while evidence is still gathered that there is a target at all
-  std::optional<Box> box;  ///< px, where the target has an extent in the image
-  double score = 1;        ///< of the observation behind it, in [0, 1]
+  std::optional<int> observation;  ///< index of what it was given of this instant's observations; nothing where it is predicted
+  bool confirmed = true;           ///< false while evidence is still gathered that there is a target at all
+  std::optional<Box> box;          ///< px, where the target has an extent in the image
+  double score = 1;                ///< of the observation behind it, in [0, 1]
 };
 
 }  // namespace marey

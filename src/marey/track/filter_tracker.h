@@ -56,6 +56,7 @@ class FilterTracker final : public Tracker<F::dimension> {
       ahead.filter.predict(dt);
       tracks_.push_back(track_of(ahead));
       tracks_.back().state = Track<D>::State::predicted;
+      tracks_.back().observation.reset();
     }
     return tracks_;
   }
@@ -294,6 +295,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     track.velocity = target.filter.velocity();
     track.covariance = target.filter.covariance();
     track.state = target.observation >= 0 ? Track<D>::State::observed : Track<D>::State::predicted;
+    if (target.observation >= 0) track.observation = target.observation;
     track.confirmed = target.confirmed;
     if constexpr (D == 2) {
       if (target.size) track.box = target.size->around(track.position);

@@ -1,7 +1,7 @@
 // The tracker of the OpenMoCap paper: every target for itself. A target looks inside its own filter's search area and takes the
 // nearest point there; nobody asks whether another target has taken the same point. Targets begin at the points of the first
 // frame that has any, and are never lost: where nothing is found the filter coasts. This is what the global assignment of
-// `GnnTracker` is measured against; it is for experiments, not for use.
+// `FilterTracker` and `RosterTracker` is measured against; it is for experiments, not for use.
 //
 // Source: Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion Capture
 // System", §I and §IV. Cost: targets × points a step.
@@ -9,6 +9,7 @@
 
 #include <cassert>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,7 +25,7 @@ class IndependentTracker final : public Tracker<F::dimension> {
 
   explicit IndependentTracker(typename F::Options options) : options_(std::move(options)) {}
 
-  std::vector<Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
+  std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
     assert((targets_.empty() || now > last_) && "frames come in the order of their time");
     if (targets_.empty()) {
       start(seen);
@@ -35,11 +36,11 @@ class IndependentTracker final : public Tracker<F::dimension> {
     return report(targets_);
   }
 
-  std::vector<Track<D>> expected(Timestamp now) const override {
+  std::span<const Track<D>> expected(Timestamp now) override {
     std::vector<Target> ahead = targets_;
     for (Target& target : ahead) {
       target.filter.predict(seconds(now - last_));
-      target.observed = false;
+      target.observation.reset();
     }
     return report(ahead);
   }
@@ -47,11 +48,13 @@ class IndependentTracker final : public Tracker<F::dimension> {
  private:
   struct Target {
     F filter;
-    bool observed = true;
+    std::optional<int> observation;
   };
 
   void start(std::span<const Observation<D>> seen) {
-    for (const Observation<D>& point : seen) targets_.push_back({F(options_, point.value, point.covariance)});
+    for (const Observation<D>& point : seen) {
+      targets_.push_back({F(options_, point.value, point.covariance), static_cast<int>(&point - seen.data())});
+    }
   }
 
   void follow(Target& target, double dt, std::span<const Observation<D>> seen) {
@@ -65,24 +68,28 @@ class IndependentTracker final : public Tracker<F::dimension> {
         nearest = &point;
       }
     }
-    target.observed = nearest != nullptr;
-    if (nearest != nullptr) target.filter.correct(nearest->value, nearest->covariance);
+    target.observation.reset();
+    if (nearest == nullptr) return;
+    target.observation = static_cast<int>(nearest - seen.data());
+    target.filter.correct(nearest->value, nearest->covariance);
   }
 
-  static std::vector<Track<D>> report(const std::vector<Target>& targets) {
-    std::vector<Track<D>> tracks(targets.size());
+  std::span<const Track<D>> report(const std::vector<Target>& targets) {
+    tracks_.resize(targets.size());
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      tracks[i].id = TrackId{static_cast<int>(i) + 1};
-      tracks[i].position = targets[i].filter.position();
-      tracks[i].velocity = targets[i].filter.velocity();
-      tracks[i].covariance = targets[i].filter.covariance();
-      tracks[i].state = targets[i].observed ? Track<D>::State::observed : Track<D>::State::predicted;
+      tracks_[i].id = TrackId{static_cast<int>(i) + 1};
+      tracks_[i].position = targets[i].filter.position();
+      tracks_[i].velocity = targets[i].filter.velocity();
+      tracks_[i].covariance = targets[i].filter.covariance();
+      tracks_[i].observation = targets[i].observation;
+      tracks_[i].state = targets[i].observation ? Track<D>::State::observed : Track<D>::State::predicted;
     }
-    return tracks;
+    return tracks_;
   }
 
   typename F::Options options_;
   std::vector<Target> targets_;
+  std::vector<Track<D>> tracks_;
   Timestamp last_{};
 };
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/filter/filters.h"
+#include "marey/track/tracker.h"
+
+namespace marey {
+
+/// Lengths in the unit of the observations: px in the image, m in space.
+struct RosterTrackerOptions {
+  FilterOptions filter = InteractingModelsOptions{};
+  std::vector<std::string> labels;  ///< names for the points of the first frame, left to right, those in one column top to bottom
+  double max_speed = 6000;          ///< no marker moves faster, px/s
+  double marker_width = 8;          ///< of an observation without a box, px
+  double place_noise = 0.05;        ///< standard deviation added to that of each observation, px: what no detector knows of itself
+  double confirm = 10;              ///< log-likelihood ratio against clutter that proves a newcomer
+};
+
+/// Follows named points that are few or many, alike, and always the same: markers on a body. Whoever is seen in the first frame
+/// is on the roster and never given up: one that vanishes is waited for, and what then appears unexplained is taken to be it.
+/// Throws Error where there are more labels than points in the first frame, or a label occurs twice.
+template <int D>
+std::unique_ptr<Tracker<D>> make_roster_tracker(const RosterTrackerOptions& options);
+
+}  // namespace marey
