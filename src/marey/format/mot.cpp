@@ -9,9 +9,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <memory>
+#include <numeric>
 #include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -93,7 +96,9 @@ class Parser {
 
   MotTable parse(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    table_.boxes.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
+    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+    table_.boxes.reserve(lines);
+    lines_.reserve(lines);
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++line_;
@@ -141,13 +146,12 @@ class Parser {
       return;
     }
     table_.boxes.push_back(row);
+    lines_.push_back(line_);
   }
 
   void finish() {
     const auto by_frame = [](const LabelledBox& a, const LabelledBox& b) { return a.frame < b.frame; };
-    if (!std::is_sorted(table_.boxes.begin(), table_.boxes.end(), by_frame)) {
-      std::stable_sort(table_.boxes.begin(), table_.boxes.end(), by_frame);
-    }
+    if (!std::is_sorted(table_.boxes.begin(), table_.boxes.end(), by_frame)) sort_by_frame();
     if (kind_ != MotKind::detections) refuse_twins();
     if (without_size_ > 0) {
       table_.warnings.push_back(
@@ -155,24 +159,46 @@ class Parser {
     }
   }
 
+  /// Within a frame the order of the lines stays.
+  void sort_by_frame() {
+    std::vector<std::size_t> order(table_.boxes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+      return std::pair(table_.boxes[a].frame, a) < std::pair(table_.boxes[b].frame, b);
+    });
+    std::vector<LabelledBox> boxes;
+    std::vector<std::uint32_t> lines;
+    boxes.reserve(order.size());
+    lines.reserve(order.size());
+    for (const std::size_t i : order) {
+      boxes.push_back(table_.boxes[i]);
+      lines.push_back(lines_[i]);
+    }
+    table_.boxes = std::move(boxes);
+    lines_ = std::move(lines);
+  }
+
   /// An id that stands twice in a frame: whose box is it?
   void refuse_twins() const {
-    std::unordered_map<std::int32_t, std::int32_t> last_frame;
-    for (const LabelledBox& row : table_.boxes) {
-      const auto [entry, is_new] = last_frame.try_emplace(row.id, row.frame);
-      if (!is_new && entry->second == row.frame) {
-        throw Error("{}: id {} occurs twice in frame {}; an id may stand once a frame", name_, row.id, row.frame + 1);
+    std::unordered_map<std::int32_t, std::size_t> last;
+    for (std::size_t i = 0; i < table_.boxes.size(); ++i) {
+      const LabelledBox& row = table_.boxes[i];
+      const auto [entry, is_new] = last.try_emplace(row.id, i);
+      if (!is_new && table_.boxes[entry->second].frame == row.frame) {
+        throw Error("{}:{}: id {} stands in frame {} already, on line {}; an id may stand once a frame", name_, lines_[i], row.id,
+                    row.frame + 1, lines_[entry->second]);
       }
-      entry->second = row.frame;
+      entry->second = i;
     }
   }
 
   const std::string& name_;
   MotKind kind_;
   MotTable table_;
-  std::int64_t line_ = 0;
-  std::int64_t without_size_ = 0;
-  std::int64_t first_without_size_ = 0;
+  std::vector<std::uint32_t> lines_;  // on which each box stands
+  std::uint32_t line_ = 0;
+  std::uint32_t without_size_ = 0;
+  std::uint32_t first_without_size_ = 0;
 };
 
 struct CloseFile {

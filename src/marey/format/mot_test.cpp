@@ -81,7 +81,7 @@ TEST(Mot, ErrorsNameTheLineAndWhatIsExpected) {
   EXPECT_EQ(error_of(ok + "99999999999,1,1,1,5,5"), "t.txt:3: frame is \"99999999999\"; it must be a finite number below 1e9");
   EXPECT_EQ(error_of(ok + "2,-1,1,1,5,5"), "t.txt:3: id is -1; in tracks and truth ids are whole numbers from 0");
   EXPECT_EQ(error_of("2,7,1,1,5,5\n3,7,1,1,5,5\n2,7,2,1,5,5\n"),
-            "t.txt: id 7 occurs twice in frame 2; an id may stand once a frame");
+            "t.txt:3: id 7 stands in frame 2 already, on line 1; an id may stand once a frame");
   EXPECT_EQ(error_of(std::string("\x7F"
                                  "ELF\0\1",
                                  6)),

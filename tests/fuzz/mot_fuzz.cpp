@@ -1,0 +1,40 @@
+// Whatever bytes a file holds, reading it ends in boxes or in one Error, and boxes that are written read back the same.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "marey/core/error.h"
+#include "marey/format/mot.h"
+
+namespace {
+
+void check(bool holds) {
+  if (!holds) std::abort();
+}
+
+void read_and_write(std::string_view text, marey::MotKind kind) {
+  marey::MotTable table;
+  try {
+    table = marey::parse_mot(text, "file", kind);
+  } catch (const marey::Error& error) {
+    const std::string_view message = error.what();
+    check(message.starts_with("file:") && message.find('\n') == std::string_view::npos);
+    return;
+  }
+  std::string written;
+  for (const marey::LabelledBox& box : table.boxes) {
+    check(std::isfinite(box.box.left) && std::isfinite(box.box.top) && box.frame >= 0 && !box.box.empty());
+    marey::append_mot(written, box);
+  }
+  check(marey::parse_mot(written, "file", kind).boxes == table.boxes);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  for (const auto kind : {marey::MotKind::truth, marey::MotKind::tracks, marey::MotKind::detections}) read_and_write(text, kind);
+  return 0;
+}
