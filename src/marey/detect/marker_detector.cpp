@@ -1,0 +1,317 @@
+// Markers in one frame: learn the levels, find the components, sort out what no marker is, and fit each of the rest. The steps are
+// in files of their own: marker_levels, marker_runs, marker_fit, marker_split, marker_colour, marker_auto_mask. The number of runs,
+// of blobs fitted and the size of each are bounded, so that glare or a white frame costs bounded time and memory.
+#include "marey/detect/marker_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/detect/marker_auto_mask.h"
+#include "marey/detect/marker_fit.h"
+#include "marey/detect/marker_levels.h"
+#include "marey/detect/marker_split.h"
+
+namespace marey {
+namespace {
+
+constexpr std::size_t kMostRuns = 1 << 18;
+constexpr int kMostSplits = 200;       // a frame
+constexpr double kShapeMisfit = 0.06;  // of the contrast: what a lone round marker leaves at most
+constexpr double kOfRoundness = 0.6;   // a blob this much less round is not even split: it bounds a window by its blob's area
+constexpr int kCell = 64;              // px; blobs are filed by cells to find their neighbours
+
+/// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
+double roundness(const MarkerBlob& blob) {
+  const double mean = (blob.var_x + blob.var_y) / 2;
+  const double largest = mean + std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
+  return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
+}
+
+bool inside(const Box& box, double x, double y) {
+  return x >= box.left - 0.5 && y >= box.top - 0.5 && x < box.right() - 0.5 && y < box.bottom() - 0.5;
+}
+
+}  // namespace
+
+class MarkerDetector::Impl {
+ public:
+  explicit Impl(MarkerOptions options)
+      : options_(std::move(options)),
+        levels_(options_.dark && !options_.colour, options_.threshold),
+        finder_(kMostRuns),
+        auto_mask_(options_.auto_mask_s) {
+    if (!options_.mask.empty()) {
+      CV_Assert(options_.mask.type() == CV_8UC1);
+      mask_ = MarkerMask(options_.mask);
+      counts_.masked_share = static_cast<double>(cv::countNonZero(options_.mask)) / static_cast<double>(options_.mask.total());
+    }
+  }
+
+  void prime(std::span<const Frame> samples);
+  Detections detect(const Frame& frame, std::span<const Expected> expected);
+
+  MarkerCounts counts_;
+  MarkerLevels& levels() { return levels_; }
+
+ private:
+  std::span<const MarkerBlob> find(const Picture& picture);
+  void mask_more(std::optional<MarkerMask> learned);
+  void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
+  void file_blobs(std::span<const MarkerBlob> blobs, cv::Size size);
+  std::span<const MarkerNeighbour> neighbours(std::span<const MarkerBlob> blobs, std::size_t index);
+  MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
+  void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
+               std::vector<Detection>& found);
+  Detection report(const MarkerShape& shape, const MarkerBlob& blob, const MarkerSurroundings& around);
+  void learn_from(std::vector<double>& contrasts);
+
+  MarkerOptions options_;
+  MarkerLevels levels_;
+  MarkerRunFinder finder_;
+  MarkerAutoMask auto_mask_;
+  MarkerMask mask_;
+  MarkerMask half_mask_;
+  cv::Mat heights_;
+  MarkerThresholds colour_thresholds_;
+  std::vector<std::size_t> chosen_;
+  std::vector<std::vector<std::uint32_t>> cells_;
+  cv::Size cell_count_;
+  std::vector<MarkerNeighbour> near_;
+  MarkerWindow window_;
+  std::vector<MarkerBlob> full_size_;
+  std::vector<double> contrasts_, blurs_;
+  std::optional<double> blur_;
+  int split_pixels_left_ = 0;
+};
+
+void MarkerDetector::Impl::prime(std::span<const Frame> samples) {
+  if (options_.auto_mask_s <= 0) return;
+  for (const Frame& frame : samples) {
+    if (seconds(frame.time - samples.front().time) > options_.auto_mask_s || frame.picture.empty()) continue;
+    find(frame.picture);
+    auto_mask_.add(frame.time, frame.picture.size(), finder_.runs());
+  }
+}
+
+/// Blobs in pixels of the full picture, whatever they were found in.
+std::span<const MarkerBlob> MarkerDetector::Impl::find(const Picture& picture) {
+  const cv::Mat& luma = picture.luma();
+  if (!mask_.empty() && mask_.size() != luma.size()) {
+    throw Error("the mask is {}×{} px but the picture is {}×{}; give a mask of the picture's size", mask_.size().width,
+                mask_.size().height, luma.cols, luma.rows);
+  }
+  levels_.learn(luma);
+  if (!options_.colour) {
+    auto blobs = finder_.find(luma, levels_.thresholds(), mask_);
+    if (!finder_.cut_at()) return blobs;
+    levels_.learn(luma, true);  // the light may have changed at once
+    return finder_.find(luma, levels_.thresholds(), mask_);
+  }
+  return {};
+}
+
+Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
+  Detections result;
+  ++counts_.frames;
+  if (frame.picture.empty()) return result;
+  const cv::Mat& luma = frame.picture.luma();
+  auto blobs = find(frame.picture);
+  if (finder_.cut_at()) ++counts_.frames_cut;
+  if (options_.auto_mask_s > 0 && auto_mask_.learning()) {
+    if (auto learned = auto_mask_.add(frame.time, luma.size(), finder_.runs())) {
+      mask_more(std::move(learned));
+      blobs = finder_.find(luma, levels_.thresholds(), mask_);
+    }
+  }
+  choose(blobs, expected);
+  file_blobs(blobs, luma.size());
+  contrasts_.clear();
+  blurs_.clear();
+  split_pixels_left_ = kMostSplitPixels;
+  result.detections.reserve(chosen_.size());
+  for (const std::size_t index : chosen_) measure(luma, blobs, index, expected, result.detections);
+  counts_.markers += static_cast<std::int64_t>(result.detections.size());
+  learn_from(contrasts_);
+  return result;
+}
+
+void MarkerDetector::Impl::mask_more(std::optional<MarkerMask> learned) {
+  mask_.add(*learned);
+  std::int64_t excluded = 0;
+  for (int y = 0; y < mask_.size().height; ++y) {
+    for (int x = 0; x < mask_.size().width; ++x) excluded += mask_.at(x, y) ? 1 : 0;
+  }
+  if (!mask_.empty()) counts_.masked_share = static_cast<double>(excluded) / mask_.size().area();
+}
+
+void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected) {
+  chosen_.clear();
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    const auto area = static_cast<double>(blobs[i].area);
+    if (area < options_.min_area) {
+      ++counts_.too_small;
+    } else if (area > options_.max_area) {
+      ++counts_.too_large;
+    } else if (roundness(blobs[i]) < kOfRoundness * options_.min_roundness) {
+      ++counts_.not_round;
+    } else {
+      chosen_.push_back(i);
+    }
+  }
+  const auto most = static_cast<std::size_t>(options_.most_markers);
+  if (chosen_.size() <= most) return;
+  counts_.over_limit += static_cast<std::int64_t>(chosen_.size() - most);
+  const auto wanted = [&](std::size_t i) {
+    return std::any_of(expected.begin(), expected.end(),
+                       [&](const Expected& e) { return inside(e.box, blobs[i].mean_x, blobs[i].mean_y); });
+  };
+  const auto others = std::stable_partition(chosen_.begin(), chosen_.end(), wanted);
+  const auto larger = [&](std::size_t a, std::size_t b) { return blobs[a].area > blobs[b].area; };
+  std::stable_sort(others, chosen_.end(), larger);
+  chosen_.resize(most);
+  std::sort(chosen_.begin(), chosen_.end());
+}
+
+void MarkerDetector::Impl::file_blobs(std::span<const MarkerBlob> blobs, cv::Size size) {
+  const cv::Size count((size.width + kCell - 1) / kCell, (size.height + kCell - 1) / kCell);
+  if (count != cell_count_) cells_.assign(count.area(), {});
+  cell_count_ = count;
+  for (auto& cell : cells_) cell.clear();
+  for (const std::size_t i : chosen_) {
+    const int column = static_cast<int>(blobs[i].mean_x) / kCell, row = static_cast<int>(blobs[i].mean_y) / kCell;
+    cells_[static_cast<std::size_t>(row) * count.width + column].push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+/// Other blobs whose light may reach into the window of this one.
+std::span<const MarkerNeighbour> MarkerDetector::Impl::neighbours(std::span<const MarkerBlob> blobs, std::size_t index) {
+  near_.clear();
+  const MarkerBlob& own = blobs[index];
+  const int extent = std::max(own.box.width, own.box.height) / 2 + 3;
+  const cv::Rect reach(own.box.x - extent, own.box.y - extent, own.box.width + 2 * extent, own.box.height + 2 * extent);
+  const auto cell = [](int place, int cells) { return std::clamp(place / kCell, 0, cells - 1); };
+  for (int row = cell(reach.y, cell_count_.height); row <= cell(reach.br().y, cell_count_.height); ++row) {
+    for (int column = cell(reach.x, cell_count_.width); column <= cell(reach.br().x, cell_count_.width); ++column) {
+      for (const std::uint32_t i : cells_[static_cast<std::size_t>(row) * cell_count_.width + column]) {
+        if (i == index || (blobs[i].box & reach).empty()) continue;
+        near_.push_back({{blobs[i].mean_x, blobs[i].mean_y}, std::sqrt(static_cast<double>(blobs[i].area) / std::numbers::pi)});
+      }
+    }
+  }
+  return near_;
+}
+
+MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat&, const MarkerBlob& blob) const {
+  MarkerSurroundings around;
+  const int x = static_cast<int>(blob.mean_x), y = static_cast<int>(blob.mean_y);
+  around.background = levels_.background(x, y);
+  around.noise = levels_.noise();
+  around.white = levels_.white();
+  around.dark = options_.dark;
+  around.blur = blur_;
+  return around;
+}
+
+void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index,
+                                   std::span<const Expected> expected, std::vector<Detection>& found) {
+  const MarkerBlob& blob = blobs[index];
+  const MarkerSurroundings around = surroundings(luma, blob);
+  collect_window(luma, blob, around, neighbours(blobs, index), window_);
+  const MarkerShape lone = fit_disc(window_, blob, around);
+  const double grain = 3 * around.noise / window_.scale;
+  if (lone.misfit > std::max(kShapeMisfit, grain) && blob.area >= 8 && window_.count <= split_pixels_left_) {
+    split_pixels_left_ -= window_.count;
+    const auto several = static_cast<std::size_t>(std::count_if(expected.begin(), expected.end(), [&](const Expected& e) {
+      return blob.box.contains(
+          {static_cast<int>(std::lround(e.box.centre().x())), static_cast<int>(std::lround(e.box.centre().y()))});
+    }));
+    const auto parts = split_markers(window_, blob, around, several);
+    if (!parts.empty()) {
+      ++counts_.split;
+      for (const MarkerShape& part : parts) found.push_back(report(part, blob, around));
+      return;
+    }
+  }
+  if (roundness(blob) < options_.min_roundness) {
+    ++counts_.not_round;
+    return;
+  }
+  if (!lone.fitted) ++counts_.not_fitted;
+  if (lone.fitted && lone.misfit < std::max(kShapeMisfit, grain)) blurs_.push_back(lone.blur);
+  contrasts_.push_back(window_.scale);
+  Detection detection = report(lone, blob, around);
+  detection.box = {static_cast<double>(blob.box.x), static_cast<double>(blob.box.y), static_cast<double>(blob.box.width),
+                   static_cast<double>(blob.box.height)};
+  found.push_back(std::move(detection));
+}
+
+Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlob& blob, const MarkerSurroundings&) {
+  Detection detection;
+  detection.centre = shape.centre;
+  detection.covariance = shape.covariance;
+  detection.area = shape.fitted ? std::numbers::pi * shape.radius * shape.radius : static_cast<double>(blob.area);
+  detection.box = Box::from_centre(shape.centre, 2 * shape.radius + 1, 2 * shape.radius + 1);
+  const double least = levels_.least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
+  detection.score = std::clamp(shape.contrast / (2 * least), 0.1, 1.0);
+  return detection;
+}
+
+void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
+  double cubes = 0, squares = 0;  // the mean, weighted by its square: the bright ones decide
+  for (const double contrast : contrasts) {
+    cubes += contrast * contrast * contrast;
+    squares += contrast * contrast;
+  }
+  levels_.learn_contrast(squares > 0 ? std::optional(cubes / squares) : std::nullopt);
+  if (blurs_.empty()) return;
+  const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>(blurs_.size() / 2);
+  std::nth_element(blurs_.begin(), middle, blurs_.end());
+  blur_ = blur_ ? *blur_ + (*middle - *blur_) / 8 : *middle;
+}
+
+MarkerDetector::MarkerDetector(MarkerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+MarkerDetector::~MarkerDetector() = default;
+
+void MarkerDetector::prime(std::span<const Frame> samples) {
+  impl_->prime(samples);
+}
+
+Detections MarkerDetector::detect(const Frame& frame, std::span<const Expected> expected) {
+  return impl_->detect(frame, expected);
+}
+
+const MarkerCounts& MarkerDetector::counts() const {
+  return impl_->counts_;
+}
+
+double MarkerDetector::typical_threshold() const {
+  return impl_->levels().typical_least_contrast();
+}
+
+double MarkerDetector::noise() const {
+  return impl_->levels().noise();
+}
+
+std::vector<std::string> warnings(const MarkerCounts& counts) {
+  std::vector<std::string> result;
+  if (counts.over_limit > 0) {
+    result.push_back(
+        fmt::format("{} blobs beyond the most markers allowed a frame were left out: is there glare? A mask or a higher "
+                    "threshold helps",
+                    counts.over_limit));
+  }
+  if (counts.frames_cut > 0) {
+    result.push_back(
+        fmt::format("{} of {} frames had too much above the threshold to be searched to the bottom; a higher threshold helps",
+                    counts.frames_cut, counts.frames));
+  }
+  if (counts.frames > 0 && counts.markers == 0) result.push_back("no marker was seen in any frame");
+  return result;
+}
+
+}  // namespace marey
