@@ -39,6 +39,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     check(now, seen);
     predict_to(now);
     follow_camera(seen);
+    mark_crowded();
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     correct(now, seen);
@@ -145,11 +146,35 @@ class FilterTracker final : public Tracker<F::dimension> {
     double cost = distance + std::log(S.determinant() / std::pow(target.unit * reference_sigma, 2 * D));
     double room = clutter_room - 2 * seconds(*now_ - target.last_seen) / fading;
     if (target.size && observation.box && !observation.shared) {
-      cost += std::min(target.size->distance(*observation.box, size_options_), size_limit);
+      const double distance_of_size = target.size->distance(*observation.box, size_options_);
+      cost += target.crowded ? std::min(distance_of_size, crowded_size_limit) : distance_of_size;
       room += size_room;
     }
     if (!target.confirmed) cost += newcomer_cost;
     return (room - cost) / 2;
+  }
+
+  /// A target whose box meets another's may be seen in part, or as one with it: its size then says less.
+  void mark_crowded() {
+    if constexpr (D == 2) {
+      points_.clear();
+      double widest = 0;
+      for (Target<F>& target : targets_) {
+        target.crowded = false;
+        points_.push_back(in_view(target));
+        widest = std::max(widest, target.unit);
+      }
+      grid_.build(points_, std::max(1e-9, widest));
+      for (Target<F>& target : targets_) {
+        if (!target.size) continue;
+        const Box box = target.size->around(in_view(target));
+        grid_.for_each_near(in_view(target), (target.unit + widest) / 2, [&](int index) {
+          const Target<F>& other = targets_[index];
+          if (other.id == target.id || !other.size || target.crowded) return;
+          target.crowded = intersection(box, other.size->around(in_view(other))).area() > crowded_share * box.area();
+        });
+      }
+    }
   }
 
   template <typename Chosen>
@@ -313,10 +338,11 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double doubt = 2.5;             // an unbelieved box places its target this much less surely
   static constexpr double reference_sigma = 0.08;  // sizes: innovations of a well followed target
   static constexpr double clutter_room = 6;        // twice the log-likelihood ratio of a perfect fit against clutter
-  static constexpr double size_room = 2;           // the same for its size
+  static constexpr double size_room = 3;           // the same for its size
   static constexpr double recently = 0.35;         // s; a target seen since tells of the camera's motion
   static constexpr double fading = 0.6;            // s unseen after which a target is e times less likely to be there
-  static constexpr double size_limit = 9;          // a box whose size is not believed costs no more than this
+  static constexpr double crowded_share = 0.2;
+  static constexpr double crowded_size_limit = 9;  // a box whose size is not believed costs no more than this
   static constexpr double newcomer_cost = 1;       // a confirmed target has the first claim
   static constexpr double miss_evidence = 0.7;
   static constexpr double hidden_evidence = 0.1;

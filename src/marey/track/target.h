@@ -21,6 +21,7 @@ struct Target {
   bool confirmed = false;
   double score = 1;      ///< of the last observation
   int observation = -1;  ///< its index in this frame; -1 for none
+  bool crowded = false;  ///< its box meets another target's
   bool hidden = false;   ///< not seen, and another target or a shared region explains why
 };
 

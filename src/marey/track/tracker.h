@@ -32,7 +32,7 @@ struct TrackerOptions {
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 7;             ///< nothing moves faster, sizes/s: 12 m/s for a person
   double place_noise = 0.05;        ///< standard deviation of a box's centre, sizes; added to the observation's covariance
-  double size_noise = 0.08;         ///< standard deviation of the logarithm of a box's width and height
+  double size_noise = 0.1;          ///< standard deviation of the logarithm of a box's width and height
   double size_drift = 0.15;         ///< what that logarithm may change by in a second
   double confident = 0.5;           ///< a target begins with scores of at least this; weaker ones only continue one
   double weak = 0.05;               ///< scores below this are not looked at
