@@ -78,21 +78,24 @@ struct Run {
     const Matrix<D> R = 0.01 * Matrix<D>::Identity();
     std::vector<F> filters;
     for (int i = 0; i < kTargets; ++i) filters.emplace_back(options, place<D>(i, 0), R);
+    std::vector<Vector<D>> seen(kTargets);
     double least = 1e9;
     int k = 0;
     for (auto _ : state) {
       ++k;
+      for (int i = 0; i < kTargets; ++i) seen[static_cast<std::size_t>(i)] = place<D>(i, k);
       const auto start = std::chrono::steady_clock::now();
       for (int i = 0; i < kTargets; ++i) {
         filters[static_cast<std::size_t>(i)].predict(kStep);
-        filters[static_cast<std::size_t>(i)].correct(place<D>(i, k), R);
+        filters[static_cast<std::size_t>(i)].correct(seen[static_cast<std::size_t>(i)], R);
       }
       benchmark::ClobberMemory();
       least = std::min(least, seconds_since(start) / kTargets);
     }
     state.counters["ns_per_target"] = 1e9 * least;
-    state.counters["opencv_ns"] = 1e9 * opencv_cost<D>(order);
-    state.counters["ratio"] = opencv_cost<D>(order) / least;
+    const double opencv = opencv_cost<D>(order);
+    state.counters["opencv_ns"] = 1e9 * opencv;
+    state.counters["ratio"] = opencv / least;
     state.SetItemsProcessed(state.iterations() * kTargets);
   }
 };

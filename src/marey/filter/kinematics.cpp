@@ -4,7 +4,7 @@ namespace marey::kinematics {
 namespace {
 
 // Below this product of rate and time, closed forms lose digits by cancellation and Taylor series are used instead.
-constexpr double kSmall = 0.5;
+constexpr double kSmall = 0.25;
 
 /// Σ coefficients[n] xⁿ.
 template <std::size_t N>
@@ -18,9 +18,7 @@ double polynomial(const std::array<double, N>& coefficients, double x) {
 double second_integral_of_decay(double x) {
   if (x > kSmall) return (x - 1 + std::exp(-x)) / (x * x);
   // Σ (−x)ⁿ / (n + 2)!
-  return polynomial<11>({1. / 2, -1. / 6, 1. / 24, -1. / 120, 1. / 720, -1. / 5040, 1. / 40320, -1. / 362880, 1. / 3628800,
-                         -1. / 39916800, 1. / 479001600},
-                        x);
+  return polynomial<9>({1. / 2, -1. / 6, 1. / 24, -1. / 120, 1. / 720, -1. / 5040, 1. / 40320, -1. / 362880, 1. / 3628800}, x);
 }
 
 /// The jerk's white noise integrated over dt: Q of constant acceleration for a density of 1.
@@ -34,38 +32,52 @@ Matrix<3> white_jerk(double dt) {
   return Q;
 }
 
-/// Singer's Q over sigma², by his closed form; x = dt/time is not small.
-Matrix<3> singer_noise_closed(double x, double time) {
-  const double e = std::exp(-x);
-  const double e2 = e * e;
-  const double pp = 1 - e2 + 2 * x + 2 * x * x * x / 3 - 2 * x * x - 4 * x * e;
-  const double pv = e2 + 1 - 2 * e + 2 * x * e - 2 * x + x * x;
-  const double pa = 1 - e2 - 2 * x * e;
-  const double vv = 4 * e - 3 - e2 + 2 * x;
-  const double va = e2 + 1 - 2 * e;
+/// Singer's Q over sigma² from its six brackets, pp, pv, pa, vv, va, aa.
+Matrix<3> singer_noise(const std::array<double, 6>& bracket, double time) {
   const double t2 = time * time;
+  const double pv = t2 * time * bracket[1];
+  const double pa = t2 * bracket[2];
+  const double va = time * bracket[4];
   Matrix<3> Q;
-  Q << t2 * t2 * pp, t2 * time * pv, t2 * pa,  //
-      t2 * time * pv, t2 * vv, time * va,      //
-      t2 * pa, time * va, 1 - e2;
+  Q << t2 * t2 * bracket[0], pv, pa, pv, t2 * bracket[3], va, pa, va, bracket[5];
   return Q;
 }
 
-/// The same for small x: by Gauss–Legendre's rule with five points on ∫ g gᵀ, g the response to a kick of the acceleration.
-Matrix<3> singer_noise_small(double x, double dt, double time) {
-  constexpr std::array<double, 5> kPoint = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
-  constexpr std::array<double, 5> kWeight = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
-                                             0.2369268850561891};
-  Matrix<3> Q = Matrix<3>::Zero();
-  for (std::size_t k = 0; k < kPoint.size(); ++k) {
-    const double u = 0.5 * (1 + kPoint[k]);
-    const double s = u * dt;
-    const double second = second_integral_of_decay(u * x);
-    const double first = 1 - u * x * second;
-    const Vector<3> g(s * s * second, s * first, 1 - u * x * first);
-    Q += (0.5 * dt * kWeight[k]) * g * g.transpose();
+/// By his closed form; x = dt/time is not small.
+Matrix<3> singer_noise_closed(double x, double time) {
+  const double e = std::exp(-x);
+  const double e2 = e * e;
+  return singer_noise({1 - e2 + 2 * x + 2 * x * x * x / 3 - 2 * x * x - 4 * x * e, e2 + 1 - 2 * e + 2 * x * e - 2 * x + x * x,
+                       1 - e2 - 2 * x * e, 4 * e - 3 - e2 + 2 * x, e2 + 1 - 2 * e, 1 - e2},
+                      time);
+}
+
+constexpr int kTerms = 16;
+
+/// Taylor coefficients of x to x¹⁵ of the six brackets above, pp, pv, pa, vv, va, aa; all lower powers cancel.
+constexpr std::array<std::array<double, 6>, kTerms> singer_series() {
+  std::array<std::array<double, 6>, kTerms> series = {};
+  double sign = 1;     // (−1)ⁿ / n!
+  double doubled = 1;  // 2ⁿ
+  for (int n = 1; n < kTerms; ++n) {
+    sign /= -n;
+    doubled *= 2;
+    const std::array<double, 6> bracket = {4.0 * n - doubled, doubled - 2 - 2.0 * n, 2.0 * n - doubled,
+                                           4 - doubled,       doubled - 2,           -doubled};
+    constexpr std::array<int, 6> kLowest = {5, 4, 3, 3, 2, 1};
+    for (std::size_t k = 0; k < 6; ++k) series[static_cast<std::size_t>(n)][k] = n < kLowest[k] ? 0 : sign * bracket[k];
   }
-  return Q * (2 / time);
+  return series;
+}
+
+/// The same for small x.
+Matrix<3> singer_noise_small(double x, double time) {
+  static constexpr auto kSeries = singer_series();
+  std::array<double, 6> sum = kSeries.back();
+  for (std::size_t n = kTerms - 1; n-- > 0;) {
+    for (std::size_t k = 0; k < 6; ++k) sum[k] = sum[k] * x + kSeries[n][k];
+  }
+  return singer_noise(sum, time);
 }
 
 }  // namespace
@@ -91,7 +103,7 @@ Model<3> singer(double dt, double sigma, double time) {
   const double first = 1 - x * second;  // (1 − e⁻ˣ) / x
   Model<3> model;
   model.F << 1, dt, dt * dt * second, 0, 1, dt * first, 0, 0, 1 - x * first;
-  model.Q = (sigma * sigma) * (x > kSmall ? singer_noise_closed(x, time) : singer_noise_small(x, dt, time));
+  model.Q = (sigma * sigma) * (x > kSmall ? singer_noise_closed(x, time) : singer_noise_small(x, time));
   return model;
 }
 

@@ -100,7 +100,7 @@ Model<3> by_small_steps(const Matrix<3>& A, double density, double dt, int n) {
 }
 
 TEST(Kinematics, SingersAccelerationIsTheIntegralOfItsNoise) {
-  for (const double ratio : {0.001, 0.1, 0.49, 0.51, 3.0}) {
+  for (const double ratio : {0.001, 0.1, 0.24, 0.26, 3.0}) {
     const double time = 0.4;
     const double dt = ratio * time;
     Matrix<3> A;
@@ -118,8 +118,8 @@ TEST(Kinematics, SingersAccelerationIsTheIntegralOfItsNoise) {
 
 TEST(Kinematics, SeriesAndClosedFormsMeet) {
   const double time = 1;
-  const Model<3> below = kinematics::singer(0.5, 1, time);
-  const Model<3> above = kinematics::singer(std::nextafter(0.5, 1), 1, time);
+  const Model<3> below = kinematics::singer(0.25, 1, time);
+  const Model<3> above = kinematics::singer(std::nextafter(0.25, 1), 1, time);
   EXPECT_LE((below.F - above.F).norm(), 1e-13);
   EXPECT_LE((below.Q - above.Q).cwiseQuotient(above.Q).cwiseAbs().maxCoeff(), 1e-9);
 }
