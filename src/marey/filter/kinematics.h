@@ -68,32 +68,47 @@ State<D, Order> at_rest(const Vector<D>& z, const Matrix<D>& z_covariance, const
 }
 
 /// No model here knows an absolute place: the first column of F must be (1, 0, …).
-template <int D, int Order>
-void predict(State<D, Order>& state, const Model<Order>& model) {
+template <int D>
+void predict(State<D, 2>& state, const Model<2>& model) {
+  const double a = model.F(0, 1);
+  const double b = model.F(1, 1);
+  auto& [pp, pv, vv] = state.blocks;
+  pp += a * (pv + pv.transpose()) + (a * a) * vv;
+  pv = b * (pv + a * vv);
+  vv *= b * b;
+  pp.diagonal().array() += model.Q(0, 0);
+  pv.diagonal().array() += model.Q(0, 1);
+  vv.diagonal().array() += model.Q(1, 1);
+  state.mean[0] += a * state.mean[1];
+  state.mean[1] *= b;
+}
+
+template <int D>
+void predict(State<D, 3>& state, const Model<3>& model) {
   const auto& F = model.F;
-  const State<D, Order> old = state;
-  // Half the product, P (F ⊗ I)ᵀ, then the upper half of (F ⊗ I) times that.
-  std::array<std::array<Matrix<D>, Order>, Order> half;
-  for (std::size_t i = 0; i < Order; ++i) {
-    for (std::size_t j = 0; j < Order; ++j) {
-      Matrix<D> sum = F(j, 1) * old.covariance(i, 1);
-      for (std::size_t k = 2; k < Order; ++k) sum += F(j, k) * old.covariance(i, k);
-      half[i][j] = j == 0 ? Matrix<D>(sum + old.covariance(i, 0)) : sum;
-    }
-  }
-  for (std::size_t i = 0; i < Order; ++i) {
-    Vector<D> mean = F(i, 1) * old.mean[1];
-    for (std::size_t k = 2; k < Order; ++k) mean += F(i, k) * old.mean[k];
-    state.mean[i] = i == 0 ? Vector<D>(mean + old.mean[0]) : mean;
-    for (std::size_t j = i; j < Order; ++j) {
-      Matrix<D> sum = F(i, 1) * half[1][j];
-      for (std::size_t k = 2; k < Order; ++k) sum += F(i, k) * half[k][j];
-      if (i == 0) sum += half[0][j];
-      sum.diagonal().array() += model.Q(i, j);
-      state.cov(i, j) = sum;
-    }
+  const auto& [pp, pv, pa, vv, va, aa] = state.blocks;
+  // The columns of P (F ⊗ I)ᵀ that the upper half of (F ⊗ I) times it needs.
+  const Matrix<D> av = va.transpose();
+  const Matrix<D> p0 = pp + F(0, 1) * pv + F(0, 2) * pa;
+  const Matrix<D> p1 = F(1, 1) * pv + F(1, 2) * pa;
+  const Matrix<D> p2 = F(2, 1) * pv + F(2, 2) * pa;
+  const Matrix<D> v0 = pv.transpose() + F(0, 1) * vv + F(0, 2) * va;
+  const Matrix<D> v1 = F(1, 1) * vv + F(1, 2) * va;
+  const Matrix<D> v2 = F(2, 1) * vv + F(2, 2) * va;
+  const Matrix<D> a0 = pa.transpose() + F(0, 1) * av + F(0, 2) * aa;
+  const Matrix<D> a1 = F(1, 1) * av + F(1, 2) * aa;
+  const Matrix<D> a2 = F(2, 1) * av + F(2, 2) * aa;
+  state.blocks = {p0 + F(0, 1) * v0 + F(0, 2) * a0, p1 + F(0, 1) * v1 + F(0, 2) * a1, p2 + F(0, 1) * v2 + F(0, 2) * a2,
+                  F(1, 1) * v1 + F(1, 2) * a1,      F(1, 1) * v2 + F(1, 2) * a2,      F(2, 1) * v2 + F(2, 2) * a2};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i; j < 3; ++j) state.cov(i, j).diagonal().array() += model.Q(static_cast<int>(i), static_cast<int>(j));
     make_symmetric(state.cov(i, i));
   }
+  const Vector<D> v = state.mean[1];
+  const Vector<D> a = state.mean[2];
+  state.mean[0] += F(0, 1) * v + F(0, 2) * a;
+  state.mean[1] = F(1, 1) * v + F(1, 2) * a;
+  state.mean[2] = F(2, 1) * v + F(2, 2) * a;
 }
 
 /// How far off a measurement was: its squared Mahalanobis distance, and the determinant of its covariance S.
