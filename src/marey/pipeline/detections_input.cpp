@@ -1,0 +1,101 @@
+#include "marey/pipeline/detections_input.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/mot.h"
+
+namespace marey {
+namespace {
+
+constexpr double kUsualRate = 25;
+/// The share of detections, by rank, that is too weak to begin a track (TrackerOptions::confident).
+constexpr double kWeakShare = 0.25;
+constexpr double kConfident = 0.5;
+
+bool is_probability(const std::vector<LabelledBox>& boxes) {
+  return std::all_of(boxes.begin(), boxes.end(), [](const LabelledBox& box) { return box.score >= 0 && box.score <= 1; });
+}
+
+/// Replaces scores of an unknown scale by their rank, bent so that kWeakShare of them stay below kConfident.
+void rank_scores(std::vector<LabelledBox>& boxes) {
+  std::vector<double> sorted;
+  for (const LabelledBox& box : boxes) sorted.push_back(box.score);
+  std::sort(sorted.begin(), sorted.end());
+  for (LabelledBox& box : boxes) {
+    const auto not_better = std::upper_bound(sorted.begin(), sorted.end(), box.score) - sorted.begin();
+    const double rank = static_cast<double>(not_better) / static_cast<double>(sorted.size());
+    box.score =
+        rank < kWeakShare ? rank / kWeakShare * kConfident : kConfident + (rank - kWeakShare) / (1 - kWeakShare) * (1 - kConfident);
+  }
+}
+
+class EmptyFrames final : public Source {
+ public:
+  EmptyFrames(SourceInfo info, std::vector<std::string> warnings) : info_(std::move(info)), warnings_(std::move(warnings)) {}
+
+  const SourceInfo& info() const override { return info_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
+  std::optional<Frame> next() override {
+    if (next_index_ == *info_.frame_count) return std::nullopt;
+    Frame frame;
+    frame.index = next_index_++;
+    frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / *info_.rate_hz);
+    return frame;
+  }
+
+ private:
+  SourceInfo info_;
+  std::vector<std::string> warnings_;
+  std::int64_t next_index_ = 0;
+};
+
+class KnownDetections final : public Detector {
+ public:
+  explicit KnownDetections(std::vector<LabelledBox> boxes) : boxes_(std::move(boxes)) {}
+
+  Detections detect(const Frame& frame, std::span<const Expected> /*expected*/) override {
+    Detections result;
+    for (; at_ < boxes_.size() && boxes_[at_].frame <= frame.index; ++at_) {
+      const LabelledBox& seen = boxes_[at_];
+      Detection detection;
+      detection.centre = seen.box.centre();
+      detection.area = seen.box.area();
+      detection.box = seen.box;
+      detection.score = seen.score;
+      result.detections.push_back(detection);
+    }
+    return result;
+  }
+
+ private:
+  std::vector<LabelledBox> boxes_;  // by frame
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+DetectionsInput open_detections(const std::string& path, std::optional<double> rate_hz) {
+  MotTable table = read_mot(path, MotKind::detections);
+  if (table.boxes.empty()) throw Error("{}: holds no detections; lines are frame,-1,left,top,width,height,score", path);
+  if (!rate_hz) {
+    table.warnings.push_back(fmt::format(
+        "{}: detections do not tell their rate: {} frames a second were assumed; say otherwise with --rate", path, kUsualRate));
+  }
+  if (!is_probability(table.boxes)) {
+    rank_scores(table.boxes);
+    table.warnings.push_back(fmt::format("{}: scores are not within 0 and 1; they were ranked instead", path));
+  }
+  SourceInfo info;
+  info.name = path;
+  info.rate_hz = rate_hz.value_or(kUsualRate);
+  info.frame_count = table.boxes.back().frame + 1;
+  return {std::make_unique<EmptyFrames>(std::move(info), std::move(table.warnings)),
+          std::make_unique<KnownDetections>(std::move(table.boxes))};
+}
+
+}  // namespace marey

@@ -1,0 +1,223 @@
+#include "marey/pipeline/track_people.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/detect/people.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/draw/overlay.h"
+#include "marey/pipeline/detections_input.h"
+#include "marey/pipeline/read_ahead.h"
+#include "marey/source/open_source.h"
+#include "marey/track/recording.h"
+
+namespace marey {
+namespace {
+
+// A detector learns the empty scene from this many pictures, spread over this long a beginning.
+constexpr int kSamples = 30;
+constexpr double kSampledSeconds = 30;
+constexpr int kMostFramesRead = 300;
+constexpr double kUsualRate = 25;
+
+std::vector<Frame> sample(Source& source) {
+  const double span = std::min<double>(kSampledSeconds * source.info().rate_hz.value_or(kUsualRate), kMostFramesRead);
+  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kSamples));
+  std::vector<Frame> samples;
+  while (samples.size() < kSamples) {
+    auto frame = source.next();
+    if (!frame) break;
+    if (frame->index % step == 0) samples.push_back(std::move(*frame));
+  }
+  return samples;
+}
+
+/// Where frames come from, and what finds people in them.
+struct Eyes {
+  std::unique_ptr<Source> source;
+  std::unique_ptr<Detector> detector;
+};
+
+Eyes open_eyes(const PeopleInput& input, const TrackPeopleOptions& options) {
+  if (!input.detections.empty()) {
+    DetectionsInput known = open_detections(input.detections, input.rate_hz);
+    return {std::move(known.source), std::move(known.detector)};
+  }
+  Eyes eyes{open_source(input.pictures, input.rate_hz), make_people_detector({.background = options.background})};
+  if (!options.live) eyes.detector->prime(sample(*open_source(input.pictures, input.rate_hz)));
+  eyes.source = read_ahead(std::move(eyes.source));
+  return eyes;
+}
+
+std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
+  std::vector<Expected> result;
+  for (const Track<2>& track : tracks) {
+    if (track.box) result.push_back({*track.box});
+  }
+  return result;
+}
+
+std::vector<Observation<2>> observations_of(const std::vector<Detection>& detections, CameraId camera) {
+  std::vector<Observation<2>> result;
+  result.reserve(detections.size());
+  for (const Detection& detection : detections) {
+    result.push_back({.value = detection.centre,
+                      .covariance = detection.covariance,
+                      .camera = camera,
+                      .score = detection.score,
+                      .box = detection.box,
+                      .shared = detection.group.has_value()});
+  }
+  return result;
+}
+
+Track<2> track_of(const TrackRow& row) {
+  Track<2> track;
+  track.id = TrackId{row.id};
+  track.position = {row.x, row.y};
+  track.velocity = {row.vx, row.vy};
+  if (row.has_box()) track.box = Box{row.left, row.top, row.width, row.height};
+  track.score = row.score;
+  track.state = row.state;
+  return track;
+}
+
+/// Hands out a sorted table of rows frame by frame.
+class RowsByFrame {
+ public:
+  explicit RowsByFrame(const std::vector<TrackRow>& rows) : at_(rows.begin()), end_(rows.end()) {}
+
+  const std::vector<Track<2>>& at(std::int64_t frame) {
+    tracks_.clear();
+    for (; at_ != end_ && at_->frame <= frame; ++at_) {
+      if (at_->frame == frame) tracks_.push_back(track_of(*at_));
+    }
+    return tracks_;
+  }
+
+ private:
+  std::vector<TrackRow>::const_iterator at_, end_;
+  std::vector<Track<2>> tracks_;
+};
+
+class Run {
+ public:
+  Run(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options, const RunHooks& hooks)
+      : input_(input),
+        options_(options),
+        hooks_(hooks),
+        eyes_(open_eyes(input, options)),
+        tracker_(make_tracker<2>(options.tracker)),
+        file_(output.tracks, output.format) {
+    const SourceInfo& info = eyes_.source->info();
+    if (!output.overlay.empty()) movie_.emplace(output.overlay, info.size, info.rate_hz);
+  }
+
+  TrackSummary operator()() {
+    follow();
+    if (!options_.live) {
+      const std::vector<TrackRow> rows = join(recording_, options_.join);
+      write(rows);
+      file_.finish();
+      if (movie_) draw(rows);
+    } else {
+      file_.finish();
+    }
+    if (movie_) movie_->finish();
+    summary_.people = static_cast<std::int64_t>(people_.size());
+    return std::move(summary_);
+  }
+
+ private:
+  /// The first pass: everything that is said of a frame knows only what came before it.
+  void follow() {
+    std::set<TrackId> begun, believed;
+    while (auto frame = eyes_.source->next()) {
+      const std::vector<Expected> expected = expected_of(tracker_->expected(frame->time));
+      const Detections seen = eyes_.detector->detect(*frame, expected);
+      const auto tracks = tracker_->step(frame->time, observations_of(seen.detections, frame->camera));
+      for (const Track<2>& track : tracks) (track.confirmed ? believed : begun).insert(track.id);
+      if (options_.live) {
+        tell(*frame, tracks);
+      } else {
+        recording_.add(frame->index, frame->time, tracks);
+      }
+      summary_.detections += static_cast<std::int64_t>(seen.detections.size());
+      summary_.frames = frame->index + 1;
+      summary_.seconds = seconds(frame->time);
+      summary_.stopped = is_stopped(TrackProgress::Step::tracking, summary_.frames, eyes_.source->info().frame_count);
+      if (summary_.stopped) break;
+    }
+    summary_.warnings = eyes_.source->warnings();
+    if (summary_.frames == 0) throw Error("{}: not one frame could be read", eyes_.source->info().name);
+    begun.merge(believed);
+    summary_.disbelieved = static_cast<std::int64_t>(begun.size()) - static_cast<std::int64_t>(believed.size());
+  }
+
+  void tell(const Frame& frame, std::span<const Track<2>> tracks) {
+    std::vector<Track<2>> confirmed;
+    std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(confirmed),
+                 [](const Track<2>& track) { return track.confirmed; });
+    tell_confirmed(frame.index, frame.time, confirmed);
+    if (movie_) movie_->write(overlay_.draw(frame.picture, frame.time, confirmed), frame.time);
+  }
+
+  void tell_confirmed(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks) {
+    file_.write(frame, time, tracks);
+    summary_.rows += static_cast<std::int64_t>(tracks.size());
+    for (const Track<2>& track : tracks) people_.insert(track.id);
+  }
+
+  void write(const std::vector<TrackRow>& rows) {
+    RowsByFrame by_frame(rows);
+    for (std::int32_t frame = 0; frame < summary_.frames; ++frame)
+      tell_confirmed(frame, recording_.time_of(frame), by_frame.at(frame));
+  }
+
+  /// A second look at the pictures, because the tracks of a frame are known only after the last one.
+  void draw(const std::vector<TrackRow>& rows) {
+    const auto source = read_ahead(open_source(input_.pictures, input_.rate_hz));
+    RowsByFrame by_frame(rows);
+    const bool stopped_before = summary_.stopped;  // then the film shows what was tracked until then
+    for (std::int64_t done = 0; done < summary_.frames;) {
+      const auto frame = source->next();
+      if (!frame) break;
+      movie_->write(overlay_.draw(frame->picture, frame->time, by_frame.at(frame->index)), frame->time);
+      if (!is_stopped(TrackProgress::Step::drawing, ++done, summary_.frames) || stopped_before) continue;
+      summary_.stopped = true;
+      break;
+    }
+  }
+
+  bool is_stopped(TrackProgress::Step step, std::int64_t done, std::optional<std::int64_t> total) {
+    if (hooks_.progress) hooks_.progress({step, done, total});
+    return hooks_.stop && hooks_.stop();
+  }
+
+  PeopleInput input_;
+  TrackPeopleOptions options_;
+  RunHooks hooks_;
+  Eyes eyes_;
+  std::unique_ptr<Tracker<2>> tracker_;
+  TrackFile file_;
+  std::optional<MovieWriter> movie_;
+  Overlay overlay_;
+  Recording recording_;
+  std::set<TrackId> people_;
+  TrackSummary summary_;
+};
+
+}  // namespace
+
+TrackSummary track_people(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options,
+                          const RunHooks& hooks) {
+  if (input.pictures.empty() == input.detections.empty()) throw Error("give either pictures or detections to track");
+  if (input.rate_hz && !(*input.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *input.rate_hz);
+  if (input.pictures.empty() && !output.overlay.empty()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
+  return Run(input, output, options, hooks)();
+}
+
+}  // namespace marey

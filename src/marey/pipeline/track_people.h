@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/detect/background.h"
+#include "marey/format/track_file.h"
+#include "marey/track/join.h"
+#include "marey/track/tracker.h"
+
+namespace marey {
+
+/// Where people are looked for: in pictures, or in what another program detected. One of the two paths is given.
+struct PeopleInput {
+  std::string pictures = {};           ///< a video file, a folder of pictures or a pattern of their names
+  std::string detections = {};         ///< MOT text
+  std::optional<double> rate_hz = {};  ///< frames a second, in place of what the pictures' header says
+};
+
+struct PeopleOutput {
+  std::string tracks;
+  TrackFormat format = TrackFormat::mot;
+  std::string overlay = {};  ///< a film with the tracks drawn into the pictures; empty for none
+};
+
+struct TrackPeopleOptions {
+  BackgroundOptions background;
+  TrackerOptions tracker;
+  JoinOptions join;
+  /// Every frame's tracks are written as they come: nothing is read ahead and nothing improved by what came later.
+  bool live = false;
+};
+
+struct TrackProgress {
+  enum class Step { tracking, drawing };
+  Step step = Step::tracking;
+  std::int64_t done = 0;              ///< frames
+  std::optional<std::int64_t> total;  ///< where it is known
+};
+
+/// How a run talks to whoever started it; both may be empty. Called between frames, on the thread that called track_people.
+struct RunHooks {
+  std::function<void(const TrackProgress&)> progress;
+  std::function<bool()> stop;  ///< true: leave off here, and write what there is
+};
+
+struct TrackSummary {
+  std::int64_t frames = 0;
+  double seconds = 0;                 ///< from the first frame to the last
+  std::int64_t people = 0;            ///< distinct numbers
+  std::int64_t rows = 0;              ///< people times the frames they are in
+  std::int64_t disbelieved = 0;       ///< seen too briefly to be taken for a person
+  std::int64_t detections = 0;        ///< handed to the tracker
+  bool stopped = false;               ///< before the end, because a hook said so
+  std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
+};
+
+/// Follows people through a recording and writes where they were. The only place that knows the order of the steps: source,
+/// detector (told where people are expected), tracker, second pass over the whole recording, files. Memory grows with the number of
+/// rows, 48 bytes each, and with nothing else; not even with those where `live`. The same input gives the same output, bit for bit.
+/// Throws Error where the input cannot be read at all, or an output not written; nothing half-written stays behind.
+TrackSummary track_people(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options = {},
+                          const RunHooks& hooks = {});
+
+}  // namespace marey

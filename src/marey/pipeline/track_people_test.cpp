@@ -1,0 +1,157 @@
+#include "marey/pipeline/track_people.h"
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+
+#include "support/files.h"
+
+namespace marey {
+namespace {
+
+/// Two dark figures on a noisy lawn, 8 s at 10 frames a second: one walks right, one left, on different rows.
+void film_two_walkers(const std::string& path) {
+  test::ffmpeg(
+      "-f lavfi -i color=0x90a080:size=320x240:rate=10 -f lavfi -i color=0x303040:size=16x44:rate=10 "
+      "-f lavfi -i color=0x402020:size=16x44:rate=10 -filter_complex "
+      "\"[0][1]overlay=x='-20+45*t':y=60[a];[a][2]overlay=x='330-45*t':y=150,noise=alls=4:allf=t:all_seed=7\" "
+      "-t 8 -c:v mpeg4 -q:v 3 " +
+      path);
+}
+
+/// Rows of MOT text as id → frames.
+std::map<int, std::set<int>> frames_by_id(const std::string& path) {
+  std::map<int, std::set<int>> result;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    int frame = 0, id = 0;
+    EXPECT_EQ(std::sscanf(line.c_str(), "%d,%d,", &frame, &id), 2) << line;
+    EXPECT_TRUE(result[id].insert(frame).second) << "twice in a frame: " << line;
+  }
+  return result;
+}
+
+/// MOT detections of three people who walk side by side, with one false alarm in every fifth frame.
+std::string walking_detections(int frames) {
+  std::ostringstream out;
+  for (int frame = 1; frame <= frames; ++frame) {
+    for (int person = 0; person < 3; ++person)
+      out << frame << ",-1," << 50 + 3 * frame << ',' << 40 + 150 * person << ",40,100,0.9\n";
+    if (frame % 5 == 0) out << frame << ",-1," << (frame * 37) % 600 << ',' << (frame * 91) % 400 << ",40,100,0.6\n";
+  }
+  return out.str();
+}
+
+TEST(TrackPeople, DetectionsOfAnotherProgramAreFollowed) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "det.txt", walking_detections(100));
+  const TrackSummary summary = track_people({.detections = folder / "det.txt", .rate_hz = 25}, {.tracks = folder / "out.txt"});
+  EXPECT_EQ(summary.frames, 100);
+  EXPECT_EQ(summary.people, 3);
+  EXPECT_NEAR(summary.seconds, 99 / 25.0, 1e-9);
+  EXPECT_GT(summary.disbelieved, 0);
+  EXPECT_TRUE(summary.warnings.empty());
+  const auto tracks = frames_by_id(folder / "out.txt");
+  ASSERT_EQ(tracks.size(), 3u);
+  for (const auto& [id, frames] : tracks) EXPECT_GE(frames.size(), 98u) << id;
+}
+
+TEST(TrackPeople, ScoresOfAnyScaleAreRanked) {
+  const test::TemporaryFolder folder;
+  std::string text = walking_detections(100);
+  for (std::size_t at = 0; (at = text.find(",0.9\n", at)) != std::string::npos;) text.replace(at, 5, ",87.5\n");
+  test::write_file(folder / "det.txt", text);
+  const TrackSummary summary = track_people({.detections = folder / "det.txt", .rate_hz = 25}, {.tracks = folder / "out.txt"});
+  EXPECT_EQ(summary.people, 3);
+  ASSERT_EQ(summary.warnings.size(), 1u);
+  EXPECT_NE(summary.warnings[0].find("ranked"), std::string::npos);
+}
+
+TEST(TrackPeople, PeopleInAFilmAreFoundFollowedAndDrawn) {
+  const test::TemporaryFolder folder;
+  film_two_walkers(folder / "film.avi");
+  const PeopleInput input{.pictures = folder / "film.avi"};
+  const PeopleOutput output{.tracks = folder / "out.txt", .overlay = folder / "out.mp4"};
+  int tracked = 0, drawn = 0;
+  RunHooks hooks;
+  hooks.progress = [&](const TrackProgress& progress) {
+    ++(progress.step == TrackProgress::Step::tracking ? tracked : drawn);
+    EXPECT_EQ(progress.total, 80);
+  };
+  const TrackSummary summary = track_people(input, output, {}, hooks);
+  EXPECT_EQ(summary.frames, 80);
+  EXPECT_EQ(tracked, 80);
+  EXPECT_EQ(drawn, 80);
+  EXPECT_EQ(summary.people, 2);
+  for (const auto& [id, frames] : frames_by_id(folder / "out.txt")) EXPECT_GT(frames.size(), 50u) << id;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out.mp4"));
+}
+
+TEST(TrackPeople, TheSameFilmGivesTheSameBytes) {
+  const test::TemporaryFolder folder;
+  film_two_walkers(folder / "film.avi");
+  const PeopleInput input{.pictures = folder / "film.avi", .rate_hz = 10};
+  for (const bool live : {false, true}) {
+    TrackPeopleOptions options;
+    options.live = live;
+    track_people(input, {.tracks = folder / "a.csv", .format = TrackFormat::csv}, options);
+    track_people(input, {.tracks = folder / "b.csv", .format = TrackFormat::csv, .overlay = folder / "b.mp4"}, options);
+    EXPECT_EQ(test::read_file(folder / "a.csv"), test::read_file(folder / "b.csv"));
+  }
+}
+
+TEST(TrackPeople, StoppedHalfWayItWritesWhatItHas) {
+  const test::TemporaryFolder folder;
+  film_two_walkers(folder / "film.avi");
+  const PeopleInput input{.pictures = folder / "film.avi"};
+  for (const bool live : {false, true}) {
+    int frames = 0;
+    RunHooks hooks;
+    hooks.stop = [&] { return ++frames >= 40; };
+    TrackPeopleOptions options;
+    options.live = live;
+    const TrackSummary summary = track_people(input, {.tracks = folder / "out.txt", .overlay = folder / "out.mp4"}, options, hooks);
+    EXPECT_TRUE(summary.stopped);
+    EXPECT_EQ(summary.frames, 40);
+    const auto tracks = frames_by_id(folder / "out.txt");
+    EXPECT_FALSE(tracks.empty());
+    for (const auto& [id, seen] : tracks) EXPECT_LE(*seen.rbegin(), 40);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.mp4"));
+  }
+}
+
+TEST(TrackPeople, EveryBackgroundAndEveryFilterRuns) {
+  const test::TemporaryFolder folder;
+  film_two_walkers(folder / "film.avi");
+  const PeopleInput input{.pictures = folder / "film.avi"};
+  for (const char* name : {"marey", "mog2", "knn"}) {
+    TrackPeopleOptions options;
+    options.background = parse_background(name);
+    EXPECT_GE(track_people(input, {.tracks = folder / "out.txt"}, options).people, 1) << name;
+  }
+}
+
+TEST(TrackPeople, WhatCannotWorkIsSaidBeforeAnythingIsWritten) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "det.txt", walking_detections(10));
+  test::write_file(folder / "bad.txt", "1,-1,10,10,nan,20,1\n");
+  test::write_file(folder / "none.txt", "\n");
+  const std::string out = folder / "out.txt";
+  EXPECT_THROW(track_people({}, {.tracks = out}), Error);
+  EXPECT_THROW(track_people({.pictures = "a", .detections = "b"}, {.tracks = out}), Error);
+  EXPECT_THROW(track_people({.detections = folder / "det.txt", .rate_hz = -1}, {.tracks = out}), Error);
+  EXPECT_THROW(track_people({.detections = folder / "det.txt"}, {.tracks = out, .overlay = folder / "x.mp4"}), Error);
+  EXPECT_THROW(track_people({.detections = folder / "bad.txt"}, {.tracks = out}), Error);
+  EXPECT_THROW(track_people({.detections = folder / "none.txt"}, {.tracks = out}), Error);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace marey
