@@ -6,6 +6,7 @@
 // throws marey::Error for what went wrong, and CLI::RuntimeError for another exit code.
 namespace marey::cli {
 
+void add_track(CLI::App& app);
 void add_evaluate(CLI::App& app);
 
 }  // namespace marey::cli

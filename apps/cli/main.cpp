@@ -9,6 +9,7 @@
 int main(int argc, char** argv) {
   CLI::App app{"Marey turns what cameras see into motion you can measure."};
   app.require_subcommand(1);
+  marey::cli::add_track(app);
   marey::cli::add_evaluate(app);
   try {
     app.parse(argc, argv);

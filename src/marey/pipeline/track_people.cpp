@@ -39,6 +39,7 @@ std::vector<Frame> sample(Source& source) {
 struct Eyes {
   std::unique_ptr<Source> source;
   std::unique_ptr<Detector> detector;
+  const PeopleDetector* people = nullptr;  // the same detector, where it is Marey's own
 };
 
 Eyes open_eyes(const PeopleInput& input, const TrackPeopleOptions& options) {
@@ -46,7 +47,9 @@ Eyes open_eyes(const PeopleInput& input, const TrackPeopleOptions& options) {
     DetectionsInput known = open_detections(input.detections, input.rate_hz);
     return {std::move(known.source), std::move(known.detector)};
   }
-  Eyes eyes{open_source(input.pictures, input.rate_hz), make_people_detector({.background = options.background})};
+  auto people = std::make_unique<PeopleDetector>(make_background(options.background), options.people);
+  Eyes eyes{open_source(input.pictures, input.rate_hz), nullptr, people.get()};
+  eyes.detector = std::move(people);
   if (!options.live) eyes.detector->prime(sample(*open_source(input.pictures, input.rate_hz)));
   eyes.source = read_ahead(std::move(eyes.source));
   return eyes;
@@ -154,7 +157,11 @@ class Run {
     summary_.warnings = eyes_.source->warnings();
     if (summary_.frames == 0) throw Error("{}: not one frame could be read", eyes_.source->info().name);
     begun.merge(believed);
-    summary_.disbelieved = static_cast<std::int64_t>(begun.size()) - static_cast<std::int64_t>(believed.size());
+    summary_.too_brief = static_cast<std::int64_t>(begun.size()) - static_cast<std::int64_t>(believed.size());
+    if (eyes_.people != nullptr) {
+      summary_.noise = eyes_.people->counts().noise;
+      summary_.misfits = eyes_.people->counts().misfits;
+    }
   }
 
   void tell(const Frame& frame, std::span<const Track<2>> tracks) {

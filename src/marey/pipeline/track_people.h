@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "marey/detect/background.h"
+#include "marey/detect/people.h"
 #include "marey/format/track_file.h"
 #include "marey/track/join.h"
 #include "marey/track/tracker.h"
@@ -28,6 +29,7 @@ struct PeopleOutput {
 
 struct TrackPeopleOptions {
   BackgroundOptions background;
+  PeopleOptions people;
   TrackerOptions tracker;
   JoinOptions join;
   /// Every frame's tracks are written as they come: nothing is read ahead and nothing improved by what came later.
@@ -49,11 +51,15 @@ struct RunHooks {
 
 struct TrackSummary {
   std::int64_t frames = 0;
-  double seconds = 0;                 ///< from the first frame to the last
-  std::int64_t people = 0;            ///< distinct numbers
-  std::int64_t rows = 0;              ///< people times the frames they are in
-  std::int64_t disbelieved = 0;       ///< seen too briefly to be taken for a person
-  std::int64_t detections = 0;        ///< handed to the tracker
+  double seconds = 0;           ///< from the first frame to the last
+  std::int64_t people = 0;      ///< distinct numbers
+  std::int64_t rows = 0;        ///< people times the frames they are in
+  std::int64_t detections = 0;  ///< handed to the tracker
+  // What was dropped, and why.
+  std::int64_t noise = 0;      ///< regions too small to be a part of a person
+  std::int64_t misfits = 0;    ///< regions that no body explains: cars, swaying trees, lights
+  std::int64_t too_brief = 0;  ///< targets not seen for long enough to be believed
+
   bool stopped = false;               ///< before the end, because a hook said so
   std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
 };

@@ -1,0 +1,201 @@
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/pipeline/track_people.h"
+
+#include "commands.h"
+#include "progress_bar.h"
+
+namespace marey::cli {
+namespace {
+
+struct TrackCommand {
+  PeopleInput input;
+  std::string out;
+  std::string format;
+  std::string overlay;
+  std::string background = std::string(AdaptiveOptions::name);
+  std::string filter;
+  std::string targets = "people";
+  bool live = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+// The exit code of a program that Ctrl-C ended, by the shell's convention.
+constexpr int kInterrupted = 130;
+
+std::atomic<bool> interrupted = false;
+
+/// The first Ctrl-C asks the run to end and write what it has; the second ends the program as ever.
+void interrupt(int) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+/// What the command line names and the format's own ending: video.mp4 becomes video.csv, here.
+std::string default_output(const PeopleInput& input, TrackFormat format) {
+  const std::filesystem::path given = input.detections.empty() ? input.pictures : input.detections;
+  std::string stem = (given.has_filename() ? given : given.parent_path()).stem().string();
+  std::erase_if(stem, [](char c) { return c == '*' || c == '?' || c == '%'; });
+  if (stem.empty() || stem == "." || stem == "..") stem = "video";
+  return stem + "_tracks" + std::string(ending_of(format));
+}
+
+PeopleOutput output_of(const TrackCommand& command) {
+  PeopleOutput output{.tracks = command.out, .overlay = command.overlay};
+  const auto by_ending = track_format_of(command.out);
+  if (!command.format.empty()) {
+    output.format = parse_track_format(command.format);
+  } else if (by_ending) {
+    output.format = *by_ending;
+  }
+  if (command.out == "-") output.tracks = "/dev/stdout";
+  if (command.out.empty()) output.tracks = default_output(command.input, output.format);
+  return output;
+}
+
+/// The filters' own parameters are in pixels, for things that move as people do who are this high.
+constexpr double kBodyHeight = 100;
+
+TrackPeopleOptions options_of(const TrackCommand& command) {
+  TrackPeopleOptions options;
+  options.background = parse_background(command.background);
+  if (!command.filter.empty() && filter_named(command.filter).index() != options.tracker.filter.index()) {
+    options.tracker.filter = scaled(filter_named(command.filter), 1 / kBodyHeight);
+  }
+  options.live = command.live;
+  return options;
+}
+
+void print_json(const TrackSummary& summary, const PeopleOutput& output, double elapsed) {
+  const nlohmann::json json = {
+      {"frames", summary.frames},
+      {"seconds", summary.seconds},
+      {"people", summary.people},
+      {"rows", summary.rows},
+      {"detections", summary.detections},
+      {"dropped", {{"noise", summary.noise}, {"misfits", summary.misfits}, {"too_brief", summary.too_brief}}},
+      {"elapsed", elapsed},
+      {"stopped", summary.stopped},
+      {"warnings", summary.warnings},
+      {"tracks", output.tracks},
+      {"overlay", output.overlay.empty() ? nlohmann::json() : nlohmann::json(output.overlay)}};
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+/// On standard error, so that tracks may go to standard output.
+void print_summary(const TrackSummary& summary, const PeopleOutput& output, double elapsed) {
+  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.people, summary.people == 1 ? "person" : "people",
+             summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
+  if (summary.too_brief > 0) fmt::print(stderr, "left out: {} seen too briefly to be believed\n", summary.too_brief);
+  if (summary.noise > 0) fmt::print(stderr, "left out: {} moving regions too small to be a part of a person\n", summary.noise);
+  if (summary.misfits > 0) fmt::print(stderr, "left out: {} moving regions that no body explains\n", summary.misfits);
+  fmt::print(stderr, "tracks: {}\n", output.tracks);
+  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
+}
+
+void run(const TrackCommand& command) {
+  const PeopleOutput output = output_of(command);
+  const TrackPeopleOptions options = options_of(command);
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  const auto begin = std::chrono::steady_clock::now();
+  TrackSummary summary;
+  {
+    ProgressBar bar(command.quiet);
+    RunHooks hooks;
+    hooks.stop = [] { return interrupted.load(); };
+    hooks.progress = [&](const TrackProgress& progress) {
+      bar.show(progress.step == TrackProgress::Step::tracking ? "tracking" : "drawing", progress.done, progress.total);
+    };
+    summary = track_people(command.input, output, options, hooks);
+  }
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
+  if (command.json) {
+    print_json(summary, output, elapsed);
+  } else if (!command.quiet) {
+    print_summary(summary, output, elapsed);
+  }
+  if (summary.stopped) {
+    fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
+    throw CLI::RuntimeError(kInterrupted);
+  }
+}
+
+/// A value that `parse` must take, or the command line is wrong: its message, which lists what is valid, is shown.
+template <typename Parse>
+CLI::Validator known(Parse parse) {
+  return CLI::Validator(
+      [parse](std::string& text) -> std::string {
+        try {
+          parse(text);
+          return "";
+        } catch (const Error& error) {
+          return error.what();
+        }
+      },
+      "");
+}
+
+std::string filter_names() {
+  std::string names;
+  for (const NamedFilter& filter : named_filters()) names.append(names.empty() ? "" : ", ").append(filter.name);
+  return names;
+}
+
+}  // namespace
+
+void add_track(CLI::App& app) {
+  auto options = std::make_shared<TrackCommand>();
+  CLI::App* command = app.add_subcommand("track", "Follow people in a recording of one fixed camera");
+  auto* input = command->add_option("INPUT", options->input.pictures,
+                                    "a video file, a folder of pictures, or a pattern such as 'shot_%04d.png' or '*.jpg'");
+  command
+      ->add_option("--detections", options->input.detections,
+                   "in place of INPUT, what another program detected: MOT text, frame,-1,left,top,width,height,score")
+      ->excludes(input);
+  command->add_option("-o,--output", options->out,
+                      "where the tracks go; - for standard output (default: beside you, named after INPUT)");
+  command->add_option("--format", options->format, "one of " + track_format_names() + " (default: by OUT's ending, else mot)")
+      ->check(known([](const std::string& text) { parse_track_format(text); }));
+  command->add_option("--overlay", options->overlay, "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4");
+  command->add_option("--rate", options->input.rate_hz, "frames a second, where the file does not tell or is wrong")
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            double rate = 0;
+            const bool valid = CLI::detail::lexical_cast(text, rate) && rate > 0 && rate <= 1e6;
+            return valid ? "" : "\"" + text + "\" is no rate; it must be a positive number of frames a second";
+          },
+          "HZ"));
+  command->add_option("--background", options->background, "the model of the empty scene, one of " + background_names())
+      ->check(known([](const std::string& text) { parse_background(text); }));
+  command->add_option("--filter", options->filter, "what predicts each person's motion, one of " + filter_names())
+      ->check(known([](const std::string& text) { filter_named(text); }));
+  command->add_option("--targets", options->targets, "what is followed: people")->check(known([](const std::string& text) {
+    if (text != "people") throw Error("\"{}\" cannot be followed; these can: people", text);
+  }));
+  command->add_flag("--live", options->live, "write each frame's tracks as they come; nothing is improved by what came later");
+  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary; warnings stay");
+  command->add_flag("--json", options->json, "print the summary as JSON on standard output");
+  command->callback([options] {
+    if (options->input.pictures.empty() && options->input.detections.empty()) {
+      throw CLI::ValidationError("track", "give INPUT or --detections: what is to be tracked?");
+    }
+    run(*options);
+  });
+}
+
+}  // namespace marey::cli
