@@ -20,10 +20,10 @@ namespace marey {
 namespace {
 
 constexpr std::size_t kMostRuns = 1 << 18;
-constexpr int kMostSplits = 200;       // a frame
-constexpr double kShapeMisfit = 0.06;  // of the contrast: what a lone round marker leaves at most
-constexpr double kOfRoundness = 0.6;   // a blob this much less round is not even split: it bounds a window by its blob's area
-constexpr int kCell = 64;              // px; blobs are filed by cells to find their neighbours
+constexpr int kMostSplitPixels = 40000;  // a frame: about 200 pairs
+constexpr double kShapeMisfit = 0.06;    // of the contrast: what a lone round marker leaves at most
+constexpr double kOfRoundness = 0.6;     // a blob this much less round is not even split: it bounds a window by its blob's area
+constexpr int kCell = 64;                // px; blobs are filed by cells to find their neighbours
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
