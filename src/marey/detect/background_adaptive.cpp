@@ -47,6 +47,8 @@ constexpr int kRowsATurn = 16;
 constexpr int kFringe = 3;         // px round a region that are not learned: its blurred rim
 constexpr int kSecondWidth = 10;   // levels: how near a pixel must be to its second mean
 constexpr int kEstablished = 200;  // ticks after which a second mean is the scene's
+constexpr int kAway = 1;           // the bit of a second mean that says that the scene was seen since
+constexpr int kReturn = 15;        // ticks that a return to the second mean is worth: what sways, returns often
 constexpr double kGhost_s = 1;
 constexpr double kStartAnew_s = 2;
 constexpr double kTooMuch = 0.6;  // of the picture
@@ -285,9 +287,11 @@ class AdaptiveBackground final : public Background {
     if (options_.suppress_shadows) shadows_.judge(runs_, planes, {luma_, cb_, cr_, black_});
     for (const PixelRun& run : runs_) {
       const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
+      const std::int16_t* means = luma_.mean(run.row);
       auto* mask = mask_.ptr<std::uint8_t>(run.row);
       for (int x = run.begin; x < run.end; ++x) {
-        const bool shadow = options_.suppress_shadows && shadows_.is_shadow(run.row, x);
+        const int scene = ((means[x] + 64) >> 7) - black_;
+        const bool shadow = options_.suppress_shadows && shadows_.is_shadow(run.row, x, pixels[x] - black_, scene);
         mask[x] = shadow || is_known(run.row, x, pixels[x]) ? 0 : 255;
       }
     }
@@ -351,6 +355,7 @@ class AdaptiveBackground final : public Background {
 
   /// Counts, for the foreground pixels of a row, how long they have looked the same; what has for long enough becomes scene.
   void count_still(const FramePlanes& planes, std::span<const Box> held, int y, int ticks) {
+    forget(y, ticks);
     if (row_begin_[y] == row_begin_[y + 1]) return;
     std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
     mark_held(held, y, y, held_row_);
@@ -367,7 +372,7 @@ class AdaptiveBackground final : public Background {
         if (held_row_[x] != 0 && !ghost) continue;
         const int distance = pixels[x] - second[x];
         if (seen[x] == 0 || (std::abs(distance) > kSecondWidth && seen[x] <= 2 * ticks)) {
-          second[x] = pixels[x];
+          second[x] = static_cast<std::uint8_t>(pixels[x] & ~kAway);
           seen[x] = 1;
           continue;
         }
@@ -375,8 +380,9 @@ class AdaptiveBackground final : public Background {
           seen[x] = static_cast<std::uint8_t>(seen[x] - 2 * ticks);
           continue;
         }
-        second[x] = static_cast<std::uint8_t>(second[x] + (distance > 0 ? 1 : distance < 0 ? -1 : 0));
-        seen[x] = static_cast<std::uint8_t>(std::min(254, seen[x] + ticks));
+        const int gained = (second[x] & kAway) != 0 ? std::max(ticks, kReturn) : ticks;
+        second[x] = static_cast<std::uint8_t>((second[x] + (distance > 1 ? 2 : distance < -1 ? -2 : 0)) & ~kAway);
+        seen[x] = static_cast<std::uint8_t>(std::min(254, seen[x] + gained));
         if (ghost && seen[x] >= ghost_enough) {
           take_for_scene(planes, y, x);
           seen[x] = 0;
@@ -385,6 +391,24 @@ class AdaptiveBackground final : public Background {
         }
       }
     }
+  }
+
+  /// Where a row shows the scene, what was seen in front of it fades, and is noted (in the level's last bit) to be away.
+  void forget(int y, int ticks) {
+    auto* second = second_.ptr<std::uint8_t>(y);
+    auto* seen = seen_.ptr<std::uint8_t>(y);
+    int x = 0;
+    const auto fade_to = [&](int end) {
+      for (; x < end; ++x) {
+        second[x] = static_cast<std::uint8_t>(second[x] | kAway);
+        seen[x] = static_cast<std::uint8_t>(seen[x] > ticks ? seen[x] - ticks : 0);
+      }
+    };
+    for (std::size_t i = row_begin_[y]; i < row_begin_[y + 1]; ++i) {
+      fade_to(runs_[i].begin);
+      x = runs_[i].end;
+    }
+    fade_to(size_.width);
   }
 
   /// Changes the pixel's two means; its chroma is taken from the frame.

@@ -13,16 +13,17 @@
 namespace marey {
 namespace {
 
-constexpr double kDeepest = 0.35;         // of the light left; less is a dark thing
-constexpr double kShallowest = 0.97;      // nearer to 1 there is nothing to explain
-constexpr double kUsuallyAtLeast = 0.72;  // shadows this shallow are believed before any was seen on textured ground
-constexpr double kEvidence = 12;          // sure cells that make a depth usual
-constexpr double kForget = 0.998;         // a frame
-constexpr double kTexture = 25;           // squared levels: the scene's variance within a textured cell
-constexpr double kNoise = 10;             // squared levels left unexplained in a smooth cell
-constexpr double kCorrelation = 0.8;      // squared: how much of a textured cell's frame the scene explains
-constexpr int kFewest = 8;                // pixels of a cell to judge it by
-constexpr double kColour = 6;             // levels of chroma
+constexpr double kDeepest = 0.35;        // of the light left; less is a dark thing
+constexpr double kShallowest = 0.97;     // nearer to 1 there is nothing to explain
+constexpr double kUsuallyAtLeast = 0.6;  // shadows this shallow are believed before any was seen on textured ground
+constexpr double kEvidence = 12;         // sure cells that make a depth usual
+constexpr double kForget = 0.998;        // a frame
+constexpr double kTexture = 25;          // squared levels: the scene's variance within a textured cell
+constexpr double kNoise = 10;            // squared levels left unexplained in a smooth cell
+constexpr double kCorrelation = 0.8;     // squared: how much of a textured cell's frame the scene explains
+constexpr int kFewest = 8;               // pixels of a cell to judge it by
+constexpr int kEdge = 100;               // 1/1024 of the light: how much deeper than its neighbour a shadow's pixel may be
+constexpr double kColour = 6;            // levels of chroma
 
 }  // namespace
 
@@ -32,6 +33,7 @@ void ShadowFinder::begin(cv::Size size) {
   const std::size_t rows = static_cast<std::size_t>((size.height + kCell - 1) / kCell) + 2;
   cells_.assign(stride_ * rows, {});
   labels_.assign(stride_ * rows, Label::none);
+  lightest_.assign(stride_ * rows, kNever);
   touched_.clear();
   evidence_.fill(0);
 }
@@ -83,11 +85,13 @@ bool ShadowFinder::is_usual(double ratio) const {
 }
 
 ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes& frame, const SceneView& scene) {
-  const Cell& cell = cells_[index];
-  if (cell.count < kFewest || cell.darker * 10 < cell.count * 9 || cell.scene2 == 0) return Label::thing;
+  Cell& cell = cells_[index];
+  if (cell.darker * 10 < cell.count * 9 || cell.scene2 == 0) return Label::thing;
+  if (cell.count < kFewest) return Label::unsure;
   const double n = cell.count;
   const double ratio = static_cast<double>(cell.both) / cell.scene2;
   if (ratio < kDeepest || ratio > kShallowest || !same_colour(index, ratio, frame, scene)) return Label::thing;
+  cell.ratio = static_cast<int>(ratio * 1024);
   const double left_over = (cell.frame2 - ratio * cell.both) / n;
   const double texture = (cell.scene2 - static_cast<double>(cell.scene) * cell.scene / n) / n;
   const double seen_texture = (cell.frame2 - static_cast<double>(cell.frame) * cell.frame / n) / n;
@@ -98,7 +102,30 @@ ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes&
     evidence_[std::min(static_cast<int>(ratio * kBins), kBins - 1)] += 1;
     return Label::shadow;
   }
-  return left_over < kNoise + texture * ratio * ratio && is_usual(ratio) ? Label::shadow : Label::thing;
+  const double slope = 0.06 * cell.frame / n;
+  return left_over < kNoise + slope * slope + texture * ratio * ratio && is_usual(ratio) ? Label::shadow : Label::thing;
+}
+
+/// A cell at a region's rim has too few pixels to be judged and goes with the most of its eight neighbours; so does one thing
+/// all among shadows.
+void ShadowFinder::settle_by_neighbours() {
+  changed_.clear();
+  for (const std::size_t index : touched_) {
+    if (labels_[index] == Label::shadow) continue;
+    int shadows = 0, things = 0;
+    for (const std::size_t row : {index - stride_, index, index + stride_}) {
+      for (const std::size_t at : {row - 1, row, row + 1}) {
+        shadows += labels_[at] == Label::shadow ? 1 : 0;
+        things += labels_[at] == Label::thing ? 1 : 0;
+      }
+    }
+    const bool outvoted = labels_[index] == Label::unsure ? shadows > 0 && shadows >= things : shadows >= 6;
+    if (outvoted) changed_.push_back(index);
+  }
+  for (const std::size_t index : changed_) labels_[index] = Label::shadow;
+  for (const std::size_t index : touched_) {
+    if (labels_[index] == Label::unsure) labels_[index] = Label::thing;
+  }
 }
 
 bool ShadowFinder::is_within_body(std::size_t index) const {
@@ -119,11 +146,29 @@ void ShadowFinder::judge(std::span<const PixelRun> runs, const FramePlanes& fram
   for (double& evidence : evidence_) evidence *= kForget;
   gather(runs, frame, scene);
   for (const std::size_t index : touched_) labels_[index] = label_of(index, frame, scene);
-  restored_.clear();
+  settle_by_neighbours();
+  changed_.clear();
   for (const std::size_t index : touched_) {
-    if (labels_[index] == Label::shadow && is_within_body(index)) restored_.push_back(index);
+    if (labels_[index] == Label::shadow && is_within_body(index)) changed_.push_back(index);
   }
-  for (const std::size_t index : restored_) labels_[index] = Label::thing;
+  for (const std::size_t index : changed_) labels_[index] = Label::thing;
+  set_limits();
+}
+
+/// All of a cell in shadow is shadow. Of a thing's cell that has shadow beside it, so are the pixels that are no darker than the
+/// shadow: the edge between the two runs through the cell.
+void ShadowFinder::set_limits() {
+  for (const std::size_t index : touched_) {
+    if (labels_[index] == Label::shadow) {
+      lightest_[index] = 0;
+      continue;
+    }
+    int limit = kNever;
+    for (const std::size_t at : {index - 1, index + 1, index - stride_, index + stride_}) {
+      if (labels_[at] == Label::shadow && cells_[at].ratio > 0) limit = std::min(limit, cells_[at].ratio - kEdge);
+    }
+    lightest_[index] = limit;
+  }
 }
 
 }  // namespace marey

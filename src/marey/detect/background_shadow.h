@@ -34,17 +34,22 @@ class ShadowFinder {
   /// Judges the pixels of `runs`, which are in order.
   void judge(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene);
 
-  /// Whether a pixel of the runs judged last lies in shadow.
-  bool is_shadow(int row, int column) const { return labels_[cell_at(row, column)] == Label::shadow; }
+  /// Whether a pixel of the runs judged last lies in shadow, given its levels in frame and scene, over black.
+  bool is_shadow(int row, int column, int frame, int scene) const {
+    return 1024 * frame >= scene * lightest_[cell_at(row, column)] && frame < scene;
+  }
 
   static constexpr int kCell = 4;
 
  private:
-  enum class Label : std::uint8_t { none, thing, shadow };
+  enum class Label : std::uint8_t { none, unsure, thing, shadow };
   struct Cell {
     int count = 0, darker = 0;
+    int ratio = 0;  ///< the light left, in 1/1024, where the cell is shadow by its own looks
     int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;  ///< sums over pixels, of levels over black
   };
+
+  static constexpr int kNever = 1 << 20;
 
   std::size_t cell_at(int row, int column) const {
     return static_cast<std::size_t>(row / kCell + 1) * stride_ + static_cast<std::size_t>(column / kCell + 1);
@@ -52,6 +57,8 @@ class ShadowFinder {
   void gather(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene);
   Label label_of(std::size_t index, const FramePlanes& frame, const SceneView& scene);
   bool same_colour(std::size_t index, double ratio, const FramePlanes& frame, const SceneView& scene) const;
+  void settle_by_neighbours();
+  void set_limits();
   bool is_within_body(std::size_t index) const;
   bool is_usual(double ratio) const;
 
@@ -59,7 +66,9 @@ class ShadowFinder {
   std::size_t stride_ = 0;
   std::vector<Cell> cells_;  ///< with an empty border
   std::vector<Label> labels_;
-  std::vector<std::size_t> touched_, restored_;
+  std::vector<int> lightest_;  ///< of each cell: its pixels with at least this part of the scene's light, in 1/1024, are shadow
+  std::vector<std::size_t> touched_;
+  std::vector<std::size_t> changed_;  ///< room for one pass
   static constexpr int kBins = 20;
   std::array<double, kBins> evidence_{};  ///< how often textured ground was seen through a shadow of this depth, lately
 };
