@@ -6,7 +6,6 @@
 namespace marey {
 namespace {
 
-using kinematics::Model;
 using kinematics::State;
 
 /// Moves position and velocity straight on; the acceleration is one drawn anew, of this standard deviation.
