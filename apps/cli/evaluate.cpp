@@ -94,10 +94,10 @@ std::string verdict(const Evaluation& result) {
   const char* grade = hota >= 0.75 ? "Excellent" : hota >= 0.6 ? "Good" : hota >= 0.45 ? "Fair" : hota >= 0.3 ? "Poor" : "Bad";
   if (result.track_boxes == 0) return "Bad: there are no tracks, so everything was missed.";
   return fmt::format(
-      "{}: {} of what there was to see was found, {} of what was reported is false, and {} of {} bear the right name; "
+      "{}: {} of what there was to see was found, {} of what was reported is false, and {} of all boxes bear the right name; "
       "names changed {} times on {} objects.",
       grade, percent(result.clear.recall), percent(1 - result.clear.precision.value_or(0)), percent(result.identity.f1),
-      "all boxes", result.clear.switches, result.objects);
+      result.clear.switches, result.objects);
 }
 
 void print_row(const char* name, const std::string& value, const char* meaning) {
