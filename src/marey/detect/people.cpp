@@ -15,7 +15,9 @@ constexpr double kGapAcross = 0.15;                            // of a person's 
 constexpr double kGapDown = 0.3;                               // of a person's height
 constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
 constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
+constexpr double kPlainlyOne = 1.25;  // width up to which nobody asks whether there are two
 constexpr double kLeastFilled = 0.3;                           // of its box
+constexpr double kLeastColumn = 0.1;                   // of the height, filled: less is a shadow or a hand
 constexpr double kOverlapExpected = 0.3;                       // of the smaller of the two boxes
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
@@ -30,6 +32,23 @@ bool at_border(const Box& box, cv::Size image) {
 
 Box clipped(const Box& box, cv::Size image) {
   return intersection(box, {0, 0, static_cast<double>(image.width), static_cast<double>(image.height)});
+}
+
+/// The box of a region without what sticks out at its sides, a shadow at the feet or a hand: columns at either side that are
+/// filled over less than `least` of the height.
+Box trimmed(std::span<const PixelRun> runs, const Box& box, double least) {
+  const int left = static_cast<int>(box.left), columns = static_cast<int>(box.width);
+  std::vector<int> filled(columns + 1, 0);
+  for (const PixelRun& run : runs) {
+    ++filled[run.begin - left];
+    --filled[run.end - left];
+  }
+  std::partial_sum(filled.begin(), filled.end(), filled.begin());
+  const double enough = least * box.height;
+  int first = 0, last = columns - 1;
+  while (first < last && filled[first] < enough) ++first;
+  while (last > first && filled[last] < enough) --last;
+  return {box.left + first, box.top, static_cast<double>(last + 1 - first), box.height};
 }
 
 /// The part of `runs` within `box`.
@@ -87,7 +106,7 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   const cv::Size image = frame.picture.size();
   const auto clusters = clusters_of(find_regions(result.foreground.mask, {.min_area = options_.min_area}), expected);
   for (const Cluster& cluster : clusters) {
-    if (cluster.expected.size() <= 1 && is_alone(cluster, image)) {
+    if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
       result.detections.push_back(whole(cluster, image));
     } else {
       explain(cluster, expected, image, result.detections);
@@ -134,7 +153,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
     int& index = cluster_of[root(static_cast<int>(i))];
     if (index < 0) {
       index = static_cast<int>(clusters.size());
-      clusters.push_back({{}, regions[i].box, 0, 0, {}});
+      clusters.push_back({{}, regions[i].box, {}, 0, 0, {}});
     }
     Cluster& cluster = clusters[index];
     cluster.box = hull(cluster.box, regions[i].box);
@@ -147,6 +166,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
       std::sort(cluster.runs.begin(), cluster.runs.end(),
                 [](const PixelRun& a, const PixelRun& b) { return a.row != b.row ? a.row < b.row : a.begin < b.begin; });
     }
+    cluster.body = trimmed(cluster.runs, cluster.box, kLeastColumn);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const double shared = intersection(expected[i].box, cluster.box).area();
       if (shared > kOverlapExpected * std::min(expected[i].box.area(), cluster.box.area())) {
@@ -161,29 +181,32 @@ void PeopleDetector::learn(const std::vector<Cluster>& clusters, cv::Size image)
   for (const Cluster& cluster : clusters) {
     if (cluster.expected.size() > 1 || at_border(cluster.box, image)) continue;
     if (cluster.area < kLeastFilled * cluster.box.area()) continue;
-    sizes_.see(cluster.box, image);
+    sizes_.see(cluster.body, image);
   }
 }
 
-bool PeopleDetector::is_alone(const Cluster& cluster, cv::Size image) const {
-  const Box& box = cluster.box;
+bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double widest) const {
+  const Box& box = cluster.body;
   const auto foot = box.foot();
   const auto size = sizes_.at(foot.x(), foot.y());
   if (!size) {
     const double tall = box.height / box.width;
     return box.area() >= kUnknownSmallest && tall > kUnknownFlattest && tall < kUnknownTallest;
   }
-  return !at_border(box, image) && box.height > kLowest * size->height && box.height < kHighest * size->height &&
-         box.width > kNarrowest * size->width && box.width < kWidest * size->width && cluster.area > kLeastFilled * box.area();
+  return !at_border(cluster.box, image) && box.height > kLowest * size->height && box.height < kHighest * size->height &&
+         box.width > kNarrowest * size->width && box.width < widest * size->width && cluster.area > kLeastFilled * box.area();
 }
 
 Detection PeopleDetector::whole(const Cluster& cluster, cv::Size image) const {
-  const auto foot = cluster.box.foot();
+  const auto foot = cluster.body.foot();
   const auto size = sizes_.at(foot.x(), foot.y());
-  const double filled = std::min(1.0, cluster.area / (0.6 * cluster.box.area()));
-  if (!size) return detection_of(cluster.box, cluster.runs, 0.5 * filled, image);
-  const double off = (cluster.box.height / size->height - 1) / 0.3;
-  return detection_of(cluster.box, cluster.runs, filled * (1 - 0.3 * off * off), image);
+  const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
+  if (!size) return detection_of(cluster.body, cluster.runs, 0.5 * filled, image);
+  const double off = (cluster.body.height / size->height - 1) / 0.3;
+  Box box = cluster.body;
+  box.width = (box.width + size->width) / 2;
+  box.left += (cluster.body.width - box.width) / 2;
+  return detection_of(box, cluster.runs, filled * (1 - 0.3 * off * off), image);
 }
 
 void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image,
@@ -192,6 +215,10 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   for (const int who : cluster.expected) known.push_back(expected[who].box);
   const SizeAt size_at = [&](double x, double y) { return sizes_.at(x, y); };
   const std::vector<Placed> placed = fit_people(cluster.runs, image, known, size_at, options_.fit);
+  if (placed.size() == 1 && looks_whole(cluster, image, kWidest)) {
+    found.push_back(whole(cluster, image));
+    return;
+  }
   if (placed.empty()) ++counts_.misfits;
   if (placed.size() == 1) ++counts_.completed;
   if (placed.size() > 1) {

@@ -42,6 +42,7 @@ class PeopleDetector final : public Detector {
   struct Cluster {
     std::vector<PixelRun> runs;
     Box box;
+    Box body;  ///< the box without what sticks out at the sides
     double area = 0;
     int regions = 0;
     std::vector<int> expected;  ///< whose box lies on it
@@ -50,7 +51,7 @@ class PeopleDetector final : public Detector {
   double least_area(const Region& region) const;
   std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
   void learn(const std::vector<Cluster>& clusters, cv::Size image);
-  bool is_alone(const Cluster& cluster, cv::Size image) const;
+  bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
   Detection whole(const Cluster& cluster, cv::Size image) const;
   void explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image, std::vector<Detection>& found);
 
