@@ -6,18 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace marey {
 namespace {
 
 constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
-constexpr double kGapDown = 0.3;                               // of a person's height
+constexpr double kGapDown = 0.5;                               // of a person's height
 constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
 constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
-constexpr double kPlainlyOne = 1.25;  // width up to which nobody asks whether there are two
+constexpr double kPlainlyOne = 1.25;                           // width up to which nobody asks whether there are two
 constexpr double kLeastFilled = 0.3;                           // of its box
-constexpr double kLeastColumn = 0.1;                   // of the height, filled: less is a shadow or a hand
+constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
 constexpr double kOverlapExpected = 0.3;                       // of the smaller of the two boxes
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
@@ -35,7 +36,7 @@ Box clipped(const Box& box, cv::Size image) {
 }
 
 /// The box of a region without what sticks out at its sides, a shadow at the feet or a hand: columns at either side that are
-/// filled over less than `least` of the height.
+/// filled over less than `least` of the height, and rows that then hold nothing.
 Box trimmed(std::span<const PixelRun> runs, const Box& box, double least) {
   const int left = static_cast<int>(box.left), columns = static_cast<int>(box.width);
   std::vector<int> filled(columns + 1, 0);
@@ -48,7 +49,12 @@ Box trimmed(std::span<const PixelRun> runs, const Box& box, double least) {
   int first = 0, last = columns - 1;
   while (first < last && filled[first] < enough) ++first;
   while (last > first && filled[last] < enough) --last;
-  return {box.left + first, box.top, static_cast<double>(last + 1 - first), box.height};
+  const auto within = [&](const PixelRun& run) { return run.begin <= left + last && run.end > left + first; };
+  const auto top = std::find_if(runs.begin(), runs.end(), within);
+  const auto bottom = std::find_if(runs.rbegin(), runs.rend(), within);
+  if (top == runs.end()) return box;
+  return {box.left + first, static_cast<double>(top->row), static_cast<double>(last + 1 - first),
+          static_cast<double>(bottom->row + 1 - top->row)};
 }
 
 /// The part of `runs` within `box`.
@@ -120,7 +126,8 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
 double PeopleDetector::least_area(const Region& region) const {
   const auto foot = region.box.foot();
   const auto size = sizes_.at(foot.x(), foot.y());
-  return size ? options_.min_share * size->height * size->width : options_.min_area;
+  if (!size) return sizes_.known() ? std::numeric_limits<double>::infinity() : options_.min_area;
+  return options_.min_share * size->height * size->width;
 }
 
 std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions, std::span<const Expected> expected) {
@@ -190,6 +197,7 @@ bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double 
   const auto foot = box.foot();
   const auto size = sizes_.at(foot.x(), foot.y());
   if (!size) {
+    if (sizes_.known()) return false;
     const double tall = box.height / box.width;
     return box.area() >= kUnknownSmallest && tall > kUnknownFlattest && tall < kUnknownTallest;
   }

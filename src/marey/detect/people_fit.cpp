@@ -32,8 +32,8 @@ constexpr double kReachAcross = 0.45;   // of the width: how far from there it i
 constexpr double kReachUp = 0.12;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
 constexpr double kLeastInside = 0.3;   // of the body, within the picture
-constexpr double kHeightSlack = 0.15;  // how far a known person's height may be from the one learned
-constexpr double kWidthSlack = 0.15;
+constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
+constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
 
 class Grid {

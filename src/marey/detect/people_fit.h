@@ -20,7 +20,7 @@ struct Placed {
 };
 
 struct FitOptions {
-  double min_cover_known = 0.2;  ///< someone known to be here is believed from this cover on
+  double min_cover_known = 0.1;  ///< someone known to be here is believed from this cover on
   double min_cover_new = 0.42;   ///< someone new
   double blank_penalty = 0.6;    ///< what an empty pixel within the body costs, where a filled one is worth 1
   int cells_tall = 32;           ///< resolution: a person is this many cells tall

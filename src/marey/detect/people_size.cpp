@@ -27,6 +27,7 @@ constexpr double kFlattest = 1.2, kTallest = 5;  // height over width of what ma
 constexpr double kAgreement = 0.2;               // of the height
 constexpr double kTukey = 0.3;                   // of the height; a region further off has no say
 constexpr double kNeeded = 6;                    // weight of agreeing regions without which nothing is claimed
+constexpr double kHorizon = 0.6;                 // of the smallest height seen: nobody is smaller
 constexpr int kTrials = 400;
 
 /// Small, fast, the same everywhere; quality does not matter here.
@@ -176,7 +177,8 @@ void PersonSizeModel::fit() {
 
 std::optional<PersonSize> PersonSizeModel::at(double x, double y) const {
   if (!coefficients_) return std::nullopt;
-  const double height = std::clamp(coefficients_->dot(features_of(x, y)), smallest_ / 2, largest_ * 2);
+  const double height = std::min(coefficients_->dot(features_of(x, y)), largest_ * 2);
+  if (height < smallest_ * kHorizon) return std::nullopt;
   return PersonSize{height, aspect_ * height};
 }
 

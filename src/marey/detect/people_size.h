@@ -32,8 +32,11 @@ class PersonSizeModel {
   /// Whether `see` took in enough since the last `fit` that another is worth its cost.
   bool wants_fit() const { return fresh_ >= 24 && fresh_ * 4 >= fitted_from_; }
 
-  /// The size of a person whose feet are at (x, y), px; nothing while too little was seen. Beyond the places where people were
-  /// seen the size stays within a factor of two of the extremes seen.
+  /// Whether enough was seen to say anything.
+  bool known() const { return coefficients_.has_value(); }
+
+  /// The size of a person whose feet are at (x, y), px; at most twice the largest seen. Nothing while too little was seen, and
+  /// nothing where people would be so much smaller than any that were seen that none can stand there: towards the horizon.
   std::optional<PersonSize> at(double x, double y) const;
 
   /// Relative standard deviation of a person's height round the model's; meaningful where `at` gives a value.
