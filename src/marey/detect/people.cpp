@@ -12,14 +12,15 @@
 namespace marey {
 namespace {
 
-constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
-constexpr double kGapDown = 0.5;                               // of a person's height
-constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
-constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
-constexpr double kPlainlyOne = 1.25;                           // width up to which nobody asks whether there are two
-constexpr double kLeastFilled = 0.3;                           // of its box
-constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
-constexpr double kOverlapExpected = 0.3;                       // of the smaller of the two boxes
+constexpr double kGapAcross = 0.15;                 // of a person's width: pieces of one person are no further apart
+constexpr double kGapDown = 0.5;                    // of a person's height
+constexpr double kLowest = 0.78, kHighest = 1.28;   // height of one whole person, of the one learned
+constexpr double kNarrowest = 0.55, kWidest = 1.7;  // width, the same
+constexpr double kPlainlyOne = 1.25;                // width up to which nobody asks whether there are two
+constexpr double kLeastFilled = 0.3;                // of its box
+constexpr double kLeastColumn = 0.15;               // of the height, filled: less is a shadow or a hand
+constexpr double kBelieved = 0.4;                   // share of a body seen, from which on the rest of it tells what hides people
+constexpr double kOverlapExpected = 0.3;            // of the smaller of the two boxes
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
 
@@ -114,8 +115,9 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   for (const Cluster& cluster : clusters) {
     if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
       result.detections.push_back(whole(cluster, image));
+      if (sizes_.known()) hidden_.note(cluster.body, result.foreground.mask);
     } else {
-      explain(cluster, expected, image, result.detections);
+      explain(cluster, expected, result.foreground.mask, result.detections);
     }
   }
   learn(clusters, image);
@@ -217,12 +219,17 @@ Detection PeopleDetector::whole(const Cluster& cluster, cv::Size image) const {
   return detection_of(box, cluster.runs, filled * (1 - 0.3 * off * off), image);
 }
 
-void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image,
+void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, const cv::Mat& mask,
                              std::vector<Detection>& found) {
+  const cv::Size image = mask.size();
   std::vector<Box> known;
   for (const int who : cluster.expected) known.push_back(expected[who].box);
-  const SizeAt size_at = [&](double x, double y) { return sizes_.at(x, y); };
-  const std::vector<Placed> placed = fit_people(cluster.runs, image, known, size_at, options_.fit);
+  const FitScene scene{image, [&](double x, double y) { return sizes_.at(x, y); },
+                       [&](double x, double y) { return hidden_.at(x, y); }};
+  const std::vector<Placed> placed = fit_people(cluster.runs, known, scene, options_.fit);
+  for (const Placed& one : placed) {
+    if (one.seen > kBelieved) hidden_.note(one.box, mask);
+  }
   if (placed.size() == 1 && looks_whole(cluster, image, kWidest)) {
     found.push_back(whole(cluster, image));
     return;

@@ -7,6 +7,7 @@
 #include "marey/detect/background.h"
 #include "marey/detect/detector.h"
 #include "marey/detect/people_fit.h"
+#include "marey/detect/people_hidden.h"
 #include "marey/detect/people_size.h"
 
 namespace marey {
@@ -53,11 +54,12 @@ class PeopleDetector final : public Detector {
   void learn(const std::vector<Cluster>& clusters, cv::Size image);
   bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
   Detection whole(const Cluster& cluster, cv::Size image) const;
-  void explain(const Cluster& cluster, std::span<const Expected> expected, cv::Size image, std::vector<Detection>& found);
+  void explain(const Cluster& cluster, std::span<const Expected> expected, const cv::Mat& mask, std::vector<Detection>& found);
 
   std::unique_ptr<Background> background_;
   PeopleOptions options_;
   PersonSizeModel sizes_;
+  HiddenPlaces hidden_;
   Counts counts_;
   int groups_ = 0;  ///< numbers given to shared regions in this frame
 };

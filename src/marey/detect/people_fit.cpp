@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace marey {
@@ -31,29 +32,30 @@ constexpr double kDistanceCost = 0.4;   // of a known person found one width, or
 constexpr double kReachAcross = 0.45;   // of the width: how far from there it is looked for
 constexpr double kReachUp = 0.12;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
-constexpr double kLeastInside = 0.3;   // of the body, within the picture
+constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something
+constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone new be, to come before someone known
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
 
 class Grid {
  public:
-  Grid(const Box& place, cv::Size image, double cell) : cell_(cell), left_(place.left), top_(place.top) {
+  Grid(const Box& place, const FitScene& scene, double cell) : cell_(cell), left_(place.left), top_(place.top) {
     columns_ = std::max(1, static_cast<int>(std::ceil(place.width / cell)));
     rows_ = std::max(1, static_cast<int>(std::ceil(place.height / cell)));
     filled_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
     valid_ = filled_;
     for (int row = 0; row < rows_; ++row) {
-      const int tall = overlap(top_ + row * cell_, image.height);
+      const int tall = overlap(top_ + row * cell_, scene.image.height);
       for (int column = 0; column < columns_; ++column) {
-        valid_[index(row, column)] = tall * overlap(left_ + column * cell_, image.width);
+        valid_[index(row, column)] = tall * overlap(left_ + column * cell_, scene.image.width);
       }
     }
     filled_sum_.resize(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1), 0);
     valid_sum_ = filled_sum_;
   }
 
-  void fill(std::span<const PixelRun> runs) {
+  void fill(std::span<const PixelRun> runs, const FitScene& scene) {
     for (const PixelRun& run : runs) {
       const int row = static_cast<int>((run.row - top_) / cell_);
       for (int x = run.begin; x < run.end;) {
@@ -63,9 +65,11 @@ class Grid {
         x = end;
       }
     }
+    if (scene.hidden) leave_out_hidden(scene);
     first_filled_ = filled_;
     first_valid_ = valid_;
     sum();
+    first_valid_sum_ = valid_sum_;
   }
 
   void reset() {
@@ -90,11 +94,12 @@ class Grid {
   }
 
   struct Count {
-    int filled = 0, valid = 0;
+    int filled = 0, valid = 0;  ///< px² not explained
+    int visible = 0;            ///< px² valid before anyone was placed
   };
   Count count(const Box& box, const Part& part) const {
     const Cells cells = cells_of(box, part);
-    return {over(filled_sum_, cells), over(valid_sum_, cells)};
+    return {over(filled_sum_, cells), over(valid_sum_, cells), over(first_valid_sum_, cells)};
   }
 
   int filled_in_all() const { return filled_sum_.back(); }
@@ -114,6 +119,15 @@ class Grid {
   /// How many whole pixels of a cell that begins at `from` lie within a picture `size` long.
   int overlap(double from, int size) const {
     return static_cast<int>(std::max(0.0, std::min(from + cell_, static_cast<double>(size)) - std::max(from, 0.0)));
+  }
+
+  void leave_out_hidden(const FitScene& scene) {
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        const std::size_t i = index(row, column);
+        if (filled_[i] == 0 && scene.hidden(left_ + (column + 0.5) * cell_, top_ + (row + 0.5) * cell_)) valid_[i] = 0;
+      }
+    }
   }
 
   Cells cells_of(const Box& box, const Part& part) const {
@@ -148,12 +162,12 @@ class Grid {
   int columns_ = 0, rows_ = 0;
   std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
   std::vector<int> first_filled_, first_valid_;  ///< the same before anyone was placed
-  std::vector<int> filled_sum_, valid_sum_;      ///< integral images
+  std::vector<int> filled_sum_, valid_sum_, first_valid_sum_;  ///< integral images
 };
 
-Box known_box(const Box& box, const SizeAt& size_at) {
+Box known_box(const Box& box, const FitScene& scene) {
   const auto foot = box.foot();
-  const auto size = size_at(foot.x(), foot.y());
+  const auto size = scene.size_at(foot.x(), foot.y());
   if (!size) return box;
   const double height = std::clamp(box.height, size->height * (1 - kHeightSlack), size->height * (1 + kHeightSlack));
   const double width = std::clamp(box.width, size->width * (1 - kWidthSlack), size->width * (1 + kWidthSlack));
@@ -167,12 +181,10 @@ Box moved(const Box& box, double dx, double dy) {
 
 class Fit {
  public:
-  Fit(Grid& grid, cv::Size image, const SizeAt& size_at, const FitOptions& options)
-      : grid_(grid), image_(image), size_at_(size_at), options_(options) {}
+  Fit(Grid& grid, const FitScene& scene, const FitOptions& options) : grid_(grid), scene_(scene), options_(options) {}
 
   std::vector<Placed> run(std::span<const Box> known) {
-    place_known(known);
-    place_new();
+    place_all(known);
     refine();
     measure_seen();
     return std::move(placed_);
@@ -186,16 +198,16 @@ class Fit {
   };
 
   double cover(const Box& box) const {
-    double filled = 0, valid = 0, area = 0;
+    double filled = 0, valid = 0, visible = 0, area = 0;
     for (const Part& part : kBody) {
       const Grid::Count count = grid_.count(box, part);
       filled += count.filled;
       valid += count.valid;
+      visible += count.visible;
       area += (part.right - part.left) * (part.bottom - part.top) * box.area();
     }
-    const double inside = intersection(box, Box{0, 0, double(image_.width), double(image_.height)}).area() / box.area();
-    if (inside < kLeastInside) return -1;
-    return (filled - options_.blank_penalty * (valid - filled)) / (area * inside);
+    if (visible < kLeastVisible * area) return -1;
+    return (filled - options_.blank_penalty * (valid - filled)) / visible;
   }
 
   double above_head(const Box& box) const {
@@ -226,30 +238,28 @@ class Fit {
     grid_.sum();
   }
 
-  void place_known(std::span<const Box> known) {
+  void place_all(std::span<const Box> known) {
     std::vector<int> waiting(known.size());
-    for (std::size_t i = 0; i < known.size(); ++i) waiting[i] = static_cast<int>(i);
-    while (!waiting.empty()) {
+    std::iota(waiting.begin(), waiting.end(), 0);
+    for (int newcomers = 0; newcomers < kMostNew;) {
       Place best;
       std::size_t who = 0;
       for (std::size_t i = 0; i < waiting.size(); ++i) {
-        const Place found = best_near(known_box(known[waiting[i]], size_at_), kReachAcross, kReachUp);
-        if (found.value > best.value) {
-          best = found;
-          who = i;
-        }
+        const Place found = best_near(known_box(known[waiting[i]], scene_), kReachAcross, kReachUp);
+        if (found.cover < options_.min_cover_known || found.value <= best.value) continue;
+        best = found;
+        who = i;
       }
-      if (best.cover < options_.min_cover_known) return;
-      place(best, waiting[who]);
-      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(who));
-    }
-  }
-
-  void place_new() {
-    for (int count = 0; count < kMostNew; ++count) {
-      const Place best = best_anywhere();
-      if (best.cover < options_.min_cover_new) return;
-      place(best, -1);
+      const Place other = best_anywhere();
+      if (other.cover >= options_.min_cover_new && other.value > best.value + kKnownBefore) {
+        place(other, -1);
+        ++newcomers;
+      } else if (best.value > -1) {
+        place(best, waiting[who]);
+        waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(who));
+      } else {
+        return;
+      }
     }
   }
 
@@ -259,9 +269,9 @@ class Fit {
     // From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
     for (double foot_y = grid_.bottom(); foot_y > grid_.top(); foot_y -= step) {
       for (double foot_x = grid_.left(); foot_x < grid_.right(); foot_x += step) {
-        const auto size = size_at_(foot_x, foot_y);
+        const auto size = scene_.size_at(foot_x, foot_y);
         if (!size) continue;
-        if (grid_.filled_in_all() < options_.min_cover_new * kLeastInside * 0.5 * size->height * size->width) return best;
+        if (grid_.filled_in_all() < options_.min_cover_new * kLeastVisible * 0.5 * size->height * size->width) return best;
         const Box there = size->box_at(foot_x, foot_y);
         const double covered = cover(there);
         if (covered < options_.min_cover_new) continue;
@@ -277,6 +287,7 @@ class Fit {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       explain_all_but(i);
       const Place better = best_near(placed_[i].box, kRefineAcross, kRefineUp);
+      if (better.cover < placed_[i].cover) continue;
       placed_[i].box = better.box;
       placed_[i].cover = better.cover;
     }
@@ -305,8 +316,7 @@ class Fit {
   }
 
   Grid& grid_;
-  cv::Size image_;
-  const SizeAt& size_at_;
+  const FitScene& scene_;
   const FitOptions& options_;
   std::vector<Placed> placed_;
 };
@@ -322,13 +332,13 @@ Box bounds_of(std::span<const PixelRun> runs) {
 
 }  // namespace
 
-std::vector<Placed> fit_people(std::span<const PixelRun> runs, cv::Size image, std::span<const Box> known, const SizeAt& size_at,
+std::vector<Placed> fit_people(std::span<const PixelRun> runs, std::span<const Box> known, const FitScene& scene,
                                const FitOptions& options) {
   if (runs.empty()) return {};
   Box place = bounds_of(runs);
   const auto foot = place.foot();
   PersonSize typical{place.height, place.width};
-  if (const auto size = size_at(foot.x(), foot.y()))
+  if (const auto size = scene.size_at(foot.x(), foot.y()))
     typical = *size;
   else if (known.empty())
     return {};
@@ -338,9 +348,9 @@ std::vector<Placed> fit_people(std::span<const PixelRun> runs, cv::Size image, s
   const double cell = std::max(1.0, std::round(typical.height / options.cells_tall));
   const Box wide{std::floor(place.left - typical.width), std::floor(place.top - typical.height / 4),
                  place.width + 2 * typical.width + 1, place.height + typical.height + 1};
-  Grid grid(wide, image, cell);
-  grid.fill(runs);
-  return Fit(grid, image, size_at, options).run(known);
+  Grid grid(wide, scene, cell);
+  grid.fill(runs, scene);
+  return Fit(grid, scene, options).run(known);
 }
 
 }  // namespace marey

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,11 +27,16 @@ struct FitOptions {
   int cells_tall = 32;           ///< resolution: a person is this many cells tall
 };
 
-using SizeAt = std::function<std::optional<PersonSize>(double x, double y)>;
+/// What is known of the scene where people are looked for.
+struct FitScene {
+  cv::Size image;                                                    ///< px
+  std::function<std::optional<PersonSize>(double, double)> size_at;  ///< of a person with feet at (x, y); nothing where none can be
+  std::function<bool(double, double)> hidden = nullptr;              ///< whether a pixel hides who is behind it; may be left out
+};
 
-/// Explains the pixels of `runs` (in order; within a picture of size `image`) by people: those `known` to be about here first,
-/// each near its box and of its size, then new ones. People found are in the order in which they were believed.
-std::vector<Placed> fit_people(std::span<const PixelRun> runs, cv::Size image, std::span<const Box> known, const SizeAt& size_at,
+/// Explains the pixels of `runs` (in order; within the picture) by people: those `known` to be about here, each near its box and
+/// of its size, and new ones. People found are in the order in which they were believed. Nothing where no size is known.
+std::vector<Placed> fit_people(std::span<const PixelRun> runs, std::span<const Box> known, const FitScene& scene,
                                const FitOptions& options = {});
 
 }  // namespace marey
