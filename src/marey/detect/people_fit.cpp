@@ -25,14 +25,15 @@ struct Part {
   double left, top, right, bottom;
 };
 constexpr std::array<Part, 3> kBody = {{{0.28, 0.0, 0.72, 0.16}, {0.10, 0.16, 0.90, 0.52}, {0.18, 0.52, 0.82, 1.0}}};
-constexpr std::array<Part, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.06, 0.12, 1.06, 1.03}}};
+constexpr std::array<Part, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.03, 0.12, 1.03, 1.03}}};
 constexpr Part kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
-constexpr double kDistanceCost = 0.4;   // of a known person found one width, or half a height, from where it is expected
+constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
 constexpr double kReachAcross = 0.45;   // of the width: how far from there it is looked for
 constexpr double kReachUp = 0.12;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
 constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something
+constexpr double kUnseenCost = 0.1;    // of a body of which all is out of sight: of two places, the one in sight
 constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone new be, to come before someone known
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
@@ -207,7 +208,8 @@ class Fit {
       area += (part.right - part.left) * (part.bottom - part.top) * box.area();
     }
     if (visible < kLeastVisible * area) return -1;
-    return (filled - options_.blank_penalty * (valid - filled)) / visible;
+    const double unseen = std::max(0.0, 1 - visible / area);
+    return (filled - options_.blank_penalty * (valid - filled)) / visible - kUnseenCost * unseen;
   }
 
   double above_head(const Box& box) const {
