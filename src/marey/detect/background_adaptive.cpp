@@ -48,7 +48,8 @@ constexpr int kFringe = 3;         // px round a region that are not learned: it
 constexpr int kSecondWidth = 10;   // levels: how near a pixel must be to its second mean
 constexpr int kEstablished = 200;  // ticks after which a second mean is the scene's
 constexpr int kAway = 1;           // the bit of a second mean that says that the scene was seen since
-constexpr int kReturn = 15;        // ticks that a return to the second mean is worth: what sways, returns often
+constexpr int kReturn = 25;        // ticks that a return to the second mean is worth: what sways, returns often
+constexpr int kReturnWidens = 12;  // 1/8 levels of spread
 constexpr double kGhost_s = 1;
 constexpr double kStartAnew_s = 2;
 constexpr double kTooMuch = 0.6;  // of the picture
@@ -380,7 +381,9 @@ class AdaptiveBackground final : public Background {
           seen[x] = static_cast<std::uint8_t>(seen[x] - 2 * ticks);
           continue;
         }
-        const int gained = (second[x] & kAway) != 0 ? std::max(ticks, kReturn) : ticks;
+        const bool returns = (second[x] & kAway) != 0;
+        if (returns) luma_.widen(y, x, kReturnWidens);
+        const int gained = returns ? std::max(ticks, kReturn) : ticks;
         second[x] = static_cast<std::uint8_t>((second[x] + (distance > 1 ? 2 : distance < -1 ? -2 : 0)) & ~kAway);
         seen[x] = static_cast<std::uint8_t>(std::min(254, seen[x] + gained));
         if (ghost && seen[x] >= ghost_enough) {
@@ -397,11 +400,12 @@ class AdaptiveBackground final : public Background {
   void forget(int y, int ticks) {
     auto* second = second_.ptr<std::uint8_t>(y);
     auto* seen = seen_.ptr<std::uint8_t>(y);
+    const int fading = (ticks + 1) / 2;
     int x = 0;
     const auto fade_to = [&](int end) {
       for (; x < end; ++x) {
         second[x] = static_cast<std::uint8_t>(second[x] | kAway);
-        seen[x] = static_cast<std::uint8_t>(seen[x] > ticks ? seen[x] - ticks : 0);
+        seen[x] = static_cast<std::uint8_t>(seen[x] > fading ? seen[x] - fading : 0);
       }
     };
     for (std::size_t i = row_begin_[y]; i < row_begin_[y + 1]; ++i) {

@@ -79,6 +79,8 @@ std::optional<LightChange> LightMeter::measure(const cv::Mat& luma, const SceneP
   if (all_.size() < kFewest) return std::nullopt;
   const float overall_gain = median(all_);
   for (Cell& cell : cells_) judge(cell, overall_gain);
+  const auto sure = std::count_if(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.sure; });
+  if (sure * 2 < kColumns * kRows) return std::nullopt;
   const cv::Mat coarse = smoothed(overall_gain);
   double least = 1, greatest = 1;
   cv::minMaxLoc(coarse, &least, &greatest);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,6 +37,12 @@ class ScenePlane {
   /// Takes one pixel's level for the scene's. Its band is renewed when its row is learned.
   void believe(int row, int column, std::uint8_t level) {
     mean_.at<std::int16_t>(row, column) = static_cast<std::int16_t>(level << 7);
+  }
+
+  /// Raises the spread of a pixel's noise, by 1/8 levels.
+  void widen(int row, int column, int eighths) {
+    auto& spread = spread_.at<std::uint8_t>(row, column);
+    spread = static_cast<std::uint8_t>(std::min(255, spread + eighths));
   }
 
   /// Multiplies every mean's distance from `origin` by a gain: `gains` (CV_32F) has one for each block of kBlock × kBlock pixels.
