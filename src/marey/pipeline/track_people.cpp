@@ -77,6 +77,13 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
   return result;
 }
 
+/// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
+TrackerOptions tracker_options(const PeopleInput& input, const TrackPeopleOptions& options) {
+  TrackerOptions tracker = options.tracker;
+  tracker.steady_camera = !input.pictures.empty();
+  return tracker;
+}
+
 Track<2> track_of(const TrackRow& row) {
   Track<2> track;
   track.id = TrackId{row.id};
@@ -113,7 +120,7 @@ class Run {
         options_(options),
         hooks_(hooks),
         eyes_(open_eyes(input, options)),
-        tracker_(make_tracker<2>(options.tracker)),
+        tracker_(make_tracker<2>(tracker_options(input, options))),
         file_(output.tracks, output.format) {
     const SourceInfo& info = eyes_.source->info();
     if (!output.overlay.empty()) movie_.emplace(output.overlay, info.size, info.rate_hz);

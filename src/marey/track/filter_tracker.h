@@ -158,17 +158,18 @@ class FilterTracker final : public Tracker<F::dimension> {
   void mark_crowded() {
     if constexpr (D == 2) {
       points_.clear();
-      double widest = 0;
+      widest_ = 0;
       for (Target<F>& target : targets_) {
         target.crowded = false;
         points_.push_back(in_view(target));
-        widest = std::max(widest, target.unit);
+        if (target.size) widest_ = std::max(widest_, target.unit);
       }
-      grid_.build(points_, std::max(1e-9, widest));
+      if (widest_ <= 0) return;
+      neighbours_.build(points_, widest_);
       for (Target<F>& target : targets_) {
         if (!target.size) continue;
         const Box box = target.size->around(in_view(target));
-        grid_.for_each_near(in_view(target), (target.unit + widest) / 2, [&](int index) {
+        neighbours_.for_each_near(in_view(target), (target.unit + widest_) / 2, [&](int index) {
           const Target<F>& other = targets_[index];
           if (other.id == target.id || !other.size || target.crowded) return;
           target.crowded = intersection(box, other.size->around(in_view(other))).area() > crowded_share * box.area();
@@ -245,16 +246,18 @@ class FilterTracker final : public Tracker<F::dimension> {
 
   static double evidence_of(double score) { return 0.4 + 0.8 * std::clamp(score, 0.0, 1.0); }
 
-  /// A target that is not seen is hidden where a larger region or a nearer target (its feet lower in the picture) covers it.
+  /// A target that is not seen is hidden where another target, or the region that one was seen in, covers it.
   void mark_hidden(std::span<const Observation<D>> seen) {
-    for (Target<F>& target : targets_) {
-      if (target.observation >= 0 || !target.size) continue;
-      if constexpr (D == 2) {
+    if constexpr (D == 2) {
+      for (Target<F>& target : targets_) {
+        if (target.observation >= 0 || !target.size) continue;
         const Box box = target.size->around(in_view(target));
         const auto covers = [&](const Box& other) { return intersection(box, other).area() > covered_share * box.area(); };
-        target.hidden = std::any_of(targets_.begin(), targets_.end(), [&](const Target<F>& other) {
-          return other.observation >= 0 && other.size && seen[other.observation].box &&
-                 (covers(other.size->around(in_view(other))) || covers(*seen[other.observation].box));
+        neighbours_.for_each_near(in_view(target), target.unit / 2 + widest_, [&](int index) {
+          const Target<F>& other = targets_[index];
+          if (target.hidden || other.observation < 0 || !other.size) return;
+          const std::optional<Box>& region = seen[other.observation].box;
+          target.hidden = covers(other.size->around(in_view(other))) || (region && covers(*region));
         });
       }
     }
@@ -276,6 +279,13 @@ class FilterTracker final : public Tracker<F::dimension> {
     for (const Target<F>& target : targets_) {
       if (target.observation >= 0) claimed_[target.observation] = 1;
     }
+    points_.clear();
+    double widest = 1e-9;
+    for (const Observation<D>& one : seen) {
+      points_.push_back(centre_of(one));
+      if (one.box) widest = std::max(widest, one.box->height / 2);
+    }
+    grid_.build(points_, widest);
     for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
       if (claimed_[i] || seen[i].score < options_.confident || is_duplicate(i, seen)) continue;
       start(now, seen[i], i);
@@ -283,13 +293,14 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
-  /// A detector's second box around what a target has claimed already.
+  /// A detector's second box around what a target has claimed already. `grid_` holds the centres of all that was seen.
   bool is_duplicate(int index, std::span<const Observation<D>> seen) const {
-    if (!seen[index].box) return false;
-    for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
-      if (claimed_[i] && seen[i].box && iou(*seen[i].box, *seen[index].box) > duplicate_iou) return true;
-    }
-    return false;
+    bool found = false;
+    if (!seen[index].box) return found;
+    grid_.for_each_near(centre_of(seen[index]), seen[index].box->height / 2, [&](int other) {
+      found = found || (claimed_[other] && seen[other].box && iou(*seen[other].box, *seen[index].box) > duplicate_iou);
+    });
+    return found;
   }
 
   void start(Timestamp now, const Observation<D>& observation, int index) {
@@ -367,7 +378,9 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<Sighting> expected_, sightings_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_;
-  PointGrid<D> grid_;
+  PointGrid<D> grid_;        // of observations
+  PointGrid<D> neighbours_;  // of targets
+  double widest_ = 0;        // of their boxes' heights
   GatedAssigner assigner_;
 };
 
