@@ -43,6 +43,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     correct(now, seen);
+    keep_merged(seen);
     retire_lost(now);
     start_unclaimed(now, seen);
     return report(now);
@@ -143,9 +144,15 @@ class FilterTracker final : public Tracker<F::dimension> {
     const Vector<D> residual = place_of(observation, target) - target.filter.position();
     const double distance = residual.dot(S.inverse() * residual);
     if (!(distance <= gate_) || residual.norm() > reach(target)) return 0;
-    double cost = distance + std::log(S.determinant() / std::pow(target.unit * reference_sigma, 2 * D));
+    const double spread = std::log(S.determinant());
+    if (!target.size || !observation.box) {
+      // Nothing is known of how dense clutter is: the gate decides, and of two targets the one that is surer of its place wins.
+      const double against_noise = std::clamp(spread - std::log(R.determinant()), 0.0, 2 * gate_);
+      return (3 * gate_ - distance - against_noise) / 2;
+    }
+    double cost = distance + spread - 2 * D * std::log(target.unit * reference_sigma);
     double room = clutter_room - 2 * seconds(*now_ - target.last_seen) / fading;
-    if (target.size && observation.box && !observation.shared) {
+    if (!observation.shared) {
       const double distance_of_size = target.size->distance(*observation.box, size_options_);
       cost += target.crowded ? std::min(distance_of_size, crowded_size_limit) : distance_of_size;
       room += size_room;
@@ -263,6 +270,45 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
+  /// An unclaimed region over several targets that are not seen is those targets, merged: they stay within it, keep their size
+  /// and wait for it to part; nobody new begins there.
+  void keep_merged(std::span<const Observation<D>> seen) {
+    merged_.assign(seen.size(), 0);
+    if constexpr (D == 2) {
+      if (widest_ <= 0) return;
+      claimed_.assign(seen.size(), 0);
+      for (const Target<F>& target : targets_) {
+        if (target.observation >= 0) claimed_[target.observation] = 1;
+      }
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (claimed_[i] || !seen[i].box || seen[i].box->empty()) continue;
+        find_covered(*seen[i].box);
+        if (covered_.size() < 2) continue;
+        merged_[i] = 1;
+        for (const int index : covered_) stay_within(targets_[index], seen[i]);
+      }
+    }
+  }
+
+  /// Confirmed targets that are not seen and lie within the region for the most part, into `covered_`.
+  void find_covered(const Box& region) {
+    covered_.clear();
+    const double reach = std::max(region.width, region.height) / 2 + widest_;
+    neighbours_.for_each_near(region.centre(), reach, [&](int index) {
+      const Target<F>& target = targets_[index];
+      if (!target.confirmed || target.observation >= 0 || !target.size) return;
+      const Box box = target.size->around(in_view(target));
+      if (intersection(box, region).area() > merged_share * box.area()) covered_.push_back(index);
+    });
+    std::sort(covered_.begin(), covered_.end());
+  }
+
+  void stay_within(Target<F>& target, const Observation<D>& region) {
+    const Matrix<D> R = noise_of(region, target);
+    target.filter.correct(place_of(region, target), R);
+    target.hidden = true;
+  }
+
   void retire_lost(Timestamp now) {
     std::erase_if(targets_, [&](const Target<F>& target) {
       const double unseen = seconds(now - target.last_seen);
@@ -287,7 +333,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
     grid_.build(points_, widest);
     for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
-      if (claimed_[i] || seen[i].score < options_.confident || is_duplicate(i, seen)) continue;
+      if (claimed_[i] || merged_[i] || seen[i].score < options_.confident || is_duplicate(i, seen)) continue;
       start(now, seen[i], i);
       claimed_[i] = 1;
     }
@@ -358,6 +404,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double miss_evidence = 0.7;
   static constexpr double hidden_evidence = 0.1;
   static constexpr double most_evidence = 10;
+  static constexpr double merged_share = 0.6;
   static constexpr double covered_share = 0.5;
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
@@ -377,7 +424,8 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<Vector<D>> points_;
   std::vector<Sighting> expected_, sightings_;
   std::vector<GatedPair> pairs_;
-  std::vector<char> claimed_;
+  std::vector<char> claimed_, merged_;
+  std::vector<int> covered_;
   PointGrid<D> grid_;        // of observations
   PointGrid<D> neighbours_;  // of targets
   double widest_ = 0;        // of their boxes' heights

@@ -1,0 +1,133 @@
+#include "marey/track/join.h"
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/track/smooth.h"
+
+namespace marey {
+namespace {
+
+constexpr double rate = 10;  // Hz
+
+Track<2> walker(int id, double x, double y, Track<2>::State state = Track<2>::State::observed, bool confirmed = true) {
+  Track<2> track;
+  track.id = TrackId{id};
+  track.position = {x, y};
+  track.box = Box::from_centre(track.position, 32, 80);
+  track.state = state;
+  track.confirmed = confirmed;
+  track.score = 0.9;
+  return track;
+}
+
+Recording record(int frames, auto&& tracks_of) {
+  Recording recording;
+  for (int k = 0; k < frames; ++k) {
+    const std::vector<Track<2>> tracks = tracks_of(k);
+    recording.add(k, timestamp_from_seconds(k / rate), tracks);
+  }
+  return recording;
+}
+
+std::set<int> ids(const std::vector<TrackRow>& rows) {
+  std::set<int> all;
+  for (const TrackRow& row : rows) all.insert(row.id);
+  return all;
+}
+
+TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
+  Recording recording = record(60, [](int k) {
+    std::vector<Track<2>> tracks;
+    if (k < 20) tracks.push_back(walker(3, 100 + 5 * k, 200));
+    if (k >= 35) tracks.push_back(walker(7, 100 + 5 * k, 201));
+    return tracks;
+  });
+  const auto rows = join(recording);
+  EXPECT_EQ(ids(rows), std::set<int>{1});
+  ASSERT_EQ(rows.size(), 60U) << "the gap is filled";
+  for (const TrackRow& row : rows) {
+    EXPECT_EQ(row.observed(), row.frame < 20 || row.frame >= 35);
+    EXPECT_NEAR(row.x, 100 + 5 * row.frame, 2);
+  }
+}
+
+TEST(Join, OneWhoComesFromElsewhereIsAnother) {
+  Recording recording = record(60, [](int k) {
+    std::vector<Track<2>> tracks;
+    if (k < 20) tracks.push_back(walker(1, 100 + 5 * k, 200));
+    if (k >= 35) tracks.push_back(walker(2, 600 - 5 * k, 330));
+    return tracks;
+  });
+  EXPECT_EQ(ids(join(recording)), (std::set<int>{1, 2}));
+}
+
+TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
+  Recording recording = record(60, [](int k) {
+    std::vector<Track<2>> tracks;
+    const bool hidden = k >= 20 && k < 32;
+    if (!hidden) {
+      tracks.push_back(walker(k < 20 ? 1 : 4, 100 + 5 * k, 200));
+      tracks.push_back(walker(k < 20 ? 2 : 5, 360 - 5 * k, 206));
+    }
+    return tracks;
+  });
+  std::map<int, std::pair<TrackRow, TrackRow>> ends;
+  for (const TrackRow& row : join(recording)) {
+    if (!ends.contains(row.id)) ends[row.id].first = row;
+    ends[row.id].second = row;
+  }
+  ASSERT_EQ(ends.size(), 2U);
+  for (const auto& [id, end] : ends) EXPECT_EQ(end.first.x < 230, end.second.x > 230) << "turned round behind the column";
+}
+
+TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
+  Recording recording = record(30, [](int k) {
+    std::vector<Track<2>> tracks{walker(1, 100 + 5 * k, 200)};
+    if (k < 20) tracks.push_back(walker(2, 400, 300, Track<2>::State::observed, false));
+    if (k == 10 || k == 11) tracks.push_back(walker(3, 600, 100));
+    return tracks;
+  });
+  const auto rows = join(recording);
+  EXPECT_EQ(ids(rows), std::set<int>{1});
+  EXPECT_EQ(rows.size(), 30U);
+}
+
+TEST(Join, FirstFramesBeforeConfirmationAreReported) {
+  Recording recording =
+      record(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
+  EXPECT_EQ(join(recording).front().frame, 0);
+}
+
+TEST(Join, TailsWithoutAnObservationAreCut) {
+  Recording recording = record(30, [](int k) {
+    return std::vector{walker(1, 100 + 5 * k, 200, k < 18 ? Track<2>::State::observed : Track<2>::State::predicted)};
+  });
+  EXPECT_EQ(join(recording).back().frame, 17);
+}
+
+TEST(Join, NothingRecordedIsNothingReported) {
+  Recording recording;
+  EXPECT_TRUE(join(recording).empty());
+}
+
+TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
+  EXPECT_LE(sizeof(TrackRow), 48U);  // 25 people for 90 minutes at 25 frames a second: 162 MB
+}
+
+TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
+  Recording recording = record(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
+  const auto rows = join(recording, {.smoothing = 0.3});
+  for (const TrackRow& row : rows) {
+    if (row.frame < 10 || row.frame >= 90) continue;
+    EXPECT_NEAR(row.x, 100 + 5 * row.frame, 1);
+    EXPECT_NEAR(row.vx, 50, 5);
+    EXPECT_NEAR(row.left + row.width / 2 - 0.5, row.x, 1e-2);
+  }
+}
+
+}  // namespace
+}  // namespace marey

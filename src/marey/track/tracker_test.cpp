@@ -1,0 +1,289 @@
+#include "marey/track/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+constexpr double rate = 10;  // Hz
+constexpr double tall = 80;  // px
+
+using Seen = std::vector<Observation<2>>;
+
+Observation<2> person(double x, double y, double score = 0.9, double width = 0.4 * tall, double height = tall) {
+  Observation<2> observation;
+  observation.box = Box::from_centre({x, y}, width, height);
+  observation.value = {x, y};
+  observation.score = score;
+  return observation;
+}
+
+/// Runs a scene of `frames` frames and hands each frame's tracks to `look`.
+void run(int frames, const std::function<Seen(int)>& scene, const std::function<void(int, std::span<const Track<2>>)>& look,
+         const TrackerOptions& options = {}) {
+  const auto tracker = make_tracker<2>(options);
+  for (int frame = 0; frame < frames; ++frame) look(frame, tracker->step(timestamp_from_seconds(frame / rate), scene(frame)));
+}
+
+/// The confirmed track nearest to a place, or 0 where none lies within half a body.
+int id_at(std::span<const Track<2>> tracks, double x, double y) {
+  int id = 0;
+  double nearest = tall / 2;
+  for (const Track<2>& track : tracks) {
+    const double distance = (track.position - Vector<2>(x, y)).norm();
+    if (!track.confirmed || distance >= nearest) continue;
+    nearest = distance;
+    id = number(track.id);
+  }
+  return id;
+}
+
+TEST(Tracker, TwoWhoCrossKeepTheirNames) {
+  int left = 0;
+  int right = 0;
+  run(
+      60, [](int k) { return Seen{person(100 + 6.0 * k, 200), person(460 - 6.0 * k, 212)}; },
+      [&](int k, std::span<const Track<2>> tracks) {
+        if (k == 10) {
+          left = id_at(tracks, 160, 200);
+          right = id_at(tracks, 400, 212);
+        }
+        if (k != 59) return;
+        EXPECT_EQ(id_at(tracks, 454, 200), left);
+        EXPECT_EQ(id_at(tracks, 106, 212), right);
+      });
+  EXPECT_NE(left, 0);
+  EXPECT_NE(right, 0);
+  EXPECT_NE(left, right);
+}
+
+/// Two who meet are seen as one wide region for a second and part again.
+TEST(Tracker, TwoWhoMergeIntoOneRegionComeOutAsThemselves) {
+  const auto place = [](int k, int who) { return who == 0 ? 100 + 6.0 * k : 400 - 6.0 * k; };
+  const auto scene = [&](int k) {
+    const double a = place(k, 0);
+    const double b = place(k, 1);
+    if (std::abs(a - b) > 32) return Seen{person(a, 200), person(b, 200)};
+    return Seen{person((a + b) / 2, 200, 0.9, 32 + std::abs(a - b), tall)};
+  };
+  int left = 0;
+  int right = 0;
+  run(50, scene, [&](int k, std::span<const Track<2>> tracks) {
+    if (k == 15) {
+      left = id_at(tracks, place(k, 0), 200);
+      right = id_at(tracks, place(k, 1), 200);
+    }
+    for (const Track<2>& track : tracks) EXPECT_LT(track.box->width, 45) << "frame " << k << ": a box swallowed a neighbour";
+    if (k != 45) return;
+    EXPECT_EQ(id_at(tracks, place(k, 0), 200), left);
+    EXPECT_EQ(id_at(tracks, place(k, 1), 200), right);
+  });
+  EXPECT_NE(left, right);
+}
+
+TEST(Tracker, ASharedRegionGivesPlaceNotSize) {
+  run(
+      40,
+      [](int k) {
+        Seen seen{person(100 + 3.0 * k, 200)};
+        if (k >= 20) {
+          seen[0] = person(100 + 3.0 * k, 200, 0.9, 0.4 * tall * 1.2, tall * 1.2);
+          seen[0].shared = true;
+        }
+        return seen;
+      },
+      [](int k, std::span<const Track<2>> tracks) {
+        ASSERT_EQ(tracks.size(), 1U) << k;
+        EXPECT_NEAR(tracks[0].box->height, tall, 1e-6);
+        EXPECT_NEAR(tracks[0].position.x(), 100 + 3.0 * k, 8);
+      });
+}
+
+TEST(Tracker, AShortOcclusionIsBridgedByPrediction) {
+  std::set<int> names;
+  run(
+      40, [](int k) { return k >= 20 && k < 27 ? Seen{} : Seen{person(100 + 5.0 * k, 200)}; },
+      [&](int k, std::span<const Track<2>> tracks) {
+        ASSERT_EQ(tracks.size(), 1U) << "frame " << k;
+        names.insert(number(tracks[0].id));
+        const bool hidden = k >= 20 && k < 27;
+        EXPECT_EQ(tracks[0].state, hidden ? Track<2>::State::predicted : Track<2>::State::observed);
+        EXPECT_NEAR(tracks[0].position.x(), 100 + 5.0 * k, 12);
+      });
+  EXPECT_EQ(names.size(), 1U);
+}
+
+TEST(Tracker, BirthTakesEvidenceAndDeathTheLackOfIt) {
+  bool confirmed_at_once = false;
+  int last_alive = 0;
+  run(
+      80, [](int k) { return k < 20 ? Seen{person(200, 200)} : Seen{}; },
+      [&](int k, std::span<const Track<2>> tracks) {
+        if (k == 0) confirmed_at_once = tracks[0].confirmed;
+        if (k == 5) {
+          EXPECT_TRUE(tracks[0].confirmed);
+        }
+        if (!tracks.empty()) last_alive = k;
+      });
+  EXPECT_FALSE(confirmed_at_once);
+  EXPECT_GT(last_alive, 22);
+  EXPECT_LT(last_alive, 20 + rate * TrackerOptions{}.patience + 1);
+}
+
+TEST(Tracker, NobodyJumpsFasterThanTheLimit) {
+  std::set<int> names;
+  const double step = 1.5 * TrackerOptions{}.max_speed * tall / rate;  // px a frame
+  run(
+      20, [&](int k) { return Seen{person(k < 10 ? 100 : 100 + step * 3, 200)}; },
+      [&](int k, std::span<const Track<2>> tracks) {
+        if (k == 9 || k == 19) names.insert(id_at(tracks, k == 9 ? 100 : 100 + step * 3, 200));
+      });
+  EXPECT_EQ(names.size(), 2U);
+}
+
+TEST(Tracker, WeakObservationsContinueButDoNotBegin) {
+  std::set<int> names;
+  run(
+      30, [](int k) { return Seen{person(100 + 4.0 * k, 200, k < 8 ? 0.9 : 0.2), person(400, 200, 0.3)}; },
+      [&](int, std::span<const Track<2>> tracks) {
+        for (const Track<2>& track : tracks) names.insert(number(track.id));
+        ASSERT_EQ(tracks.size(), 1U);
+        EXPECT_EQ(tracks[0].state, Track<2>::State::observed);
+      });
+  EXPECT_EQ(names.size(), 1U);
+}
+
+TEST(Tracker, ADoubleBoxIsOnePerson) {
+  run(
+      20, [](int k) { return Seen{person(100 + 4.0 * k, 200), person(101 + 4.0 * k, 201, 0.8)}; },
+      [](int, std::span<const Track<2>> tracks) { EXPECT_EQ(tracks.size(), 1U); });
+}
+
+TEST(Tracker, ACameraThatTurnsTakesEverybodyAlong) {
+  std::map<int, std::set<int>> names;
+  const auto pan = [](int k) { return k < 15 ? 0.0 : 35.0 * (k - 14); };
+  run(
+      30,
+      [&](int k) {
+        Seen seen;
+        for (int who = 0; who < 5; ++who) seen.push_back(person(100 + 120.0 * who + 2.0 * k + pan(k), 200 + 10.0 * who));
+        return seen;
+      },
+      [&](int k, std::span<const Track<2>> tracks) {
+        if (k < 10) return;
+        for (int who = 0; who < 5; ++who) names[who].insert(id_at(tracks, 100 + 120.0 * who + 2.0 * k + pan(k), 200 + 10.0 * who));
+      });
+  for (const auto& [who, ids] : names) EXPECT_EQ(ids.size(), 1U) << "person " << who;
+}
+
+Seen noisy_crowd(std::mt19937& random, int k) {
+  std::normal_distribution<double> noise(0, 3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Seen seen;
+  for (int who = 0; who < 12; ++who) {
+    if (unit(random) < 0.2) continue;
+    const double x = 60.0 * who + (who % 2 == 0 ? 4.0 : -4.0) * k;
+    seen.push_back(person(x + noise(random), 200 + 25.0 * (who % 4) + noise(random), 0.3 + 0.7 * unit(random)));
+  }
+  return seen;
+}
+
+TEST(Tracker, TheSameInputGivesTheSameBits) {
+  const auto once = [] {
+    std::mt19937 random(8);
+    std::vector<double> all;
+    run(
+        100, [&](int k) { return noisy_crowd(random, k); },
+        [&](int, std::span<const Track<2>> tracks) {
+          for (const Track<2>& track : tracks) {
+            all.insert(all.end(), {static_cast<double>(number(track.id)), track.position.x(), track.position.y(),
+                                   track.velocity.x(), track.box->height});
+          }
+        });
+    return all;
+  };
+  EXPECT_EQ(once(), once());
+}
+
+TEST(Tracker, TheOrderOfObservationsDoesNotMatter) {
+  std::mt19937 random(9);
+  const auto forward = make_tracker<2>({});
+  const auto backward = make_tracker<2>({});
+  for (int k = 0; k < 60; ++k) {
+    Seen seen = noisy_crowd(random, k);
+    const auto a = forward->step(timestamp_from_seconds(k / rate), seen);
+    std::reverse(seen.begin(), seen.end());
+    const auto b = backward->step(timestamp_from_seconds(k / rate), seen);
+    ASSERT_EQ(a.size(), b.size()) << k;
+    const auto place = [](const Track<2>& track) { return std::pair(track.position.x(), track.position.y()); };
+    std::set<std::pair<double, double>> places_a, places_b;
+    for (const auto& track : a) places_a.insert(place(track));
+    for (const auto& track : b) places_b.insert(place(track));
+    EXPECT_EQ(places_a, places_b) << k;
+  }
+}
+
+TEST(Tracker, HostileInputGivesNoNaN) {
+  const auto tracker = make_tracker<2>({});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-6, 8);
+  double now = 0;
+  for (int k = 0; k < 300; ++k) {
+    now += k % 50 == 49 ? 86400 : 1e-6 + (k % 7) * 0.05;
+    Seen seen;
+    for (unsigned i = 0; i < random() % 6; ++i) {
+      const double size = std::pow(10, exponent(random));
+      seen.push_back(person(std::pow(10, exponent(random)), -std::pow(10, exponent(random)), 1, size, size * 2));
+    }
+    if (k % 5 == 0) seen.push_back(person(10, 10, 1, 0, 0));
+    for (const Track<2>& track : tracker->step(timestamp_from_seconds(now), seen)) {
+      ASSERT_TRUE(track.position.allFinite() && track.velocity.allFinite() && track.covariance.allFinite()) << k;
+    }
+  }
+}
+
+TEST(Tracker, RefusesTimesThatDoNotGrowAndNumbersThatAreNone) {
+  const auto tracker = make_tracker<2>({});
+  tracker->step(timestamp_from_seconds(1), {});
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), {}), Error);
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(0.5), {}), Error);
+  const Seen broken{person(std::nan(""), 2)};
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(2), broken), Error);
+}
+
+TEST(Tracker, RefusesOptionsOutOfTheirDomain) {
+  EXPECT_THROW(make_tracker<2>({.gate_probability = 1}), Error);
+  EXPECT_THROW(make_tracker<3>({.max_speed = 0}), Error);
+  EXPECT_THROW(make_tracker<2>({.place_noise = -1}), Error);
+}
+
+TEST(Tracker, EveryFilterFollowsPointsInSpace) {
+  for (const NamedFilter& filter : named_filters()) {
+    TrackerOptions options = point_tracker_options();
+    options.filter = filter.options;
+    const auto tracker = make_tracker<3>(options);
+    std::set<int> names;
+    for (int k = 0; k < 40; ++k) {
+      std::vector<Observation<3>> seen(2);
+      seen[0].value = {100.0 + 2 * k, 50, 10};
+      seen[1].value = {300.0 - 2 * k, 150, 90};
+      const auto tracks = tracker->step(timestamp_from_seconds(k / 60.0), seen);
+      for (const auto& track : tracks) names.insert(number(track.id));
+      EXPECT_EQ(tracks.size(), 2U) << filter.name << ", frame " << k;
+    }
+    EXPECT_EQ(names.size(), 2U) << filter.name;
+  }
+}
+
+}  // namespace
+}  // namespace marey
