@@ -107,7 +107,6 @@ TEST(Background, LearnsATreeThatSways) {
   const Play wind = [](SmallScene& scene, int frame) { return scene.film({}, 1, 1.5 * std::sin(frame * 0.7)); };
   const Score early = play(AdaptiveOptions{}, 2 * kSecond, 0, wind);
   const Score ours = play(AdaptiveOptions{}, 60 * kSecond, 40 * kSecond, wind);
-  std::printf("false %.4f then %.4f; %.4f\n", early.false_share(), ours.false_share(), mog2.false_share());
   EXPECT_LT(ours.false_share(), 0.008);
   EXPECT_LT(ours.false_share(), early.false_share() / 2);
 }
