@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
 #include "marey/detect/marker_auto_mask.h"
@@ -20,10 +21,13 @@ namespace marey {
 namespace {
 
 constexpr std::size_t kMostRuns = 1 << 18;
-constexpr int kMostSplitPixels = 40000;  // a frame: about 200 pairs
-constexpr double kShapeMisfit = 0.06;    // of the contrast: what a lone round marker leaves at most
-constexpr double kOfRoundness = 0.6;     // a blob this much less round is not even split: it bounds a window by its blob's area
-constexpr int kCell = 64;                // px; blobs are filed by cells to find their neighbours
+constexpr int kMostSplitPixels = 40000;    // a frame: about 200 pairs
+constexpr double kShapeMisfit = 0.06;      // of the contrast: what a lone round marker leaves at most
+constexpr double kOfRoundness = 0.6;       // a blob this much less round is not even split: it bounds a window by its blob's area
+constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
+constexpr double kColourDeviation = 0.5;   // px; where chroma lies within its four pixels is not known for certain
+constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a coloured marker
+constexpr int kCell = 64;                  // px; blobs are filed by cells to find their neighbours
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
@@ -45,11 +49,7 @@ class MarkerDetector::Impl {
         levels_(options_.dark && !options_.colour, options_.threshold),
         finder_(kMostRuns),
         auto_mask_(options_.auto_mask_s) {
-    if (!options_.mask.empty()) {
-      CV_Assert(options_.mask.type() == CV_8UC1);
-      mask_ = MarkerMask(options_.mask);
-      counts_.masked_share = static_cast<double>(cv::countNonZero(options_.mask)) / static_cast<double>(options_.mask.total());
-    }
+    if (!options_.mask.empty()) CV_Assert(options_.mask.type() == CV_8UC1);
   }
 
   void prime(std::span<const Frame> samples);
@@ -59,15 +59,16 @@ class MarkerDetector::Impl {
   MarkerLevels& levels() { return levels_; }
 
  private:
-  std::span<const MarkerBlob> find(const Picture& picture);
-  void mask_more(std::optional<MarkerMask> learned);
+  const cv::Mat& prepare(const Picture& picture);
+  std::span<const MarkerBlob> find(const cv::Mat& searched);
+  void mask_more(const MarkerMask& learned);
   void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   void file_blobs(std::span<const MarkerBlob> blobs, cv::Size size);
   std::span<const MarkerNeighbour> neighbours(std::span<const MarkerBlob> blobs, std::size_t index);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
   void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
                std::vector<Detection>& found);
-  Detection report(const MarkerShape& shape, const MarkerBlob& blob, const MarkerSurroundings& around);
+  Detection report(const MarkerShape& shape, const MarkerBlob& blob);
   void learn_from(std::vector<double>& contrasts);
 
   MarkerOptions options_;
@@ -75,7 +76,7 @@ class MarkerDetector::Impl {
   MarkerRunFinder finder_;
   MarkerAutoMask auto_mask_;
   MarkerMask mask_;
-  MarkerMask half_mask_;
+  cv::Size searched_size_;
   cv::Mat heights_;
   MarkerThresholds colour_thresholds_;
   std::vector<std::size_t> chosen_;
@@ -93,26 +94,58 @@ void MarkerDetector::Impl::prime(std::span<const Frame> samples) {
   if (options_.auto_mask_s <= 0) return;
   for (const Frame& frame : samples) {
     if (seconds(frame.time - samples.front().time) > options_.auto_mask_s || frame.picture.empty()) continue;
-    find(frame.picture);
-    auto_mask_.add(frame.time, frame.picture.size(), finder_.runs());
+    const cv::Mat& searched = prepare(frame.picture);
+    find(searched);
+    auto_mask_.add(frame.time, searched.size(), finder_.runs());
   }
+  if (samples.size() >= kEnoughSamples) mask_more(auto_mask_.finish());
+}
+
+/// The plane that is searched: luma, or how much of the colour there is, at the size of the chroma planes.
+const cv::Mat& MarkerDetector::Impl::prepare(const Picture& picture) {
+  const cv::Mat& luma = picture.luma();
+  if (!options_.mask.empty() && options_.mask.size() != luma.size()) {
+    throw Error("the mask is {}×{} px but the picture is {}×{}; give a mask of the picture's size", options_.mask.cols,
+                options_.mask.rows, luma.cols, luma.rows);
+  }
+  levels_.learn(luma);
+  if (options_.colour) colour_heights(picture, *options_.colour, heights_);
+  const cv::Mat& searched = options_.colour ? heights_ : luma;
+  if (searched.size() == searched_size_) return searched;
+  searched_size_ = searched.size();
+  const int tiles = (searched.cols + 63) / 64 * ((searched.rows + 63) / 64);
+  colour_thresholds_ = {std::vector<std::uint16_t>(tiles, 63), false};
+  mask_ = MarkerMask();
+  if (options_.mask.empty()) return searched;
+  cv::Mat excluded = options_.mask != 0;
+  if (options_.colour) {  // a chroma pixel is left out where any of its four is
+    cv::dilate(excluded, excluded, cv::Mat::ones(3, 3, CV_8U));
+    cv::resize(excluded, excluded, searched.size(), 0, 0, cv::INTER_NEAREST);
+  }
+  mask_more(MarkerMask(excluded));
+  return searched;
 }
 
 /// Blobs in pixels of the full picture, whatever they were found in.
-std::span<const MarkerBlob> MarkerDetector::Impl::find(const Picture& picture) {
-  const cv::Mat& luma = picture.luma();
-  if (!mask_.empty() && mask_.size() != luma.size()) {
-    throw Error("the mask is {}×{} px but the picture is {}×{}; give a mask of the picture's size", mask_.size().width,
-                mask_.size().height, luma.cols, luma.rows);
-  }
-  levels_.learn(luma);
+std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) {
   if (!options_.colour) {
-    auto blobs = finder_.find(luma, levels_.thresholds(), mask_);
+    const auto blobs = finder_.find(searched, levels_.thresholds(), mask_);
     if (!finder_.cut_at()) return blobs;
-    levels_.learn(luma, true);  // the light may have changed at once
-    return finder_.find(luma, levels_.thresholds(), mask_);
+    levels_.learn(searched, true);  // the light may have changed at once
+    return finder_.find(searched, levels_.thresholds(), mask_);
   }
-  return {};
+  full_size_.clear();
+  for (MarkerBlob blob : finder_.find(searched, colour_thresholds_, mask_)) {
+    blob.box = {2 * blob.box.x, 2 * blob.box.y, 2 * blob.box.width, 2 * blob.box.height};
+    blob.area *= 4;
+    blob.mean_x = 2 * blob.mean_x + 0.5;
+    blob.mean_y = 2 * blob.mean_y + 0.5;
+    blob.var_x *= 4;
+    blob.var_y *= 4;
+    blob.cov_xy *= 4;
+    full_size_.push_back(blob);
+  }
+  return full_size_;
 }
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
@@ -120,12 +153,13 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   ++counts_.frames;
   if (frame.picture.empty()) return result;
   const cv::Mat& luma = frame.picture.luma();
-  auto blobs = find(frame.picture);
+  const cv::Mat& searched = prepare(frame.picture);
+  auto blobs = find(searched);
   if (finder_.cut_at()) ++counts_.frames_cut;
   if (options_.auto_mask_s > 0 && auto_mask_.learning()) {
-    if (auto learned = auto_mask_.add(frame.time, luma.size(), finder_.runs())) {
-      mask_more(std::move(learned));
-      blobs = finder_.find(luma, levels_.thresholds(), mask_);
+    if (auto learned = auto_mask_.add(frame.time, searched.size(), finder_.runs())) {
+      mask_more(*learned);
+      blobs = find(searched);
     }
   }
   choose(blobs, expected);
@@ -140,8 +174,8 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   return result;
 }
 
-void MarkerDetector::Impl::mask_more(std::optional<MarkerMask> learned) {
-  mask_.add(*learned);
+void MarkerDetector::Impl::mask_more(const MarkerMask& learned) {
+  mask_.add(learned);
   std::int64_t excluded = 0;
   for (int y = 0; y < mask_.size().height; ++y) {
     for (int x = 0; x < mask_.size().width; ++x) excluded += mask_.at(x, y) ? 1 : 0;
@@ -206,14 +240,28 @@ std::span<const MarkerNeighbour> MarkerDetector::Impl::neighbours(std::span<cons
   return near_;
 }
 
-MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat&, const MarkerBlob& blob) const {
+MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const MarkerBlob& blob) const {
   MarkerSurroundings around;
-  const int x = static_cast<int>(blob.mean_x), y = static_cast<int>(blob.mean_y);
+  const int x = std::min(static_cast<int>(blob.mean_x), luma.cols - 1), y = std::min(static_cast<int>(blob.mean_y), luma.rows - 1);
   around.background = levels_.background(x, y);
   around.noise = levels_.noise();
   around.white = levels_.white();
   around.dark = options_.dark;
   around.blur = blur_;
+  if (!options_.colour) return around;
+  // A coloured marker may be brighter or darker than what is around it: the pixels along a frame 3 px outside its box say.
+  std::vector<int> rim;
+  const cv::Rect frame(blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6);
+  const cv::Rect within({}, luma.size());
+  const auto look = [&](int i, int j) {
+    if (within.contains({i, j})) rim.push_back(luma.at<std::uint8_t>(j, i));
+  };
+  for (int i = frame.x; i < frame.br().x; ++i) look(i, frame.y), look(i, frame.br().y - 1);
+  for (int j = frame.y; j < frame.br().y; ++j) look(frame.x, j), look(frame.br().x - 1, j);
+  if (rim.empty()) return around;
+  std::nth_element(rim.begin(), rim.begin() + static_cast<std::ptrdiff_t>(rim.size() / 2), rim.end());
+  around.background = rim[rim.size() / 2];
+  around.dark = cv::mean(luma(blob.box & within))[0] < around.background;
   return around;
 }
 
@@ -222,7 +270,13 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
   const MarkerBlob& blob = blobs[index];
   const MarkerSurroundings around = surroundings(luma, blob);
   collect_window(luma, blob, around, neighbours(blobs, index), window_);
-  const MarkerShape lone = fit_disc(window_, blob, around);
+  MarkerShape lone = fit_disc(window_, blob, around);
+  if (options_.colour &&
+      (!lone.fitted || lone.contrast < kLeastLumaContrast * around.noise)) {  // luma does not show it: chroma does
+    lone.fitted = false;
+    lone.centre = {blob.mean_x, blob.mean_y};
+    lone.covariance = Matrix<2>::Identity() * (kColourDeviation * kColourDeviation);
+  }
   const double grain = 3 * around.noise / window_.scale;
   if (lone.misfit > std::max(kShapeMisfit, grain) && blob.area >= 8 && window_.count <= split_pixels_left_) {
     split_pixels_left_ -= window_.count;
@@ -233,7 +287,7 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     const auto parts = split_markers(window_, blob, around, several);
     if (!parts.empty()) {
       ++counts_.split;
-      for (const MarkerShape& part : parts) found.push_back(report(part, blob, around));
+      for (const MarkerShape& part : parts) found.push_back(report(part, blob));
       return;
     }
   }
@@ -244,18 +298,19 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
   if (!lone.fitted) ++counts_.not_fitted;
   if (lone.fitted && lone.misfit < std::max(kShapeMisfit, grain)) blurs_.push_back(lone.blur);
   contrasts_.push_back(window_.scale);
-  Detection detection = report(lone, blob, around);
+  Detection detection = report(lone, blob);
   detection.box = {static_cast<double>(blob.box.x), static_cast<double>(blob.box.y), static_cast<double>(blob.box.width),
                    static_cast<double>(blob.box.height)};
   found.push_back(std::move(detection));
 }
 
-Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlob& blob, const MarkerSurroundings&) {
+Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlob& blob) {
   Detection detection;
   detection.centre = shape.centre;
   detection.covariance = shape.covariance;
   detection.area = shape.fitted ? std::numbers::pi * shape.radius * shape.radius : static_cast<double>(blob.area);
   detection.box = Box::from_centre(shape.centre, 2 * shape.radius + 1, 2 * shape.radius + 1);
+  if (options_.colour) return detection;
   const double least = levels_.least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
   detection.score = std::clamp(shape.contrast / (2 * least), 0.1, 1.0);
   return detection;
