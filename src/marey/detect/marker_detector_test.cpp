@@ -206,7 +206,7 @@ TEST(MarkerDetector, LimitsOnAreaAndRoundnessAndAFixedThreshold) {
   cv::Mat image = scene({200, 100}, {{20, 20, 1}, {60, 20, 4}, {120, 50, 15}}, 1, 1);
   image(cv::Rect(30, 80, 60, 2)).setTo(220);  // a bar
   MarkerOptions options;
-  options.min_area = 12;
+  options.min_area = 20;
   options.max_area = 300;
   MarkerDetector detector(options);
   const auto found = detector.detect(frame_of(image), {}).detections;

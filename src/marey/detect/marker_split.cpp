@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Cholesky>
 
@@ -22,6 +23,8 @@ constexpr int kMostSteps = 20;
 constexpr double kSettled = 5e-3;         // px; the next step would be a hundredth of it
 constexpr double kClearly = 0.5;          // of the squares that one swept disc leaves
 constexpr double kClearlyExpected = 0.8;  // where the tracker knows of several
+constexpr double kSurely = 40;            // noise variances: where discs fit to the noise, by how much they must fit better
+constexpr double kModelError = 0.006;     // of the contrast
 constexpr double kLeastApart = 0.8;       // centres, in mean radii
 constexpr double kFlat = 4.5;             // blurs from the edge beyond which it is not felt
 constexpr double kMostUnlike = 2.2;       // larger radius over smaller
@@ -38,6 +41,8 @@ struct Model {
   Parameters p;
   int discs = 1;
   bool swept = false;
+  bool adds = false;     ///< discs add up instead of hiding each other
+  double ceiling = 1e9;  ///< where they add up: saturation, in units of the window
 };
 
 struct Edge {
@@ -90,6 +95,28 @@ double union_share(const Model& model, double x, double y, Parameters& slope) {
   return 1 - outside;
 }
 
+/// Discs whose light adds up, as far as the sensor goes.
+double sum_share(const Model& model, double x, double y, Parameters& slope) {
+  double sum = 0;
+  slope[kBlur] = 0;
+  for (int i = 0; i < model.discs; ++i) {
+    const auto disc = model.p.segment<3>(kFirst + 3 * i);
+    const Edge e = edge(x - disc[0], y - disc[1], disc[2], model.p[kBlur]);
+    sum += e.share;
+    slope.segment<3>(kFirst + 3 * i) << e.slope_x, e.slope_y, e.slope_radius;
+    slope[kBlur] += e.slope_blur;
+  }
+  const double most = (model.ceiling - model.p[kBackground]) / model.p[kContrast];
+  if (sum <= most) return sum;
+  slope.setZero();
+  return most;
+}
+
+double share_at(const Model& model, double x, double y, Parameters& slope) {
+  if (model.swept) return swept_share(model, x, y, slope);
+  return model.adds ? sum_share(model, x, y, slope) : union_share(model, x, y, slope);
+}
+
 struct Normal {
   Information information;
   Parameters gradient;
@@ -101,8 +128,7 @@ Normal linearise(const Model& model, const MarkerWindow& window, const std::vect
   Normal normal{Information::Zero(n, n), Parameters::Zero(n)};
   Parameters slope(n);
   for (int i = 0; i < window.count; ++i) {
-    const double share =
-        model.swept ? swept_share(model, window.x[i], window.y[i], slope) : union_share(model, window.x[i], window.y[i], slope);
+    const double share = share_at(model, window.x[i], window.y[i], slope);
     const double residual = value[i] - model.p[kBackground] - model.p[kContrast] * share;
     slope.tail(n - kBlur) *= model.p[kContrast];
     slope[kContrast] = share;
@@ -164,19 +190,15 @@ Solution minimise(Model model, const MarkerWindow& window, const std::vector<flo
   return best;
 }
 
-/// Pixels brighter than the discs' own level, where discs that add up overlap, are cut to it.
-std::vector<float> levelled(const MarkerWindow& window, double noise) {
-  std::vector<float> value(window.value.begin(), window.value.begin() + window.count);
+/// The level of a disc, where pixels are brighter than that: an overlap of discs that add up. Else nothing.
+std::optional<float> level_below_overlap(const std::vector<float>& value, double noise) {
   std::vector<float> bright;
-  std::copy_if(value.begin(), value.end(), std::back_inserter(bright), [](float v) { return v > 0.35f; });
-  if (bright.size() < 8) return value;
+  std::copy_if(value.begin(), value.end(), std::back_inserter(bright), [](float v) { return v > 0.25f; });
+  if (bright.size() < 8) return std::nullopt;
   const auto at = bright.begin() + static_cast<std::ptrdiff_t>(bright.size() * 6 / 10);
   std::nth_element(bright.begin(), at, bright.end());
-  const float level = *at;
-  if (1.0f > 1.2f * level + 5.0f * static_cast<float>(noise)) {
-    for (float& v : value) v = std::min(v, 1.05f * level);
-  }
-  return value;
+  if (1.0f <= 1.2f * *at + 5.0f * static_cast<float>(noise)) return std::nullopt;
+  return *at;
 }
 
 /// k centres by k-means over the pixels above half the contrast, begun in even steps along the long axis.
@@ -254,28 +276,47 @@ std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerB
   const double noise = around.noise / window.scale;
   const double stiffness = noise * noise / 0.01;
   const double blur = around.blur.value_or(0.65);
-  const std::vector<float> value = levelled(window, noise);
+  const std::vector<float> whole(window.value.begin(), window.value.begin() + window.count);
+  const std::optional<float> overlap = level_below_overlap(whole, noise);
+  const bool bright_overlap = overlap.has_value();
+  const double level = overlap.value_or(0.9f);
+  std::vector<float> value = whole;
+  if (bright_overlap) {
+    for (float& v : value) v = std::min(v, 1.05f * *overlap);
+  }
 
   Model swept{Parameters(kFirst + 5), 1, true};
   const Vector<2> reach = along * std::max(half_length - half_width, 0.3);
   swept.p << 0.9, 0.0, blur, window.centroid.x(), window.centroid.y(), std::max(half_width - 0.3, 0.4), reach.x(), reach.y();
   const Solution rival = minimise(swept, window, value, stiffness);
-  double to_beat = rival.normal.squares * (expected >= 2 ? kClearlyExpected : kClearly);
+  const double share = expected >= 2 ? kClearlyExpected : kClearly;
+  const double floor = window.count * (1.5 * noise * noise + kModelError * kModelError);  // what right models leave
+  double to_beat = rival.normal.squares;
   std::vector<MarkerShape> best;
   for (int k = 2; k <= kMostDiscs; ++k) {
-    Model discs{Parameters(kFirst + 3 * k), k, false};
+    Model discs{Parameters(kFirst + 3 * k), k};
+    discs.ceiling = std::abs(around.white - window.background) / window.scale;
+    if (around.dark) discs.ceiling = window.background / window.scale;
     discs.p.head<kFirst>() << 0.9, 0.0, blur;
     const double radius = std::max(0.4, std::sqrt(window.half_area / (k * std::numbers::pi)));
     const auto places = centres(window, value, k, along * half_length * (1 - 1.0 / k));
     for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirst + 3 * i) << places[i].x(), places[i].y(), radius;
-    const Solution solution = minimise(discs, window, value, stiffness);
-    if (!distinct(solution.model) || solution.normal.squares > to_beat) {
+    Solution solution = minimise(discs, window, value, stiffness);
+    if (bright_overlap) {
+      discs.adds = true;
+      discs.p[kContrast] = level;
+      Solution sum = minimise(discs, window, whole, stiffness);
+      if (sum.normal.squares < solution.normal.squares) solution = std::move(sum);
+    }
+    const double left = solution.normal.squares;
+    const bool clear = left < share * to_beat || (left < floor && to_beat - left > kSurely * noise * noise);
+    if (!distinct(solution.model) || !clear) {
       if (k == 2) continue;  // three in a corner may fit where two do not
       break;
     }
     best = shapes(solution, window, stiffness);
-    if (best.front().misfit < std::max(0.04, 2 * noise)) break;
-    to_beat = solution.normal.squares * kClearly;
+    if (left < floor || best.front().misfit < 0.04) break;
+    to_beat = left;
   }
   return best;
 }
