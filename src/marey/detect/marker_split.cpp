@@ -23,7 +23,8 @@ constexpr int kMostSteps = 20;
 constexpr double kSettled = 5e-3;         // px; the next step would be a hundredth of it
 constexpr double kClearly = 0.5;          // of the squares that one swept disc leaves
 constexpr double kClearlyExpected = 0.8;  // where the tracker knows of several
-constexpr double kSurely = 40;            // noise variances: where discs fit to the noise, by how much they must fit better
+constexpr double kSurely = 20;            // noise variances: where discs fit to the noise, by how much they must fit better
+constexpr double kSurelyExpected = -9;    // the tracker saw both: nearly as good will do
 constexpr double kModelError = 0.006;     // of the contrast
 constexpr double kLeastApart = 0.8;       // centres, in mean radii
 constexpr double kFlat = 4.5;             // blurs from the edge beyond which it is not felt
@@ -291,6 +292,7 @@ std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerB
   const Solution rival = minimise(swept, window, value, stiffness);
   const double share = expected >= 2 ? kClearlyExpected : kClearly;
   const double floor = window.count * (1.5 * noise * noise + kModelError * kModelError);  // what right models leave
+  const double surely = expected >= 2 ? kSurelyExpected : kSurely;
   double to_beat = rival.normal.squares;
   std::vector<MarkerShape> best;
   for (int k = 2; k <= kMostDiscs; ++k) {
@@ -302,14 +304,14 @@ std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerB
     const auto places = centres(window, value, k, along * half_length * (1 - 1.0 / k));
     for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirst + 3 * i) << places[i].x(), places[i].y(), radius;
     Solution solution = minimise(discs, window, value, stiffness);
-    if (bright_overlap) {
+    if (bright_overlap && k == 2) {  // more discs that add up could tell any streak
       discs.adds = true;
       discs.p[kContrast] = level;
       Solution sum = minimise(discs, window, whole, stiffness);
-      if (sum.normal.squares < solution.normal.squares) solution = std::move(sum);
+      if (sum.normal.squares < std::min(floor, solution.normal.squares)) solution = std::move(sum);
     }
     const double left = solution.normal.squares;
-    const bool clear = left < share * to_beat || (left < floor && to_beat - left > kSurely * noise * noise);
+    const bool clear = left < share * to_beat || (left < floor && to_beat - left > surely * noise * noise);
     if (!distinct(solution.model) || !clear) {
       if (k == 2) continue;  // three in a corner may fit where two do not
       break;
