@@ -56,7 +56,7 @@ struct MovieWriter::Parts {
   std::int64_t ticks_a_frame = 0;
   bool finished = false;
 
-  void open_codec(cv::Size size, double rate);
+  void open_codec(cv::Size size, double rate, Quality quality);
   void open_file();
   void encode(const AVFrame* frame);
   void check(int code) const {
@@ -64,7 +64,7 @@ struct MovieWriter::Parts {
   }
 };
 
-void MovieWriter::Parts::open_codec(cv::Size size, double rate) {
+void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality) {
   const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
   if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
   if (encoder == nullptr) throw Error("{}: no H.264 encoder is installed; install FFmpeg's libraries built with x264", path);
@@ -78,9 +78,9 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate) {
   codec->gop_size = std::max(1, static_cast<int>(std::lround(kSecondsBetweenKeyFrames * rate)));
   codec->thread_count = 0;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  // Fast enough that the film is not what one waits for; sharp enough to read the numbers.
+  // Fast enough that the film is not what one waits for.
   av_opt_set(codec->priv_data, "preset", "superfast", 0);
-  av_opt_set(codec->priv_data, "crf", "22", 0);
+  av_opt_set(codec->priv_data, "crf", quality == Quality::to_view ? "22" : "8", 0);
   if (const int code = avcodec_open2(codec.get(), encoder, nullptr); code < 0) {
     throw Error("{}: the H.264 encoder ({}) cannot encode {} x {} pixels ({})", path, encoder->name, size.width, size.height,
                 reason(code));
@@ -115,7 +115,7 @@ void MovieWriter::Parts::encode(const AVFrame* frame) {
   }
 }
 
-MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz)
+MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality)
     : parts_(std::make_unique<Parts>()) {
   av_log_set_level(AV_LOG_QUIET);
   std::error_code error;
@@ -125,7 +125,7 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   try {
-    parts_->open_codec(size, rate);
+    parts_->open_codec(size, rate, quality);
     parts_->open_file();
   } catch (...) {
     fs::remove(parts_->part, error);

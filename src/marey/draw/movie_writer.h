@@ -15,9 +15,14 @@ namespace marey {
 /// its name in `finish`: the file is there whole or not at all.
 class MovieWriter {
  public:
+  enum class Quality {
+    to_view,     ///< sharp enough to read numbers
+    to_measure,  ///< markers keep their place to a few hundredths of a pixel
+  };
+
   /// `rate_hz` is what most frames follow each other at; each is shown at its own time all the same.
   /// Throws Error where the file cannot be written or no H.264 encoder is installed.
-  MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz);
+  MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality = Quality::to_view);
   /// Without `finish`, nothing is left behind.
   ~MovieWriter();
   MovieWriter(const MovieWriter&) = delete;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "marey/simulate/discs.h"
 #include "marey/simulate/random.h"
 
 namespace marey {
@@ -261,6 +262,19 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
     }
   }
   return scene;
+}
+
+cv::Mat render_frame(const MarkerScene& scene, int index) {
+  constexpr double kGround = 12, kBarrier = 34, kMarker = 202;
+  const MarkerSceneOptions& options = scene.options;
+  std::vector<Disc> discs;
+  for (const MarkerTruth& marker : scene.frames[index])
+    discs.push_back({marker.position, options.radius_px, kMarker, options.blur_px});
+  for (const Vector<2>& light : scene.clutter[index]) discs.push_back({light, options.radius_px, kMarker, options.blur_px});
+  cv::Mat image(options.size, CV_32FC1, cv::Scalar(kGround));
+  draw_discs(image, discs);
+  for (const Box& barrier : scene.barriers) draw_barrier(image, barrier, kBarrier);
+  return expose(image, options.noise, scene.seed * 100'003 + static_cast<std::uint64_t>(index));
 }
 
 }  // namespace marey

@@ -63,4 +63,8 @@ struct MarkerScene {
 /// tables II–IV say; `docs/experiments.md` shows both.
 MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options = {});
 
+/// Frame `index` of the scene as a camera gives it: CV_8UC1. Bright discs over a dark ground, each before those of lower number,
+/// barriers before all of them; the noise follows from the scene's seed.
+cv::Mat render_frame(const MarkerScene& scene, int index);
+
 }  // namespace marey
