@@ -456,7 +456,7 @@ class AdaptiveBackground final : public Background {
   std::vector<std::size_t> row_begin_;  ///< the first run of each row
   cv::Mat mask_;
 
-  int scaled(int threshold) const { return std::max(1, static_cast<int>(std::lround(threshold / options_.sensitivity))); }
+  int scaled(int threshold) const { return std::clamp(static_cast<int>(std::lround(threshold / options_.sensitivity)), 1, 64); }
 };
 
 }  // namespace

@@ -29,7 +29,7 @@ struct BackgroundKernels {
 
   /// The band of levels that belong to the scene: round the mean, wider by the noise (`gate` / 16 spreads, at least `floor`
   /// levels), and half-way to the lowest and the highest mean of the 3 × 3 pixels, so that an edge may move by half a pixel. `rows`
-  /// are the rows above, at and below; they are not read beyond their width.
+  /// are the rows above, at and below; they are not read beyond their width. `gate` is at most 128, `floor` at most 64.
   void (*band)(const std::int16_t* const rows[3], const std::uint8_t* spread, int width, int gate, int floor, std::uint8_t* low,
                std::uint8_t* high);
 

@@ -6,6 +6,14 @@ namespace marey {
 
 void append_runs(const std::uint8_t* pixels, int row, int width, std::vector<PixelRun>& runs) {
   for (int x = 0; x < width;) {
+    std::uint64_t many[4] = {};
+    if (x + 32 <= width) {
+      std::memcpy(many, pixels + x, sizeof many);
+      if ((many[0] | many[1] | many[2] | many[3]) == 0) {
+        x += 32;
+        continue;
+      }
+    }
     std::uint64_t eight = 0;
     if (x + 8 <= width) {
       std::memcpy(&eight, pixels + x, sizeof eight);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 
 #include "marey/detect/runs.h"
@@ -78,9 +79,10 @@ void join_in_rows(std::vector<PixelRun>& runs) {
 void fill_holes(std::vector<PixelRun>& runs, cv::Size size, double max_hole) {
   const std::vector<PixelRun> holes = holes_between(runs, size, max_hole);
   if (holes.empty()) return;
-  const auto middle = static_cast<std::ptrdiff_t>(runs.size());
-  runs.insert(runs.end(), holes.begin(), holes.end());
-  std::inplace_merge(runs.begin(), runs.begin() + middle, runs.end(), before);
+  std::vector<PixelRun> all;
+  all.reserve(runs.size() + holes.size());
+  std::merge(runs.begin(), runs.end(), holes.begin(), holes.end(), std::back_inserter(all), before);
+  runs = std::move(all);
   join_in_rows(runs);
 }
 
