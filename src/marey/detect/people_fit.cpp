@@ -24,7 +24,9 @@ namespace {
 struct Part {
   double left, top, right, bottom;
 };
-constexpr std::array<Part, 3> kBody = {{{0.28, 0.0, 0.72, 0.16}, {0.10, 0.16, 0.90, 0.52}, {0.18, 0.52, 0.82, 1.0}}};
+constexpr Part kHead = {0.28, 0.0, 0.72, 0.16}, kTrunk = {0.10, 0.16, 0.90, 0.52}, kLegs = {0.18, 0.52, 0.82, 1.0};
+constexpr double kBodyShare = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the box
+constexpr double kLeastTrunk = 0.15;                                   // filled, of what is not explained: a quick no
 constexpr std::array<Part, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.03, 0.12, 1.03, 1.03}}};
 constexpr Part kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
@@ -38,6 +40,7 @@ constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone 
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
+constexpr int kCoarse = 2;  // cells between the places first looked at
 
 class Grid {
  public:
@@ -52,8 +55,7 @@ class Grid {
         valid_[index(row, column)] = tall * overlap(left_ + column * cell_, scene.image.width);
       }
     }
-    filled_sum_.resize(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1), 0);
-    valid_sum_ = filled_sum_;
+    sums_.resize(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1));
   }
 
   void fill(std::span<const PixelRun> runs, const FitScene& scene) {
@@ -70,7 +72,6 @@ class Grid {
     first_filled_ = filled_;
     first_valid_ = valid_;
     sum();
-    first_valid_sum_ = valid_sum_;
   }
 
   void reset() {
@@ -89,21 +90,50 @@ class Grid {
     }
   }
 
-  void sum() {
-    integrate(filled_, filled_sum_);
-    integrate(valid_, valid_sum_);
-  }
-
   struct Count {
     int filled = 0, valid = 0;  ///< px² not explained
     int visible = 0;            ///< px² valid before anyone was placed
+
+    Count& operator+=(const Count& other) {
+      filled += other.filled;
+      valid += other.valid;
+      visible += other.visible;
+      return *this;
+    }
+    Count& operator-=(const Count& other) {
+      filled -= other.filled;
+      valid -= other.valid;
+      visible -= other.visible;
+      return *this;
+    }
   };
-  Count count(const Box& box, const Part& part) const {
-    const Cells cells = cells_of(box, part);
-    return {over(filled_sum_, cells), over(valid_sum_, cells), over(first_valid_sum_, cells)};
+
+  /// Makes the integral image of the counts as they stand.
+  void sum() {
+    const std::size_t stride = columns_ + 1;
+    for (int row = 0; row < rows_; ++row) {
+      Count along;
+      for (int column = 0; column < columns_; ++column) {
+        const std::size_t i = index(row, column);
+        along += {filled_[i], valid_[i], first_valid_[i]};
+        Count& here = sums_[(row + 1) * stride + column + 1];
+        here = sums_[row * stride + column + 1];
+        here += along;
+      }
+    }
   }
 
-  int filled_in_all() const { return filled_sum_.back(); }
+  Count count(const Box& box, const Part& part) const {
+    const Cells c = cells_of(box, part);
+    const std::size_t stride = columns_ + 1;
+    Count result = sums_[c.bottom * stride + c.right];
+    result -= sums_[c.top * stride + c.right];
+    result -= sums_[c.bottom * stride + c.left];
+    result += sums_[c.top * stride + c.left];
+    return result;
+  }
+
+  int filled_in_all() const { return sums_.back().filled; }
   double cell() const { return cell_; }
   double left() const { return left_; }
   double top() const { return top_; }
@@ -133,29 +163,12 @@ class Grid {
 
   Cells cells_of(const Box& box, const Part& part) const {
     const auto across = [&](double x) {
-      return std::clamp(static_cast<int>(std::lround((box.left + x * box.width - left_) / cell_)), 0, columns_);
+      return static_cast<int>(std::clamp((box.left + x * box.width - left_) / cell_ + 0.5, 0.0, double(columns_)));
     };
     const auto down = [&](double y) {
-      return std::clamp(static_cast<int>(std::lround((box.top + y * box.height - top_) / cell_)), 0, rows_);
+      return static_cast<int>(std::clamp((box.top + y * box.height - top_) / cell_ + 0.5, 0.0, double(rows_)));
     };
     return {across(part.left), down(part.top), across(part.right), down(part.bottom)};
-  }
-
-  void integrate(const std::vector<int>& values, std::vector<int>& sums) const {
-    const std::size_t stride = columns_ + 1;
-    for (int row = 0; row < rows_; ++row) {
-      int along = 0;
-      for (int column = 0; column < columns_; ++column) {
-        along += values[index(row, column)];
-        sums[(row + 1) * stride + column + 1] = sums[row * stride + column + 1] + along;
-      }
-    }
-  }
-
-  int over(const std::vector<int>& sums, const Cells& c) const {
-    const std::size_t stride = columns_ + 1;
-    return sums[c.bottom * stride + c.right] - sums[c.top * stride + c.right] - sums[c.bottom * stride + c.left] +
-           sums[c.top * stride + c.left];
   }
 
   double cell_;
@@ -163,7 +176,7 @@ class Grid {
   int columns_ = 0, rows_ = 0;
   std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
   std::vector<int> first_filled_, first_valid_;  ///< the same before anyone was placed
-  std::vector<int> filled_sum_, valid_sum_, first_valid_sum_;  ///< integral images
+  std::vector<Count> sums_;                      ///< integral image
 };
 
 Box known_box(const Box& box, const FitScene& scene) {
@@ -199,17 +212,14 @@ class Fit {
   };
 
   double cover(const Box& box) const {
-    double filled = 0, valid = 0, visible = 0, area = 0;
-    for (const Part& part : kBody) {
-      const Grid::Count count = grid_.count(box, part);
-      filled += count.filled;
-      valid += count.valid;
-      visible += count.visible;
-      area += (part.right - part.left) * (part.bottom - part.top) * box.area();
-    }
-    if (visible < kLeastVisible * area) return -1;
-    const double unseen = std::max(0.0, 1 - visible / area);
-    return (filled - options_.blank_penalty * (valid - filled)) / visible - kUnseenCost * unseen;
+    Grid::Count body = grid_.count(box, kTrunk);
+    if (body.filled < kLeastTrunk * body.valid) return -1;
+    body += grid_.count(box, kHead);
+    body += grid_.count(box, kLegs);
+    const double area = kBodyShare * box.area();
+    if (body.visible < kLeastVisible * area) return -1;
+    const double unseen = std::max(0.0, 1 - body.visible / area);
+    return (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnseenCost * unseen;
   }
 
   double above_head(const Box& box) const {
@@ -267,21 +277,28 @@ class Fit {
 
   Place best_anywhere() const {
     Place best;
-    const double step = grid_.cell();
     // From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
+    const double step = kCoarse * grid_.cell();
     for (double foot_y = grid_.bottom(); foot_y > grid_.top(); foot_y -= step) {
-      for (double foot_x = grid_.left(); foot_x < grid_.right(); foot_x += step) {
-        const auto size = scene_.size_at(foot_x, foot_y);
-        if (!size) continue;
-        if (grid_.filled_in_all() < options_.min_cover_new * kLeastVisible * 0.5 * size->height * size->width) return best;
-        const Box there = size->box_at(foot_x, foot_y);
-        const double covered = cover(there);
-        if (covered < options_.min_cover_new) continue;
-        const double value = covered - above_head(there);
-        if (value > best.value + 1e-9) best = {there, covered, value};
-      }
+      for (double foot_x = grid_.left(); foot_x < grid_.right(); foot_x += step) consider(foot_x, foot_y, best);
+    }
+    if (best.value <= -1) return best;
+    const auto foot = best.box.foot();
+    for (int y = kCoarse - 1; y > -kCoarse; --y) {
+      for (int x = 1 - kCoarse; x < kCoarse; ++x) consider(foot.x() + x * grid_.cell(), foot.y() + y * grid_.cell(), best);
     }
     return best;
+  }
+
+  /// Takes someone new with feet at (x, y) for the best if that is better.
+  void consider(double foot_x, double foot_y, Place& best) const {
+    const auto size = scene_.size_at(foot_x, foot_y);
+    if (!size) return;
+    const Box there = size->box_at(foot_x, foot_y);
+    const double covered = cover(there);
+    if (covered < options_.min_cover_new || covered < best.value) return;
+    const double value = covered - above_head(there);
+    if (value > best.value + 1e-9) best = {there, covered, value};
   }
 
   void refine() {
@@ -307,13 +324,10 @@ class Fit {
     grid_.reset();
     grid_.sum();
     for (Placed& one : placed_) {
-      double filled = 0, valid = 0;
-      for (const Part& part : kBody) {
-        const Grid::Count count = grid_.count(one.box, part);
-        filled += count.filled;
-        valid += count.valid;
-      }
-      one.seen = valid > 0 ? filled / valid : 0;
+      Grid::Count body = grid_.count(one.box, kHead);
+      body += grid_.count(one.box, kTrunk);
+      body += grid_.count(one.box, kLegs);
+      one.seen = body.valid > 0 ? static_cast<double>(body.filled) / body.valid : 0;
     }
   }
 
