@@ -195,7 +195,10 @@ Box moved(const Box& box, double dx, double dy) {
 
 class Fit {
  public:
-  Fit(Grid& grid, const FitScene& scene, const FitOptions& options) : grid_(grid), scene_(scene), options_(options) {}
+  Fit(Grid& grid, const FitScene& scene, const PersonSize& typical, const FitOptions& options)
+      : grid_(grid), scene_(scene), options_(options) {
+    enough_ = 0.5 * options.min_cover_new * kLeastVisible * kBodyShare * typical.width * typical.height;
+  }
 
   std::vector<Placed> run(std::span<const Box> known) {
     place_all(known);
@@ -277,6 +280,7 @@ class Fit {
 
   Place best_anywhere() const {
     Place best;
+    if (grid_.filled_in_all() < enough_) return best;
     // From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
     const double step = kCoarse * grid_.cell();
     for (double foot_y = grid_.bottom(); foot_y > grid_.top(); foot_y -= step) {
@@ -334,6 +338,7 @@ class Fit {
   Grid& grid_;
   const FitScene& scene_;
   const FitOptions& options_;
+  double enough_;  ///< px² of unexplained foreground, half of the least that can make someone new
   std::vector<Placed> placed_;
 };
 
@@ -366,7 +371,7 @@ std::vector<Placed> fit_people(std::span<const PixelRun> runs, std::span<const B
                  place.width + 2 * typical.width + 1, place.height + typical.height + 1};
   Grid grid(wide, scene, cell);
   grid.fill(runs, scene);
-  return Fit(grid, scene, options).run(known);
+  return Fit(grid, scene, typical, options).run(known);
 }
 
 }  // namespace marey
