@@ -36,6 +36,21 @@ double roundness(const MarkerBlob& blob) {
   return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
 }
 
+/// The middle of the pixels along the border of `frame`; `otherwise` where all of it lies outside the picture.
+double rim_level(const cv::Mat& luma, const cv::Rect& frame, double otherwise) {
+  std::vector<int> rim;
+  const cv::Rect within({}, luma.size());
+  const auto look = [&](int x, int y) {
+    if (within.contains({x, y})) rim.push_back(luma.depth() == CV_8U ? luma.at<std::uint8_t>(y, x) : luma.at<std::uint16_t>(y, x));
+  };
+  for (int x = frame.x; x < frame.br().x; ++x) look(x, frame.y), look(x, frame.br().y - 1);
+  for (int y = frame.y; y < frame.br().y; ++y) look(frame.x, y), look(frame.br().x - 1, y);
+  if (rim.empty()) return otherwise;
+  const auto middle = rim.begin() + static_cast<std::ptrdiff_t>(rim.size() / 2);
+  std::nth_element(rim.begin(), middle, rim.end());
+  return *middle;
+}
+
 bool inside(const Box& box, double x, double y) {
   return x >= box.left - 0.5 && y >= box.top - 0.5 && x < box.right() - 0.5 && y < box.bottom() - 0.5;
 }
@@ -248,20 +263,12 @@ MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const
   around.white = levels_.white();
   around.dark = options_.dark;
   around.blur = blur_;
-  if (!options_.colour) return around;
-  // A coloured marker may be brighter or darker than what is around it: the pixels along a frame 3 px outside its box say.
-  std::vector<int> rim;
-  const cv::Rect frame(blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6);
+  if (!options_.colour && !options_.threshold) return around;
+  // A coloured marker may be brighter or darker than what is around it, and beside a fixed threshold a tile may be mostly of
+  // something else than what lies round the marker.
   const cv::Rect within({}, luma.size());
-  const auto look = [&](int i, int j) {
-    if (within.contains({i, j})) rim.push_back(luma.at<std::uint8_t>(j, i));
-  };
-  for (int i = frame.x; i < frame.br().x; ++i) look(i, frame.y), look(i, frame.br().y - 1);
-  for (int j = frame.y; j < frame.br().y; ++j) look(frame.x, j), look(frame.br().x - 1, j);
-  if (rim.empty()) return around;
-  std::nth_element(rim.begin(), rim.begin() + static_cast<std::ptrdiff_t>(rim.size() / 2), rim.end());
-  around.background = rim[rim.size() / 2];
-  around.dark = cv::mean(luma(blob.box & within))[0] < around.background;
+  around.background = rim_level(luma, {blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6}, around.background);
+  if (options_.colour) around.dark = cv::mean(luma(blob.box & within))[0] < around.background;
   return around;
 }
 
@@ -310,7 +317,7 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   detection.covariance = shape.covariance;
   detection.area = shape.fitted ? std::numbers::pi * shape.radius * shape.radius : static_cast<double>(blob.area);
   detection.box = Box::from_centre(shape.centre, 2 * shape.radius + 1, 2 * shape.radius + 1);
-  if (options_.colour) return detection;
+  if (options_.colour || options_.threshold) return detection;
   const double least = levels_.least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
   detection.score = std::clamp(shape.contrast / (2 * least), 0.1, 1.0);
   return detection;

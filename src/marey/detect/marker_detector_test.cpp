@@ -227,6 +227,24 @@ TEST(MarkerDetector, LimitsOnAreaAndRoundnessAndAFixedThreshold) {
   EXPECT_TRUE(find(image, options).empty());
 }
 
+TEST(MarkerDetector, DarkMarkersOnAWhitePlateBeforeBlackAreFoundByAFixedThreshold) {
+  cv::Mat image = scene({128, 128}, {{70.3, 60.2, 2, 20}, {75.6, 30.4, 2, 20}}, 2, 1, 200);
+  image(cv::Rect(0, 0, 60, 128)).setTo(15);
+  image(cv::Rect(90, 0, 38, 128)).setTo(15);
+  MarkerOptions options;
+  options.dark = true;
+  options.threshold = 110;
+  options.max_area = 500;
+  for (const int depth : {CV_8U, CV_16U}) {
+    cv::Mat deep;
+    image.convertTo(deep, depth);
+    const auto found = find(deep, options);
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_LT(distance_to_nearest(found, 70.3, 60.2), 0.1);
+    EXPECT_LT(distance_to_nearest(found, 75.6, 30.4), 0.1);
+  }
+}
+
 TEST(MarkerDetector, MasksLeaveOutWhatTheyCover) {
   const cv::Mat image = scene({100, 60}, {{20.2, 20, 3}, {70.4, 30, 3}}, 1, 1);
   MarkerOptions options;

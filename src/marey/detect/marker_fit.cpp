@@ -158,7 +158,7 @@ void measure(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundi
     const auto* row = image.ptr<Pixel>(y);
     for (int x = box.x; x < box.br().x; ++x) peak = std::max(peak, sign * (row[x] - level));
   }
-  double sum = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_yy = 0, sum_xy = 0;
+  double sum = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_yy = 0;
   int above_half = 0;
   const float floor = 0.1f * peak;
   for (int y = box.y; y < box.br().y; ++y) {
@@ -184,15 +184,17 @@ void measure(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundi
   window.background = around.background;
   window.half_area = above_half;
   const Vector<2> first(blob.box.x, blob.box.y);
-  const Vector<2> mean(sum_x / sum, sum_y / sum);
+  // Nothing stands out where the background was taken for another than it is; then the blob's own mean serves.
+  const bool dim = !(sum > 0);
+  const Vector<2> mean = dim ? Vector<2>(blob.mean_x - blob.box.x, blob.mean_y - blob.box.y) : Vector<2>(sum_x / sum, sum_y / sum);
+  if (dim) sum = 1;
   window.origin = first + mean.array().round().matrix();
   window.centroid = first + mean - window.origin;
   // Var = σ² Σ (x − c)² / (Σ w)², plus what cutting at the floor does to a disc's rim.
   const double n = box.area();
   const double cut = 0.02;
   const double factor = around.noise * around.noise / (sum * sum);
-  sum_xy = 0;
-  window.centroid_covariance << factor * (sum_xx + n * mean.x() * mean.x()) + cut * cut, sum_xy, sum_xy,
+  window.centroid_covariance << factor * (sum_xx + n * mean.x() * mean.x()) + cut * cut, 0, 0,
       factor * (sum_yy + n * mean.y() * mean.y()) + cut * cut;
 }
 

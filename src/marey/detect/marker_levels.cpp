@@ -136,7 +136,7 @@ double MarkerLevels::typical_least_contrast() const {
   std::vector<double> all;
   for (std::size_t i = 0; i < level_.size(); ++i) {
     const double height = dark_ ? white_ - thresholds_.of_tile[i] : thresholds_.of_tile[i];
-    all.push_back(height - level_[i]);
+    all.push_back(std::abs(height - level_[i]));
   }
   if (all.empty()) return 0;
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
