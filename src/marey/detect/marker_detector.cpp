@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -219,9 +219,10 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<c
     return std::any_of(expected.begin(), expected.end(),
                        [&](const Expected& e) { return inside(e.box, blobs[i].mean_x, blobs[i].mean_y); });
   };
-  const auto others = std::stable_partition(chosen_.begin(), chosen_.end(), wanted);
-  const auto larger = [&](std::size_t a, std::size_t b) { return blobs[a].area > blobs[b].area; };
-  std::stable_sort(others, chosen_.end(), larger);
+  std::vector<std::tuple<bool, std::int64_t, std::size_t>> order;  // what sorts first stays
+  for (const std::size_t i : chosen_) order.emplace_back(!wanted(i), -blobs[i].area, i);
+  std::sort(order.begin(), order.end());
+  std::transform(order.begin(), order.end(), chosen_.begin(), [](const auto& entry) { return std::get<2>(entry); });
   chosen_.resize(most);
   std::sort(chosen_.begin(), chosen_.end());
 }
