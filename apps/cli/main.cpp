@@ -7,7 +7,7 @@
 #include "commands.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Marey turns what cameras see into motion you can measure."};
+  CLI::App app{"Marey turns what cameras see into motion you can measure.", "marey"};
   app.require_subcommand(1);
   marey::cli::add_track(app);
   marey::cli::add_evaluate(app);

@@ -168,7 +168,7 @@ void add_track(CLI::App& app) {
                    "in place of INPUT, what another program detected: MOT text, frame,-1,left,top,width,height,score")
       ->excludes(input);
   command->add_option("-o,--output", options->out,
-                      "where the tracks go; - for standard output (default: beside you, named after INPUT)");
+                      "where the tracks go; - for standard output (default: INPUT_tracks.txt in this folder)");
   command->add_option("--format", options->format, "one of " + track_format_names() + " (default: by OUT's ending, else mot)")
       ->check(known([](const std::string& text) { parse_track_format(text); }));
   command->add_option("--overlay", options->overlay, "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4");
