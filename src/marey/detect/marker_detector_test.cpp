@@ -43,7 +43,7 @@ cv::Mat scene(cv::Size size, const std::vector<Spot>& spots, double noise, std::
     }
   }
   std::mt19937 random(seed);
-  std::normal_distribution<float> grain(0, static_cast<float>(noise));
+  std::normal_distribution<float> grain(0, static_cast<float>(std::max(noise, 1e-3)));
   if (noise > 0) std::for_each(image.begin<float>(), image.end<float>(), [&](float& pixel) { pixel += grain(random); });
   cv::Mat result;
   image.convertTo(result, depth, scale);
