@@ -241,7 +241,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
     counts_.shared += static_cast<std::int64_t>(placed.size());
   }
   for (const Placed& one : placed) {
-    Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.0, 1.0), image);
+    Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.1, 1.0), image);
     if (placed.size() > 1) detection.group = groups_ - 1;
     found.push_back(std::move(detection));
   }

@@ -211,18 +211,24 @@ class Fit {
   struct Place {
     Box box;
     double cover = 0;
+    double share = 0;   ///< of the body in sight that lies on unexplained foreground
     double value = -1;  ///< what is maximised: the cover less the costs of an unlikely place
   };
 
-  double cover(const Box& box) const {
+  Place look_at(const Box& box) const {
+    Place place;
+    place.box = box;
+    place.cover = -1;
     Grid::Count body = grid_.count(box, kTrunk);
-    if (body.filled < kLeastTrunk * body.valid) return -1;
+    if (body.filled < kLeastTrunk * body.valid) return place;
     body += grid_.count(box, kHead);
     body += grid_.count(box, kLegs);
     const double area = kBodyShare * box.area();
-    if (body.visible < kLeastVisible * area) return -1;
+    if (body.visible < kLeastVisible * area) return place;
     const double unseen = std::max(0.0, 1 - body.visible / area);
-    return (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnseenCost * unseen;
+    place.cover = (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnseenCost * unseen;
+    place.share = static_cast<double>(body.filled) / body.visible;
+    return place;
   }
 
   double above_head(const Box& box) const {
@@ -239,9 +245,9 @@ class Fit {
       for (int x = -most_x; x <= most_x; ++x) {
         const Box there = moved(box, x * step, y * step);
         const double dx = x * step / box.width, dy = 2 * y * step / box.height;
-        const double covered = cover(there);
-        const double value = covered - kDistanceCost * (dx * dx + dy * dy);
-        if (value > best.value) best = {there, covered, value};
+        Place place = look_at(there);
+        place.value = place.cover - kDistanceCost * (dx * dx + dy * dy);
+        if (place.value > best.value) best = place;
       }
     }
     return best;
@@ -261,7 +267,8 @@ class Fit {
       std::size_t who = 0;
       for (std::size_t i = 0; i < waiting.size(); ++i) {
         const Place found = best_near(known_box(known[waiting[i]], scene_), kReachAcross, kReachUp);
-        if (found.cover < options_.min_cover_known || found.value <= best.value) continue;
+        if (found.cover < options_.min_cover_known && found.share < options_.min_share_known) continue;
+        if (found.value <= best.value) continue;
         best = found;
         who = i;
       }
@@ -299,10 +306,10 @@ class Fit {
     const auto size = scene_.size_at(foot_x, foot_y);
     if (!size) return;
     const Box there = size->box_at(foot_x, foot_y);
-    const double covered = cover(there);
-    if (covered < options_.min_cover_new || covered < best.value) return;
-    const double value = covered - above_head(there);
-    if (value > best.value + 1e-9) best = {there, covered, value};
+    Place place = look_at(there);
+    if (place.cover < options_.min_cover_new || place.cover < best.value) return;
+    place.value = place.cover - above_head(there);
+    if (place.value > best.value + 1e-9) best = place;
   }
 
   void refine() {

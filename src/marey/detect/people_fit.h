@@ -21,10 +21,11 @@ struct Placed {
 };
 
 struct FitOptions {
-  double min_cover_known = 0.1;  ///< someone known to be here is believed from this cover on
-  double min_cover_new = 0.42;   ///< someone new
-  double blank_penalty = 0.6;    ///< what an empty pixel within the body costs, where a filled one is worth 1
-  int cells_tall = 32;           ///< resolution: a person is this many cells tall
+  double min_cover_known = 0.1;   ///< someone known to be here is believed from this cover on
+  double min_share_known = 0.25;  ///< or, hidden by something, when so much of the body is seen
+  double min_cover_new = 0.42;    ///< someone new
+  double blank_penalty = 0.6;     ///< what an empty pixel within the body costs, where a filled one is worth 1
+  int cells_tall = 32;            ///< resolution: a person is this many cells tall
 };
 
 /// What is known of the scene where people are looked for.
