@@ -19,6 +19,7 @@ constexpr double kNarrowest = 0.55, kWidest = 1.7;  // width, the same
 constexpr double kPlainlyOne = 1.25;                // width up to which nobody asks whether there are two
 constexpr double kLeastFilled = 0.3;                // of its box
 constexpr double kLeastColumn = 0.15;               // of the height, filled: less is a shadow or a hand
+constexpr double kSameBody = 0.6;                   // overlap of the body fitted with the one measured, which is then the better
 constexpr double kBelieved = 0.4;                   // share of a body seen, from which on the rest of it tells what hides people
 constexpr double kOverlapExpected = 0.3;            // of the smaller of the two boxes
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
@@ -230,7 +231,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   for (const Placed& one : placed) {
     if (one.seen > kBelieved) hidden_.note(one.box, mask);
   }
-  if (placed.size() == 1 && looks_whole(cluster, image, kWidest)) {
+  if (placed.size() == 1 && looks_whole(cluster, image, kWidest) && iou(placed[0].box, cluster.body) > kSameBody) {
     found.push_back(whole(cluster, image));
     return;
   }
