@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   marey::cli::add_track(app);
   marey::cli::add_evaluate(app);
+  marey::cli::add_simulate(app);
+  marey::cli::add_experiment(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -14,6 +14,7 @@
 #include "marey/pipeline/track_people.h"
 
 #include "commands.h"
+#include "marker_options.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -27,6 +28,7 @@ struct TrackCommand {
   std::string background = std::string(AdaptiveOptions::name);
   std::string filter;
   std::string targets = "people";
+  MarkerFlags markers;
   bool live = false;
   bool quiet = false;
   bool json = false;
@@ -53,8 +55,8 @@ std::string default_output(const PeopleInput& input, TrackFormat format) {
   return stem + "_tracks" + std::string(ending_of(format));
 }
 
-PeopleOutput output_of(const TrackCommand& command) {
-  PeopleOutput output{.tracks = command.out, .overlay = command.overlay};
+TrackOutput output_of(const TrackCommand& command) {
+  TrackOutput output{.tracks = command.out, .overlay = command.overlay};
   const auto by_ending = track_format_of(command.out);
   if (!command.format.empty()) {
     output.format = parse_track_format(command.format);
@@ -69,7 +71,7 @@ PeopleOutput output_of(const TrackCommand& command) {
 /// The filters' own parameters are in pixels, for things that move as people do who are this high.
 constexpr double kBodyHeight = 100;
 
-TrackPeopleOptions options_of(const TrackCommand& command) {
+TrackPeopleOptions people_options(const TrackCommand& command) {
   TrackPeopleOptions options;
   options.background = parse_background(command.background);
   if (!command.filter.empty() && filter_named(command.filter).index() != options.tracker.filter.index()) {
@@ -79,7 +81,7 @@ TrackPeopleOptions options_of(const TrackCommand& command) {
   return options;
 }
 
-void print_json(const TrackSummary& summary, const PeopleOutput& output, double elapsed) {
+void print_json(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
   const nlohmann::json json = {
       {"frames", summary.frames},
       {"seconds", summary.seconds},
@@ -96,7 +98,7 @@ void print_json(const TrackSummary& summary, const PeopleOutput& output, double 
 }
 
 /// On standard error, so that tracks may go to standard output.
-void print_summary(const TrackSummary& summary, const PeopleOutput& output, double elapsed) {
+void print_summary(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
   fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.people, summary.people == 1 ? "person" : "people",
              summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
   if (summary.too_brief > 0) fmt::print(stderr, "left out: {} seen too briefly to be believed\n", summary.too_brief);
@@ -106,22 +108,46 @@ void print_summary(const TrackSummary& summary, const PeopleOutput& output, doub
   if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
 }
 
-void run(const TrackCommand& command) {
-  const PeopleOutput output = output_of(command);
-  const TrackPeopleOptions options = options_of(command);
+void print_json(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
+  nlohmann::json json = {
+      {"frames", summary.frames},         {"seconds", summary.seconds},
+      {"markers", summary.markers},       {"rows", summary.rows},
+      {"detections", summary.detections}, {"elapsed", elapsed},
+      {"stopped", summary.stopped},       {"warnings", summary.warnings},
+      {"tracks", output.tracks},          {"overlay", output.overlay.empty() ? nlohmann::json() : nlohmann::json(output.overlay)}};
+  if (summary.noise) {
+    json["noise"] = {{"measurement_px", summary.noise->measurement_sigma}, {"acceleration_px_s2", summary.noise->acceleration}};
+  }
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_summary(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
+  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.markers,
+             summary.markers == 1 ? "marker" : "markers", summary.frames, summary.seconds,
+             static_cast<double>(summary.frames) / elapsed);
+  if (summary.noise) {
+    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n",
+               summary.noise->measurement_sigma, summary.noise->acceleration);
+  }
+  fmt::print(stderr, "tracks: {}\n", output.tracks);
+  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
+}
+
+/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order, and tells what came of it.
+template <typename Track>
+void run(const TrackCommand& command, const TrackOutput& output, Track&& track) {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   const auto begin = std::chrono::steady_clock::now();
-  TrackSummary summary;
-  {
+  const auto summary = [&] {
     ProgressBar bar(command.quiet);
     RunHooks hooks;
     hooks.stop = [] { return interrupted.load(); };
     hooks.progress = [&](const TrackProgress& progress) {
       bar.show(progress.step == TrackProgress::Step::tracking ? "tracking" : "drawing", progress.done, progress.total);
     };
-    summary = track_people(command.input, output, options, hooks);
-  }
+    return track(hooks);
+  }();
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
   if (command.json) {
@@ -132,6 +158,20 @@ void run(const TrackCommand& command) {
   if (summary.stopped) {
     fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
     throw CLI::RuntimeError(kInterrupted);
+  }
+}
+
+void run(const TrackCommand& command) {
+  const TrackOutput output = output_of(command);
+  if (command.targets == "markers") {
+    if (!command.input.detections.empty()) throw Error("--detections brings boxes, not markers; leave out --targets markers");
+    const TrackMarkersOptions options = marker_options(command.markers, command.filter, command.live);
+    run(command, output, [&](const RunHooks& hooks) {
+      return track_markers(command.input.pictures, command.input.rate_hz, output, options, hooks);
+    });
+  } else {
+    const TrackPeopleOptions options = people_options(command);
+    run(command, output, [&](const RunHooks& hooks) { return track_people(command.input, output, options, hooks); });
   }
 }
 
@@ -160,7 +200,7 @@ std::string filter_names() {
 
 void add_track(CLI::App& app) {
   auto options = std::make_shared<TrackCommand>();
-  CLI::App* command = app.add_subcommand("track", "Follow people in a recording of one fixed camera");
+  CLI::App* command = app.add_subcommand("track", "Follow people or markers in a recording of one fixed camera");
   auto* input = command->add_option("INPUT", options->input.pictures,
                                     "a video file, a folder of pictures, or a pattern such as 'shot_%04d.png' or '*.jpg'");
   command
@@ -184,12 +224,14 @@ void add_track(CLI::App& app) {
       ->check(known([](const std::string& text) { parse_background(text); }));
   command->add_option("--filter", options->filter, "what predicts each person's motion, one of " + filter_names())
       ->check(known([](const std::string& text) { filter_named(text); }));
-  command->add_option("--targets", options->targets, "what is followed: people")->check(known([](const std::string& text) {
-    if (text != "people") throw Error("\"{}\" cannot be followed; these can: people", text);
-  }));
+  command->add_option("--targets", options->targets, "what is followed: people or markers")
+      ->check(known([](const std::string& text) {
+        if (text != "people" && text != "markers") throw Error("\"{}\" cannot be followed; these can: people, markers", text);
+      }));
   command->add_flag("--live", options->live, "write each frame's tracks as they come; nothing is improved by what came later");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary; warnings stay");
   command->add_flag("--json", options->json, "print the summary as JSON on standard output");
+  add_marker_options(*command, options->markers);
   command->callback([options] {
     if (options->input.pictures.empty() && options->input.detections.empty()) {
       throw CLI::ValidationError("track", "give INPUT or --detections: what is to be tracked?");

@@ -44,7 +44,7 @@ void append_mot(std::string& lines, std::int64_t frame, const Track<2>& track) {
 
 void append_csv(std::string& lines, std::int64_t frame, Timestamp time, const Track<2>& track) {
   auto out = std::back_inserter(lines);
-  fmt::format_to(out, "{},{:.6f},{},{},{:.2f},{:.2f},{:.2f},{:.2f},", frame, seconds(time), number(track.id), quoted(track.label),
+  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},{:.2f},{:.2f},", frame, seconds(time), number(track.id), quoted(track.label),
                  track.position.x(), track.position.y(), track.velocity.x(), track.velocity.y());
   if (track.box) {
     fmt::format_to(out, "{:.2f},{:.2f},{:.2f},{:.2f},", track.box->left, track.box->top, track.box->width, track.box->height);
@@ -61,7 +61,7 @@ void append_json(std::string& lines, std::int64_t frame, Timestamp time, const T
     using nlohmann::json;
     fmt::format_to(out, R"("label":{},)", json(track.label).dump(-1, ' ', false, json::error_handler_t::replace));
   }
-  fmt::format_to(out, R"("x":{:.2f},"y":{:.2f},"vx":{:.2f},"vy":{:.2f},)", track.position.x(), track.position.y(),
+  fmt::format_to(out, R"("x":{:.3f},"y":{:.3f},"vx":{:.2f},"vy":{:.2f},)", track.position.x(), track.position.y(),
                  track.velocity.x(), track.velocity.y());
   if (track.box) {
     fmt::format_to(out, R"("left":{:.2f},"top":{:.2f},"width":{:.2f},"height":{:.2f},)", track.box->left, track.box->top,

@@ -11,6 +11,7 @@
 #include "marey/draw/overlay.h"
 #include "marey/pipeline/detections_input.h"
 #include "marey/pipeline/read_ahead.h"
+#include "marey/pipeline/rows_by_frame.h"
 #include "marey/source/open_source.h"
 #include "marey/track/recording.h"
 
@@ -84,38 +85,9 @@ TrackerOptions tracker_options(const PeopleInput& input, const TrackPeopleOption
   return tracker;
 }
 
-Track<2> track_of(const TrackRow& row) {
-  Track<2> track;
-  track.id = TrackId{row.id};
-  track.position = {row.x, row.y};
-  track.velocity = {row.vx, row.vy};
-  if (row.has_box()) track.box = Box{row.left, row.top, row.width, row.height};
-  track.score = row.score;
-  track.state = row.state;
-  return track;
-}
-
-/// Hands out a sorted table of rows frame by frame.
-class RowsByFrame {
- public:
-  explicit RowsByFrame(const std::vector<TrackRow>& rows) : at_(rows.begin()), end_(rows.end()) {}
-
-  const std::vector<Track<2>>& at(std::int64_t frame) {
-    tracks_.clear();
-    for (; at_ != end_ && at_->frame <= frame; ++at_) {
-      if (at_->frame == frame) tracks_.push_back(track_of(*at_));
-    }
-    return tracks_;
-  }
-
- private:
-  std::vector<TrackRow>::const_iterator at_, end_;
-  std::vector<Track<2>> tracks_;
-};
-
 class Run {
  public:
-  Run(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options, const RunHooks& hooks)
+  Run(const PeopleInput& input, const TrackOutput& output, const TrackPeopleOptions& options, const RunHooks& hooks)
       : input_(input),
         options_(options),
         hooks_(hooks),
@@ -158,7 +130,7 @@ class Run {
       summary_.detections += static_cast<std::int64_t>(seen.detections.size());
       summary_.frames = frame->index + 1;
       summary_.seconds = seconds(frame->time);
-      summary_.stopped = is_stopped(TrackProgress::Step::tracking, summary_.frames, eyes_.source->info().frame_count);
+      summary_.stopped = hooks_.tell({TrackProgress::Step::tracking, summary_.frames, eyes_.source->info().frame_count});
       if (summary_.stopped) break;
     }
     summary_.warnings = eyes_.source->warnings();
@@ -200,15 +172,10 @@ class Run {
       const auto frame = source->next();
       if (!frame) break;
       movie_->write(overlay_.draw(frame->picture, frame->time, by_frame.at(frame->index)), frame->time);
-      if (!is_stopped(TrackProgress::Step::drawing, ++done, summary_.frames) || stopped_before) continue;
+      if (!hooks_.tell({TrackProgress::Step::drawing, ++done, summary_.frames}) || stopped_before) continue;
       summary_.stopped = true;
       break;
     }
-  }
-
-  bool is_stopped(TrackProgress::Step step, std::int64_t done, std::optional<std::int64_t> total) {
-    if (hooks_.progress) hooks_.progress({step, done, total});
-    return hooks_.stop && hooks_.stop();
   }
 
   PeopleInput input_;
@@ -226,7 +193,7 @@ class Run {
 
 }  // namespace
 
-TrackSummary track_people(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options,
+TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, const TrackPeopleOptions& options,
                           const RunHooks& hooks) {
   if (input.pictures.empty() == input.detections.empty()) throw Error("give either pictures or detections to track");
   if (input.rate_hz && !(*input.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *input.rate_hz);

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "marey/detect/background.h"
 #include "marey/detect/people.h"
-#include "marey/format/track_file.h"
+#include "marey/pipeline/run.h"
 #include "marey/track/join.h"
 #include "marey/track/tracker.h"
 
@@ -21,12 +20,6 @@ struct PeopleInput {
   std::optional<double> rate_hz = {};  ///< frames a second, in place of what the pictures' header says
 };
 
-struct PeopleOutput {
-  std::string tracks;
-  TrackFormat format = TrackFormat::mot;
-  std::string overlay = {};  ///< a film with the tracks drawn into the pictures; empty for none
-};
-
 struct TrackPeopleOptions {
   BackgroundOptions background;
   PeopleOptions people;
@@ -34,19 +27,6 @@ struct TrackPeopleOptions {
   JoinOptions join;
   /// Every frame's tracks are written as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
-};
-
-struct TrackProgress {
-  enum class Step { tracking, drawing };
-  Step step = Step::tracking;
-  std::int64_t done = 0;              ///< frames
-  std::optional<std::int64_t> total;  ///< where it is known
-};
-
-/// How a run talks to whoever started it; both may be empty. Called between frames, on the thread that called track_people.
-struct RunHooks {
-  std::function<void(const TrackProgress&)> progress;
-  std::function<bool()> stop;  ///< true: leave off here, and write what there is
 };
 
 struct TrackSummary {
@@ -68,7 +48,7 @@ struct TrackSummary {
 /// detector (told where people are expected), tracker, second pass over the whole recording, files. Memory grows with the number of
 /// rows, 48 bytes each, and with nothing else; not even with those where `live`. The same input gives the same output, bit for bit.
 /// Throws Error where the input cannot be read at all, or an output not written; nothing half-written stays behind.
-TrackSummary track_people(const PeopleInput& input, const PeopleOutput& output, const TrackPeopleOptions& options = {},
+TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, const TrackPeopleOptions& options = {},
                           const RunHooks& hooks = {});
 
 }  // namespace marey

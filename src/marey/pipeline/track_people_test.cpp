@@ -78,7 +78,7 @@ TEST(TrackPeople, PeopleInAFilmAreFoundFollowedAndDrawn) {
   const test::TemporaryFolder folder;
   film_two_walkers(folder / "film.avi");
   const PeopleInput input{.pictures = folder / "film.avi"};
-  const PeopleOutput output{.tracks = folder / "out.txt", .overlay = folder / "out.mp4"};
+  const TrackOutput output{.tracks = folder / "out.txt", .overlay = folder / "out.mp4"};
   int tracked = 0, drawn = 0;
   RunHooks hooks;
   hooks.progress = [&](const TrackProgress& progress) {
