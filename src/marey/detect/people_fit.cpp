@@ -28,14 +28,16 @@ constexpr Part kHead = {0.28, 0.0, 0.72, 0.16}, kTrunk = {0.10, 0.16, 0.90, 0.52
 constexpr double kBodyShare = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the box
 constexpr double kLeastTrunk = 0.15;                                   // filled, of what is not explained: a quick no
 constexpr std::array<Part, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.03, 0.12, 1.03, 1.03}}};
+constexpr Part kWholeBox = {0, 0, 1, 1};
 constexpr Part kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
+constexpr double kArmsWorth = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
 constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
 constexpr double kReachAcross = 0.45;   // of the width: how far from there it is looked for
 constexpr double kReachUp = 0.12;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
 constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something
-constexpr double kUnseenCost = 0.1;    // of a body of which all is out of sight: of two places, the one in sight
+constexpr double kUnseenCost = 0.2;    // of a body of which all is out of sight: of two places, the one in sight
 constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone new be, to come before someone known
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
@@ -211,6 +213,7 @@ class Fit {
   struct Place {
     Box box;
     double cover = 0;
+    double arms = 0;    ///< what the rest of the box adds to the value: foreground beside the body
     double share = 0;   ///< of the body in sight that lies on unexplained foreground
     double value = -1;  ///< what is maximised: the cover less the costs of an unlikely place
   };
@@ -227,6 +230,7 @@ class Fit {
     if (body.visible < kLeastVisible * area) return place;
     const double unseen = std::max(0.0, 1 - body.visible / area);
     place.cover = (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnseenCost * unseen;
+    place.arms = kArmsWorth * std::max(0, grid_.count(box, kWholeBox).filled - body.filled) / area;
     place.share = static_cast<double>(body.filled) / body.visible;
     return place;
   }
@@ -246,7 +250,7 @@ class Fit {
         const Box there = moved(box, x * step, y * step);
         const double dx = x * step / box.width, dy = 2 * y * step / box.height;
         Place place = look_at(there);
-        place.value = place.cover - kDistanceCost * (dx * dx + dy * dy);
+        place.value = place.cover + place.arms - kDistanceCost * (dx * dx + dy * dy);
         if (place.value > best.value) best = place;
       }
     }
@@ -307,8 +311,8 @@ class Fit {
     if (!size) return;
     const Box there = size->box_at(foot_x, foot_y);
     Place place = look_at(there);
-    if (place.cover < options_.min_cover_new || place.cover < best.value) return;
-    place.value = place.cover - above_head(there);
+    if (place.cover < options_.min_cover_new || place.cover + place.arms < best.value) return;
+    place.value = place.cover + place.arms - above_head(there);
     if (place.value > best.value + 1e-9) best = place;
   }
 

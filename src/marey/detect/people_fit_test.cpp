@@ -56,10 +56,11 @@ double value_at(const cv::Mat& mask, const Box& box, const FitOptions& options) 
     area += (part.right - part.left) * (part.bottom - part.top) * box.area();
   }
   if (valid < 0.3 * area) return -1;
-  const double cover = (filled - options.blank_penalty * (valid - filled)) / valid - 0.1 * std::max(0.0, 1 - valid / area);
+  const double cover = (filled - options.blank_penalty * (valid - filled)) / valid - 0.2 * std::max(0.0, 1 - valid / area);
   if (cover < options.min_cover_new) return -1;
+  const double arms = 0.2 * std::max(0.0, count(mask, box, {0, 0, 1, 1}).filled - filled) / area;
   const Count above = count(mask, box, kAboveHead);
-  return cover - (above.valid > 0 ? 0.3 * above.filled / above.valid : 0);
+  return cover + arms - (above.valid > 0 ? 0.3 * above.filled / above.valid : 0);
 }
 
 TEST(FitPeople, TheFirstPersonIsWhereTheSlowTwinFindsTheBestPlace) {
