@@ -127,7 +127,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     if (!target.size || !observation.box) return R;
     const bool believed = !observation.shared && target.size->believes(*observation.box, size_options_);
     const double sigma = options_.place_noise * target.unit * (believed ? 1 : doubt);
-    R.diagonal().array() += sigma * sigma;
+    R.diagonal() = R.diagonal().cwiseMax(Vector<D>::Constant(sigma * sigma));
     return R;
   }
 
@@ -353,7 +353,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     const bool has_box = observation.box && !observation.box->empty();
     const double unit = has_box ? observation.box->height : 1.0;
     Matrix<D> R = observation.covariance;
-    if (has_box) R.diagonal().array() += std::pow(options_.place_noise * unit, 2);
+    if (has_box) R.diagonal() = R.diagonal().cwiseMax(Vector<D>::Constant(std::pow(options_.place_noise * unit, 2)));
     Target<F> target{.id = TrackId{next_id_++},
                      .filter = F(filter_options_.scaled(unit), centre_of(observation) - camera_, R),
                      .size = {},

@@ -28,16 +28,16 @@ class Tracker {
 /// Lengths are in sizes of the target where observations carry a box (its height in the image: a standing person moves as many
 /// body heights a second near the camera as far from it), else in the unit of the observations (px or m).
 struct TrackerOptions {
-  FilterOptions filter = KalmanOptions{.acceleration_noise = 0.6, .initial_speed = 0.8, .gate_sigmas = 3.5};
+  FilterOptions filter = KalmanOptions{.acceleration_noise = 0.45, .initial_speed = 0.8, .gate_sigmas = 3.5};
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 7;             ///< nothing moves faster, sizes/s: 12 m/s for a person
-  double place_noise = 0.05;        ///< standard deviation of a box's centre, sizes; added to the observation's covariance
+  double place_noise = 0.04;        ///< standard deviation of a box's centre, sizes, at least
   double size_noise = 0.1;          ///< standard deviation of the logarithm of a box's width and height
   double size_drift = 0.15;         ///< what that logarithm may change by in a second
   double confident = 0.5;           ///< a target begins with scores of at least this; weaker ones only continue one
   double weak = 0.05;               ///< scores below this are not looked at
   double confirm = 3;               ///< evidence that makes a target: about so many confident observations
-  double patience = 1.2;            ///< a target that should be seen and is not is given up after this, s
+  double patience = 2.5;            ///< a target that should be seen and is not is given up after this, s
   bool steady_camera = false;       ///< true where the camera is known to stand still; else its turning is read off the targets
   double hidden_patience = 3;       ///< one that is hidden behind another or in a shared region after this, s
 };

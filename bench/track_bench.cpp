@@ -1,0 +1,97 @@
+// Tracker step with growing numbers of targets, gated assignment beside a dense one. What to look at: the time a target, which
+// should hardly grow with the number of targets.
+#include <cmath>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "marey/assign/gated_assignment.h"
+#include "marey/assign/linear_assignment.h"
+#include "marey/simulate/random.h"
+#include "marey/track/tracker.h"
+
+namespace marey {
+namespace {
+
+constexpr double rate = 25;  // Hz
+
+/// `count` people who walk about a plain, as dense as a busy street; one in ten is missed.
+class Crowd {
+ public:
+  explicit Crowd(int count) : random_(1), side_(60 * std::sqrt(count)) {
+    for (int i = 0; i < count; ++i) {
+      places_.push_back({random_.uniform(0, side_), random_.uniform(0, side_)});
+      velocities_.push_back({random_.gaussian(0, 1.5), random_.gaussian(0, 0.5)});
+    }
+  }
+
+  const std::vector<Observation<2>>& next() {
+    seen_.clear();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      places_[i] += velocities_[i];
+      if (random_.chance(0.1)) continue;
+      Observation<2> one;
+      one.value = places_[i] + Vector<2>(random_.gaussian(), random_.gaussian());
+      one.box = Box::from_centre(one.value, 32, 80);
+      one.score = 0.9;
+      seen_.push_back(one);
+    }
+    return seen_;
+  }
+
+ private:
+  Random random_;
+  double side_;
+  std::vector<Vector<2>> places_, velocities_;
+  std::vector<Observation<2>> seen_;
+};
+
+void tracker_step(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  Crowd crowd(count);
+  const auto tracker = make_tracker<2>({.steady_camera = true});
+  int frame = 0;
+  for (; frame < 10; ++frame) tracker->step(timestamp_from_seconds(frame / rate), crowd.next());
+  for (auto _ : state) {
+    state.PauseTiming();
+    const auto& seen = crowd.next();
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / rate), seen));
+  }
+  state.counters["a_target"] =
+      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(tracker_step)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
+
+/// Every row with about three columns in its gate.
+std::vector<GatedPair> gated_pairs(int count) {
+  Random random(2);
+  std::vector<GatedPair> pairs;
+  for (int row = 0; row < count; ++row) {
+    pairs.push_back({row, row, random.uniform(1, 10)});
+    for (int neighbour = 1; neighbour <= 2; ++neighbour) {
+      if (random.chance(0.4)) pairs.push_back({row, (row + neighbour) % count, random.uniform(0.1, 8)});
+    }
+  }
+  return pairs;
+}
+
+void assign_gated(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  const auto pairs = gated_pairs(count);
+  GatedAssigner assigner;
+  for (auto _ : state) benchmark::DoNotOptimize(assigner.assign(count, count, pairs));
+}
+BENCHMARK(assign_gated)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMicrosecond);
+
+void assign_dense(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  std::vector<double> costs(static_cast<std::size_t>(count) * count, 0);
+  for (const GatedPair& pair : gated_pairs(count)) costs[static_cast<std::size_t>(pair.row) * count + pair.column] = -pair.gain;
+  LinearAssigner assigner;
+  for (auto _ : state) benchmark::DoNotOptimize(assigner.assign(count, count, costs));
+}
+BENCHMARK(assign_dense)->RangeMultiplier(10)->Range(10, 1000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace marey
