@@ -1,6 +1,7 @@
 #include "marey/pipeline/detections_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,8 @@ class EmptyFrames final : public Source {
   std::int64_t next_index_ = 0;
 };
 
+constexpr double kPlaceNoise = 0.05;  // of a detector's boxes, in their heights
+
 class KnownDetections final : public Detector {
  public:
   explicit KnownDetections(std::vector<LabelledBox> boxes) : boxes_(std::move(boxes)) {}
@@ -64,6 +67,7 @@ class KnownDetections final : public Detector {
       const LabelledBox& seen = boxes_[at_];
       Detection detection;
       detection.centre = seen.box.centre();
+      detection.covariance = std::pow(kPlaceNoise * seen.box.height, 2) * Matrix<2>::Identity();
       detection.area = seen.box.area();
       detection.box = seen.box;
       detection.score = seen.score;

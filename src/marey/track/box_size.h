@@ -91,6 +91,12 @@ class BoxSize {
     height_.correct(box.height, options);
   }
 
+  /// The place nearest to `expected` for the centre of a target of this size that lies somewhere in `region`.
+  Vector<2> centre_within(const Box& region, const Vector<2>& expected) const {
+    const Vector<2> slack(std::max(0.0, region.width - width()) / 2, std::max(0.0, region.height - height()) / 2);
+    return expected.cwiseMax(region.centre() - slack).cwiseMin(region.centre() + slack);
+  }
+
   /// Where `seen` puts the centre of a target of this size that is expected at `expected`: the middle where a side is believed,
   /// else the edge that moved less.
   Vector<2> centre_in(const Box& seen, const Vector<2>& expected, const BoxSizeOptions& options) const {

@@ -42,8 +42,8 @@ class FilterTracker final : public Tracker<F::dimension> {
     mark_crowded();
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
-    correct(now, seen);
     keep_merged(seen);
+    correct(now, seen);
     retire_lost(now);
     start_unclaimed(now, seen);
     return report(now);
@@ -233,8 +233,13 @@ class FilterTracker final : public Tracker<F::dimension> {
         continue;
       }
       const Observation<D>& observation = seen[target.observation];
-      target.filter.correct(place_of(observation, target), noise_of(observation, target));
-      if (observation.box && !observation.box->empty() && !observation.shared) {
+      const bool merged = merged_[target.observation] != 0;
+      if (merged) {
+        stay_within(target, observation);
+      } else {
+        target.filter.correct(place_of(observation, target), noise_of(observation, target));
+      }
+      if (!merged && observation.box && !observation.box->empty() && !observation.shared) {
         if (target.size) {
           target.size->correct(*observation.box, size_options_);
           target.unit = target.size->height();
@@ -270,24 +275,30 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
-  /// An unclaimed region over several targets that are not seen is those targets, merged: they stay within it, keep their size
-  /// and wait for it to part; nobody new begins there.
+  /// A region over several targets is those targets, merged, whether one of them claims it or none: they stay within it, keep
+  /// their sizes and wait for it to part; nobody new begins there.
   void keep_merged(std::span<const Observation<D>> seen) {
     merged_.assign(seen.size(), 0);
     if constexpr (D == 2) {
       if (widest_ <= 0) return;
-      claimed_.assign(seen.size(), 0);
-      for (const Target<F>& target : targets_) {
-        if (target.observation >= 0) claimed_[target.observation] = 1;
+      claimant_.assign(seen.size(), -1);
+      for (int i = 0; i < static_cast<int>(targets_.size()); ++i) {
+        if (targets_[i].observation >= 0) claimant_[targets_[i].observation] = i;
       }
       for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (claimed_[i] || !seen[i].box || seen[i].box->empty()) continue;
+        if (!seen[i].box || seen[i].box->empty()) continue;
+        if (claimant_[i] >= 0 && !outgrows(*seen[i].box, targets_[claimant_[i]])) continue;
         find_covered(*seen[i].box);
-        if (covered_.size() < 2) continue;
+        if (covered_.size() + (claimant_[i] >= 0 ? 1 : 0) < 2) continue;
         merged_[i] = 1;
         for (const int index : covered_) stay_within(targets_[index], seen[i]);
       }
     }
+  }
+
+  static bool outgrows(const Box& region, const Target<F>& target) {
+    return target.size &&
+           (region.width > merged_growth * target.size->width() || region.height > merged_growth * target.size->height());
   }
 
   /// Confirmed targets that are not seen and lie within the region for the most part, into `covered_`.
@@ -304,9 +315,12 @@ class FilterTracker final : public Tracker<F::dimension> {
   }
 
   void stay_within(Target<F>& target, const Observation<D>& region) {
-    const Matrix<D> R = noise_of(region, target);
-    target.filter.correct(place_of(region, target), R);
-    target.hidden = true;
+    if constexpr (D == 2) {
+      const double sigma = doubt * options_.place_noise * target.unit;
+      const Matrix<D> R = region.covariance + sigma * sigma * Matrix<D>::Identity();
+      target.filter.correct(target.size->centre_within(*region.box, in_view(target)) - camera_, R);
+      target.hidden = true;
+    }
   }
 
   void retire_lost(Timestamp now) {
@@ -405,6 +419,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double hidden_evidence = 0.1;
   static constexpr double most_evidence = 10;
   static constexpr double merged_share = 0.6;
+  static constexpr double merged_growth = 1.15;
   static constexpr double covered_share = 0.5;
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
@@ -425,7 +440,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<Sighting> expected_, sightings_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_, merged_;
-  std::vector<int> covered_;
+  std::vector<int> covered_, claimant_;
   PointGrid<D> grid_;        // of observations
   PointGrid<D> neighbours_;  // of targets
   double widest_ = 0;        // of their boxes' heights
