@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "marey/simulate/random.h"
 
@@ -224,7 +225,9 @@ class SimulatedDetector {
 
   /// Of boxes that overlap much the surest is kept, as detectors do.
   static void suppress(std::vector<Observation<2>>& seen) {
-    std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+    std::sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) {
+      return std::tuple(-a.score, a.box->left, a.box->top) < std::tuple(-b.score, b.box->left, b.box->top);
+    });
     std::vector<Observation<2>> kept;
     for (const auto& one : seen) {
       if (std::none_of(kept.begin(), kept.end(), [&](const auto& other) { return iou(*one.box, *other.box) > 0.6; }))

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace marey {
 namespace {
@@ -18,7 +19,9 @@ constexpr double clearly_better = 0.25;  // share of the people by which a shift
 
 std::vector<Sighting> largest(std::span<const Sighting> all) {
   std::vector<Sighting> kept(all.begin(), all.end());
-  std::stable_sort(kept.begin(), kept.end(), [](const Sighting& a, const Sighting& b) { return a.size > b.size; });
+  std::sort(kept.begin(), kept.end(), [](const Sighting& a, const Sighting& b) {
+    return std::tuple(-a.size, a.place.x(), a.place.y()) < std::tuple(-b.size, b.place.x(), b.place.y());
+  });
   if (kept.size() > most_people) kept.resize(most_people);
   return kept;
 }

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/track/smooth.h"
@@ -92,7 +93,8 @@ class Joiner {
   std::vector<GatedPair> candidates(const std::vector<End>& tails, const std::vector<End>& heads, double longest_gap) const {
     std::vector<int> by_time(heads.size());
     std::iota(by_time.begin(), by_time.end(), 0);
-    std::stable_sort(by_time.begin(), by_time.end(), [&](int a, int b) { return heads[a].time < heads[b].time; });
+    std::sort(by_time.begin(), by_time.end(),
+              [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
     std::vector<GatedPair> pairs;
     for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
       const auto later = [&](double time, int head) { return time < heads[head].time; };
@@ -197,8 +199,9 @@ bool is_false_alarm(const Standing& standing, double usual, const JoinOptions& o
 }
 
 std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
-  std::stable_sort(tracklets.begin(), tracklets.end(),
-                   [](const Tracklet& a, const Tracklet& b) { return a.front().frame < b.front().frame; });
+  std::sort(tracklets.begin(), tracklets.end(), [](const Tracklet& a, const Tracklet& b) {
+    return std::pair(a.front().frame, a.front().id) < std::pair(b.front().frame, b.front().id);
+  });
   std::size_t total = 0;
   for (const Tracklet& tracklet : tracklets) total += tracklet.size();
   std::vector<TrackRow> rows;
