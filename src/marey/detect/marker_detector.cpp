@@ -27,6 +27,7 @@ constexpr double kOfRoundness = 0.6;       // a blob this much less round is not
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
 constexpr double kColourDeviation = 0.5;   // px; where chroma lies within its four pixels is not known for certain
 constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a coloured marker
+constexpr double kUnlikeArea = 6;          // times the area of a typical disc
 constexpr int kCell = 64;                  // px; blobs are filed by cells to find their neighbours
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
@@ -84,6 +85,7 @@ class MarkerDetector::Impl {
   void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
                std::vector<Detection>& found);
   Detection report(const MarkerShape& shape, const MarkerBlob& blob);
+  void drop_unlike(std::vector<Detection>& found);
   void learn_from(std::vector<double>& contrasts);
 
   MarkerOptions options_;
@@ -100,8 +102,10 @@ class MarkerDetector::Impl {
   std::vector<MarkerNeighbour> near_;
   MarkerWindow window_;
   std::vector<MarkerBlob> full_size_;
-  std::vector<double> contrasts_, blurs_;
+  std::vector<double> contrasts_, blurs_, disc_areas_;
+  std::vector<char> is_disc_;  // for each detection of the frame
   std::optional<double> blur_;
+  std::optional<double> disc_area_;  // px², typical
   int split_pixels_left_ = 0;
 };
 
@@ -181,9 +185,12 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   file_blobs(blobs, luma.size());
   contrasts_.clear();
   blurs_.clear();
+  disc_areas_.clear();
+  is_disc_.clear();
   split_pixels_left_ = kMostSplitPixels;
   result.detections.reserve(chosen_.size());
   for (const std::size_t index : chosen_) measure(luma, blobs, index, expected, result.detections);
+  drop_unlike(result.detections);
   counts_.markers += static_cast<std::int64_t>(result.detections.size());
   learn_from(contrasts_);
   return result;
@@ -295,7 +302,10 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     const auto parts = split_markers(window_, blob, around, several);
     if (!parts.empty()) {
       ++counts_.split;
-      for (const MarkerShape& part : parts) found.push_back(report(part, blob));
+      for (const MarkerShape& part : parts) {
+        found.push_back(report(part, blob));
+        is_disc_.push_back(1);
+      }
       return;
     }
   }
@@ -304,11 +314,16 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     return;
   }
   if (!lone.fitted) ++counts_.not_fitted;
-  if (lone.fitted && lone.misfit < std::max(kShapeMisfit, grain)) blurs_.push_back(lone.blur);
+  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
+  if (is_disc) {
+    blurs_.push_back(lone.blur);
+    disc_areas_.push_back(static_cast<double>(blob.area));
+  }
   contrasts_.push_back(window_.scale);
   Detection detection = report(lone, blob);
   detection.box = {static_cast<double>(blob.box.x), static_cast<double>(blob.box.y), static_cast<double>(blob.box.width),
                    static_cast<double>(blob.box.height)};
+  is_disc_.push_back(is_disc ? 1 : 0);
   found.push_back(std::move(detection));
 }
 
@@ -322,6 +337,27 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   const double least = levels_.least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
   detection.score = std::clamp(shape.contrast / (2 * least), 0.1, 1.0);
   return detection;
+}
+
+/// Markers of one recording are of one kind. What no disc fits and is many times as large as the discs is something else that is
+/// bright: the edge of a barrier, a window. Where no disc is seen at all, nothing is dropped.
+void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
+  if (!disc_areas_.empty()) {
+    const auto middle = disc_areas_.begin() + static_cast<std::ptrdiff_t>(disc_areas_.size() / 2);
+    std::nth_element(disc_areas_.begin(), middle, disc_areas_.end());
+    disc_area_ = disc_area_ ? *disc_area_ + (*middle - *disc_area_) / 8 : *middle;
+  }
+  if (!disc_area_) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!is_disc_[i] && found[i].box.area() > kUnlikeArea * *disc_area_) {
+      ++counts_.unlike;
+      continue;
+    }
+    if (kept != i) found[kept] = std::move(found[i]);
+    ++kept;
+  }
+  found.resize(kept);
 }
 
 void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {

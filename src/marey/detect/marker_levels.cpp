@@ -15,11 +15,11 @@ namespace marey {
 namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
-constexpr int kGrid = 8;         // samples a tile, each way
-constexpr int kShare = 32;       // frames in which every tile is looked at once
-constexpr double kSigmas = 6;    // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kLeast = 0.03;  // of white
-constexpr double kOfContrast = 0.2;
+constexpr int kGrid = 8;             // samples a tile, each way
+constexpr int kShare = 32;           // frames in which every tile is looked at once
+constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
+constexpr double kLeast = 0.03;      // of white
+constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
 constexpr int kMostChange = 1023;
 
 double value_at(const cv::Mat& image, int x, int y) {

@@ -132,7 +132,7 @@ class RosterTracker final : public Tracker<F::dimension> {
 
   double width_of(const Observation<D>& observation) const {
     if constexpr (D == 2) {
-      if (observation.box) return std::max(observation.box->width, observation.box->height);
+      if (observation.box) return std::sqrt(observation.box->area());
     }
     return options_.marker_width;
   }
@@ -141,6 +141,19 @@ class RosterTracker final : public Tracker<F::dimension> {
     Matrix<D> R = observation.covariance;
     R.diagonal().array() += options_.place_noise * options_.place_noise;
     return R;
+  }
+
+  /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that.
+  Matrix<D> noise_of(const Observation<D>& observation, const Target& target) const {
+    Matrix<D> R = noise_of(observation);
+    const double change = std::abs(width_of(observation) - target.width) - kWidthNoise * target.width;
+    if (change > 0) R.diagonal().array() += square(change);
+    return R;
+  }
+
+  bool alike(const Target& target, const Observation<D>& observation) const {
+    const double ratio = width_of(observation) / target.width;
+    return ratio < kMostGrowth && ratio > 1 / kMostGrowth;
   }
 
   void claim(std::span<const Observation<D>> seen) {
@@ -179,7 +192,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   double gain(const Target& target, const Observation<D>& point) const {
     const Vector<D> residual = point.value - target.filter.position();
     if (residual.squaredNorm() > square(options_.max_speed * target.unseen + target.width)) return 0;
-    const Matrix<D> R = noise_of(point);
+    const Matrix<D> R = noise_of(point, target);
     if (target.filter.gate_distance(point.value, R) > 1) return 0;
     if (target.unseen > 1.5 * dt_ && expected_clutter(residual.norm() + target.width) > kClutterLimit) return 0;
     const Matrix<D> S = target.filter.innovation_covariance(R);
@@ -263,7 +276,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       for (int column = 0; column < std::ssize(free_); ++column) {
         const Vector<D>& place = seen[free_[column]].value;
         const double reach = options_.max_speed * target.unseen + target.width;
-        if ((place - target.last_place).norm() > reach) continue;
+        if ((place - target.last_place).norm() > reach || !alike(target, seen[free_[column]])) continue;
         const double way = way_to(target, place);
         if (expected_clutter(way + target.width) > kClutterLimit) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way, kFar)});
@@ -324,7 +337,7 @@ class RosterTracker final : public Tracker<F::dimension> {
     for (Target& target : targets_) {
       if (target.observation == kNone) continue;
       const Observation<D>& point = seen[target.observation];
-      Matrix<D> R = noise_of(point);
+      Matrix<D> R = noise_of(point, target);
       if (target.crowded) R.diagonal().array() += square(kCrowdNoise * target.width);
       if (target.standing != Standing::established) target.score += log_ratio(target, point.value, R);
       target.filter.correct(point.value, R);
@@ -408,6 +421,8 @@ class RosterTracker final : public Tracker<F::dimension> {
   static constexpr double kClutterLimit = 0.02;   // false points to be expected where a jump is still believed at once
   static constexpr double kLeastClutter = 0.01;   // false points a frame that are always thought possible
   static constexpr double kMissPenalty = 3;       // log of 1 over the chance that a marker is missed
+  static constexpr double kWidthNoise = 0.2;      // of the width: what the pixels' raster makes of it
+  static constexpr double kMostGrowth = 2.5;      // a lost marker comes back no larger, no smaller than by this
   static constexpr double kWidthMemory = 0.1;     // a frame
   static constexpr double kFar = 1e6;             // px
   static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is looked at
