@@ -20,7 +20,8 @@ Picture shade(cv::Size size, int level) {
 /// What ffprobe says of the film's frames: "time,time,…", and of its stream.
 std::string probe(const test::TemporaryFolder& folder, const std::string& path, const std::string& what) {
   const std::string answer = folder / "probe.txt";
-  const std::string command = "ffprobe -v error -select_streams v -show_entries " + what + " -of csv=p=0 " + path + " | sort > " + answer;
+  const std::string command =
+      "ffprobe -v error -select_streams v -show_entries " + what + " -of csv=p=0 " + path + " | sort > " + answer;
   EXPECT_EQ(std::system(command.c_str()), 0);
   return test::read_file(answer);
 }

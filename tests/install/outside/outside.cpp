@@ -1,4 +1,5 @@
 #include <fstream>
+
 #include <marey/pipeline/track_people.h>
 
 int main(int, char** argv) {
