@@ -23,7 +23,9 @@ endfunction()
 # What every target of ours is compiled with: warnings, and the sanitizers where asked for.
 add_library(marey_warnings INTERFACE)
 target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                       $<$<BOOL:${MAREY_WERROR}>:-Werror>)
+                       $<$<BOOL:${MAREY_WERROR}>:-Werror>
+                       # libstdc++ 12's own stable_sort and stable_partition call what it has deprecated, and clang tells.
+                       $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
 if(MAREY_SANITIZE)
   add_compile_options(-fsanitize=${MAREY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MAREY_SANITIZE})

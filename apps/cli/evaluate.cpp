@@ -21,6 +21,7 @@ struct EvaluateOptions {
   std::string truth;
   std::string tracks;
   double iou = 0.5;
+  bool motchallenge = false;
   bool json = false;
 };
 
@@ -135,7 +136,8 @@ void print_table(const Evaluation& result, double iou) {
 
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw Error("only one of --truth and --tracks can be standard input");
-  const MotTable truth = read_mot(options.truth, MotKind::truth);
+  MotTable truth = read_mot(options.truth, MotKind::truth);
+  if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const MotTable tracks = read_mot(options.tracks, MotKind::tracks);
   const Evaluation result = evaluate(truth.boxes, tracks.boxes, options.iou);
   const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
@@ -164,6 +166,8 @@ void add_evaluate(CLI::App& app) {
             return valid ? "" : "\"" + text + "\" is no overlap; it must be above 0 and at most 1";
           },
           "0..1"));
+  command->add_flag("--motchallenge", options->motchallenge,
+                    "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
   command->add_flag("--json", options->json, "print all figures as JSON, shares between 0 and 1");
   command->callback([options] { run(*options); });
 }

@@ -136,7 +136,6 @@ class Parser {
     row.box = {values[2] - 1, values[3] - 1, values[4], values[5]};
     row.score = values[6];
     if (kind_ != MotKind::detections) row.id = whole("id", values[1], 0, "in tracks and truth ids are whole numbers from 0");
-    if (kind_ == MotKind::truth && row.score == 0) return;
     for (const std::size_t side : {4, 5}) {
       if (values[side] > 0) continue;
       if (kind_ != MotKind::detections) {

@@ -15,8 +15,8 @@ namespace marey {
 /// byte order mark, blank lines, and lines in any order of frames. Rules for what is doubtful:
 ///   - numbers must be finite and below 1e9, frames 1 to 1e9, frames and ids whole (`3.0` is);
 ///   - in truth and tracks ids are 0 or more, an id stands once a frame, and width and height are positive: else Error;
-///   - in detections ids are passed over, and a box without width or height is left out with a warning;
-///   - in truth, lines whose seventh column is 0 are left out: MOTChallenge marks what is not to be judged so.
+///   - in detections ids are passed over, and a box without width or height is left out with a warning.
+/// In truth the seventh column, read as the score, is 0 where MOTChallenge does not judge a box.
 enum class MotKind { truth, tracks, detections };
 
 struct MotTable {
