@@ -45,8 +45,8 @@ TEST(TrackFile, MotCountsFramesAndPixelsFromOneAndHoldsBoxesAlone) {
 TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
   EXPECT_EQ(written(TrackFormat::csv),
             "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"
-            "6,0.240000,3,,12.50,30.00,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
-            "6,0.240000,4,\"the \"\"tall\"\", one\",1.00,2.00,0.00,0.00,,,,,predicted\n");
+            "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
+            "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,0.00,0.00,,,,,predicted\n");
 }
 
 TEST(TrackFile, EveryJsonLineIsAnObject) {

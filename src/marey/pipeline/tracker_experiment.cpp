@@ -5,12 +5,14 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include "marey/evaluate/label_loss.h"
@@ -73,9 +75,8 @@ struct Video {
   SeenMarkers seen;
 };
 
-Video make_video(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options, const TemporaryFolder& folder) {
+Video make_video(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options, const std::string& path) {
   Video video{simulate_markers(situation, seed, options), {}};
-  const std::string path = folder.file("video.mp4");
   film_markers(video.scene, path);
   video.seen = see_markers(path);
   return video;
@@ -197,36 +198,41 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
   const int all = options.videos * static_cast<int>(kSituations.size()) + static_cast<int>(options.timed_markers.size());
   int done = 0;
   const auto tell = [&] {
-    if (options.progress) options.progress(done, all);
     ++done;
+    if (options.progress) options.progress(done, all);
   };
 
   for (std::size_t s = 0; s < kSituations.size(); ++s) {
-    std::vector<std::vector<double>> errors(all_methods.size());
-    std::vector<int> losses(all_methods.size(), 0);
-    for (int v = 0; v < options.videos; ++v) {
+    // Videos are independent; what came of each is put together in their order.
+    std::vector<std::vector<Outcome>> outcomes(static_cast<std::size_t>(options.videos));
+    std::mutex telling;
+    tbb::parallel_for(0, options.videos, [&](int v) {
+      const auto seed = options.seed + static_cast<std::uint64_t>(v);
+      const Video video = make_video(kSituations[s], seed, {}, folder.file(fmt::format("{}_{}.mp4", s, seed)));
+      for (const Method& method : all_methods) outcomes[static_cast<std::size_t>(v)].push_back(track(video, *method.make()));
+      const std::lock_guard lock(telling);
       tell();
-      const Video video = make_video(kSituations[s], options.seed + static_cast<std::uint64_t>(v), {}, folder);
-      for (std::size_t m = 0; m < all_methods.size(); ++m) {
-        const Outcome outcome = track(video, *all_methods[m].make());
-        losses[m] += outcome.lost ? 1 : 0;
-        if (!outcome.lost) errors[m].insert(errors[m].end(), outcome.errors.begin(), outcome.errors.end());
-      }
-    }
+    });
     for (std::size_t m = 0; m < all_methods.size(); ++m) {
-      experiment.ours[m].losses[s] = losses[m];
-      if (s < TrackerRow::kMotions) experiment.ours[m].errors[s] = summarise(errors[m]);
+      int losses = 0;
+      std::vector<double> errors;
+      for (const auto& of_video : outcomes) {
+        losses += of_video[m].lost ? 1 : 0;
+        if (!of_video[m].lost) errors.insert(errors.end(), of_video[m].errors.begin(), of_video[m].errors.end());
+      }
+      experiment.ours[m].losses[s] = losses;
+      if (s < TrackerRow::kMotions) experiment.ours[m].errors[s] = summarise(errors);
     }
   }
   for (const int markers : options.timed_markers) {
-    tell();
     MarkerSceneOptions scene;
     scene.markers = markers;
-    const Video video = make_video(MarkerSituation::plain, options.seed, scene, folder);
-    for (std::size_t m = 0; m < all_methods.size(); ++m)
+    const Video video = make_video(MarkerSituation::plain, options.seed, scene, folder.file("timed.mp4"));
+    for (std::size_t m = 0; m < all_methods.size(); ++m) {
       experiment.ours[m].times.push_back(time_steps(video, *all_methods[m].make()));
+    }
+    tell();
   }
-  tell();
   return experiment;
 }
 

@@ -1,0 +1,61 @@
+#include "marey/track/fill_gaps.h"
+
+#include <gtest/gtest.h>
+
+namespace marey {
+namespace {
+
+Timestamp frame_time(int frame) {
+  return timestamp_from_seconds(frame / 30.0);
+}
+
+/// A target on a parabola, seen where `seen(frame)`.
+template <typename Seen>
+Recording record(int frames, Seen&& seen) {
+  Recording recording;
+  for (int i = 0; i < frames; ++i) {
+    const double t = i / 30.0;
+    Track<2> track;
+    track.id = TrackId{1};
+    track.position = {100 + 60 * t, 50 + 90 * t * t};
+    track.velocity = {60, 180 * t};
+    track.box = Box::from_centre(track.position, 9, 9);
+    if (!seen(i)) {
+      track.position.setZero();  // a bad guess
+      track.state = Track<2>::State::predicted;
+    }
+    recording.add(i, frame_time(i), std::span(&track, 1));
+  }
+  return recording;
+}
+
+TEST(FillGaps, AGapIsFilledFromBothEnds) {
+  Recording recording = record(30, [](int i) { return i < 10 || i >= 20; });
+  const auto rows = fill_gaps(recording);
+  ASSERT_EQ(rows.size(), 30u);
+  for (const TrackRow& row : rows) {
+    const double t = row.frame / 30.0;
+    EXPECT_NEAR(row.x, 100 + 60 * t, 1e-3);
+    EXPECT_NEAR(row.y, 50 + 90 * t * t, 1e-3) << "a cubic holds a parabola";
+    EXPECT_EQ(row.observed(), row.frame < 10 || row.frame >= 20);
+    EXPECT_NEAR(row.left, row.x - 4, 1e-3);
+  }
+}
+
+TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
+  Recording recording = record(30, [](int i) { return i >= 5 && i < 12; });
+  const auto rows = fill_gaps(recording);
+  ASSERT_EQ(rows.size(), 7u);
+  EXPECT_EQ(rows.front().frame, 5);
+  EXPECT_EQ(rows.back().frame, 11);
+}
+
+TEST(FillGaps, ALongGapStaysOpenAndAFewSightingsAreNobody) {
+  Recording long_gap = record(90, [](int i) { return i < 5 || i >= 80; });
+  EXPECT_EQ(fill_gaps(long_gap).size(), 15u);
+  Recording brief = record(10, [](int i) { return i < 2; });
+  EXPECT_TRUE(fill_gaps(brief).empty());
+}
+
+}  // namespace
+}  // namespace marey
