@@ -50,12 +50,12 @@ class Grid {
     columns_ = std::max(1, static_cast<int>(std::ceil(place.width / cell)));
     rows_ = std::max(1, static_cast<int>(std::ceil(place.height / cell)));
     filled_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
-    valid_ = filled_;
+    valid_.resize(filled_.size());
+    std::vector<int> wide(columns_);
+    for (int column = 0; column < columns_; ++column) wide[column] = overlap(left_ + column * cell_, scene.image.width);
     for (int row = 0; row < rows_; ++row) {
       const int tall = overlap(top_ + row * cell_, scene.image.height);
-      for (int column = 0; column < columns_; ++column) {
-        valid_[index(row, column)] = tall * overlap(left_ + column * cell_, scene.image.width);
-      }
+      for (int column = 0; column < columns_; ++column) valid_[index(row, column)] = tall * wide[column];
     }
     sums_.resize(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1));
   }
@@ -79,12 +79,14 @@ class Grid {
   void reset() {
     filled_ = first_filled_;
     valid_ = first_valid_;
+    changed_row_ = 0;
   }
 
   /// Pixels of `part` of `box` count neither way from now on; `sum` must follow.
   void explain(const Box& box) {
     for (const Part& part : kExplained) {
       const Cells cells = cells_of(box, part);
+      changed_row_ = std::min(changed_row_, cells.top);
       for (int row = cells.top; row < cells.bottom; ++row) {
         std::fill(filled_.begin() + index(row, cells.left), filled_.begin() + index(row, cells.right), 0);
         std::fill(valid_.begin() + index(row, cells.left), valid_.begin() + index(row, cells.right), 0);
@@ -92,37 +94,43 @@ class Grid {
     }
   }
 
-  struct Count {
+  struct alignas(16) Count {
     int filled = 0, valid = 0;  ///< px² not explained
     int visible = 0;            ///< px² valid before anyone was placed
+    int unused = 0;             ///< makes four, which a machine adds at once
 
     Count& operator+=(const Count& other) {
       filled += other.filled;
       valid += other.valid;
       visible += other.visible;
+      unused += other.unused;
       return *this;
     }
     Count& operator-=(const Count& other) {
       filled -= other.filled;
       valid -= other.valid;
       visible -= other.visible;
+      unused -= other.unused;
       return *this;
     }
   };
 
-  /// Makes the integral image of the counts as they stand.
+  /// Makes the integral image of the counts as they stand, from the first row on that has changed.
   void sum() {
     const std::size_t stride = columns_ + 1;
-    for (int row = 0; row < rows_; ++row) {
+    for (int row = changed_row_; row < rows_; ++row) {
       Count along;
+      const std::size_t first = index(row, 0);
+      const Count* above = &sums_[row * stride + 1];
+      Count* here = &sums_[(row + 1) * stride + 1];
       for (int column = 0; column < columns_; ++column) {
-        const std::size_t i = index(row, column);
-        along += {filled_[i], valid_[i], first_valid_[i]};
-        Count& here = sums_[(row + 1) * stride + column + 1];
-        here = sums_[row * stride + column + 1];
-        here += along;
+        along += {filled_[first + column], valid_[first + column], first_valid_[first + column]};
+        Count sum = above[column];
+        sum += along;
+        here[column] = sum;
       }
     }
+    changed_row_ = rows_;
   }
 
   Count count(const Box& box, const Part& part) const {
@@ -179,6 +187,7 @@ class Grid {
   std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
   std::vector<int> first_filled_, first_valid_;  ///< the same before anyone was placed
   std::vector<Count> sums_;                      ///< integral image
+  int changed_row_ = 0;                          ///< from which row on it is out of date
 };
 
 Box known_box(const Box& box, const FitScene& scene) {
@@ -266,11 +275,20 @@ class Fit {
   void place_all(std::span<const Box> known) {
     std::vector<int> waiting(known.size());
     std::iota(waiting.begin(), waiting.end(), 0);
+    std::vector<std::optional<Place>> nearest(known.size());  // what was found near each, while nobody is placed about there
+    const auto place_one = [&](const Place& one, int who) {
+      place(one, who);
+      for (const int other : waiting) {
+        if (may_change(known_box(known[other], scene_), one.box)) nearest[other].reset();
+      }
+    };
     for (int newcomers = 0; newcomers < kMostNew;) {
       Place best;
       std::size_t who = 0;
       for (std::size_t i = 0; i < waiting.size(); ++i) {
-        const Place found = best_near(known_box(known[waiting[i]], scene_), kReachAcross, kReachUp);
+        std::optional<Place>& near = nearest[waiting[i]];
+        if (!near) near = best_near(known_box(known[waiting[i]], scene_), kReachAcross, kReachUp);
+        const Place& found = *near;
         if (found.cover < options_.min_cover_known && found.share < options_.min_share_known) continue;
         if (found.value <= best.value) continue;
         best = found;
@@ -278,15 +296,24 @@ class Fit {
       }
       const Place other = best_anywhere();
       if (other.cover >= options_.min_cover_new && other.value > best.value + kKnownBefore) {
-        place(other, -1);
+        place_one(other, -1);
         ++newcomers;
       } else if (best.value > -1) {
-        place(best, waiting[who]);
+        place_one(best, waiting[who]);
         waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(who));
       } else {
         return;
       }
     }
+  }
+
+  /// Whether someone placed in `placed` may change what is best near the known box `known`.
+  bool may_change(const Box& known, const Box& placed) const {
+    const double slack = 3 * grid_.cell();
+    const double across = kReachAcross * known.width + 0.03 * placed.width + slack;
+    const double down = kReachUp * known.height + 0.08 * placed.height + slack;
+    return known.left - across < placed.right() && placed.left < known.right() + across && known.top - down < placed.bottom() &&
+           placed.top < known.bottom() + down;
   }
 
   Place best_anywhere() const {
