@@ -93,7 +93,8 @@ Picture PictureMaker::operator()(const AVFrame& decoded, cv::Size size) {
 
 Picture PictureMaker::converted(const AVFrame& decoded, cv::Size size, bool full_range) {
   const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(decoded.format));
-  const bool grey = description != nullptr && description->nb_components <= 2;
+  if (description == nullptr) return {};
+  const bool grey = description->nb_components <= 2;
   const bool deep = grey && description->comp[0].depth > 8;
   const AVPixelFormat target = deep ? AV_PIX_FMT_GRAY16LE : grey ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_YUV420P;
   const bool full = full_range && !grey;
