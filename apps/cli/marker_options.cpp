@@ -12,6 +12,11 @@ void add_marker_options(CLI::App& command, MarkerFlags& flags) {
   command.add_flag("--dark", flags.dark, "markers are darker than what is around them")->group(group);
   command.add_option("--colour", flags.colour, "markers of this hue, in degrees: 120 is green; 120+-15 sets the tolerance")
       ->group(group);
+  command
+      .add_option("--saturation", flags.saturation,
+                  "with --colour: least (largest - smallest of red, green, blue), as a share of white")
+      ->check(CLI::Range(0.001, 0.999))
+      ->group(group);
   command.add_option("--mask", flags.mask, "a picture of the video's size; what is not black in it is left out")->group(group);
   command
       .add_option("--auto-mask", flags.limits.auto_mask_s,
@@ -35,7 +40,10 @@ TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& 
   options.markers = flags.limits;
   options.markers.threshold = flags.threshold;
   options.markers.dark = flags.dark;
-  if (!flags.colour.empty()) options.markers.colour = parse_marker_colour(flags.colour);
+  if (!flags.colour.empty()) {
+    options.markers.colour = parse_marker_colour(flags.colour);
+    options.markers.colour->least_saturation = flags.saturation.value_or(options.markers.colour->least_saturation);
+  }
   if (!flags.mask.empty()) options.markers.mask = read_mask(flags.mask);
   if (!flags.labels.empty()) options.tracker.labels = read_labels(flags.labels);
   if (!filter.empty()) options.tracker.filter = filter_named(filter);

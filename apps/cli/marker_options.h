@@ -14,6 +14,7 @@ struct MarkerFlags {
   std::string labels;
   std::optional<double> threshold;
   std::string colour;
+  std::optional<double> saturation;
   std::string mask;
   bool dark = false;
   bool fit_noise = false;

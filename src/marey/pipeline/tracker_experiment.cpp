@@ -221,7 +221,7 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
         if (!of_video[m].lost) errors.insert(errors.end(), of_video[m].errors.begin(), of_video[m].errors.end());
       }
       experiment.ours[m].losses[s] = losses;
-      if (s < TrackerRow::kMotions) experiment.ours[m].errors[s] = summarise(errors);
+      if (s < TrackerRow::kMotions && !errors.empty()) experiment.ours[m].errors[s] = summarise(errors);
     }
   }
   for (const int markers : options.timed_markers) {
