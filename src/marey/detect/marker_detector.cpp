@@ -227,6 +227,7 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<c
                        [&](const Expected& e) { return inside(e.box, blobs[i].mean_x, blobs[i].mean_y); });
   };
   std::vector<std::tuple<bool, std::int64_t, std::size_t>> order;  // what sorts first stays
+  order.reserve(chosen_.size());
   for (const std::size_t i : chosen_) order.emplace_back(!wanted(i), -blobs[i].area, i);
   std::sort(order.begin(), order.end());
   std::transform(order.begin(), order.end(), chosen_.begin(), [](const auto& entry) { return std::get<2>(entry); });

@@ -205,6 +205,7 @@ std::optional<float> level_below_overlap(const std::vector<float>& value, double
 /// k centres by k-means over the pixels above half the contrast, begun in even steps along the long axis.
 std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<float>& value, int k, const Vector<2>& axis) {
   std::vector<Vector<2>> result;
+  result.reserve(k);
   for (int i = 0; i < k; ++i) result.push_back(window.centroid + axis * (2.0 * i / (k - 1) - 1));
   for (int round = 0; round < 10; ++round) {
     std::array<Vector<2>, kMostDiscs> sums;

@@ -224,6 +224,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
                              std::vector<Detection>& found) {
   const cv::Size image = mask.size();
   std::vector<Box> known;
+  known.reserve(cluster.expected.size());
   for (const int who : cluster.expected) known.push_back(expected[who].box);
   const FitScene scene{image, [&](double x, double y) { return sizes_.at(x, y); },
                        [&](double x, double y) { return hidden_.at(x, y); }};

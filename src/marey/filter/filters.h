@@ -29,8 +29,9 @@ using FilterOptions = std::variant<KalmanOptions, AlphaBetaOptions, AlphaBetaVar
 template <int D, typename Visitor>
 decltype(auto) with_filter(const FilterOptions& options, Visitor&& visitor) {
   return std::visit(
-      [&]<typename Options>(const Options& chosen) -> decltype(auto) {
-        using F = typename Options::template Model<D>;
+      // Its type is written out: where it must be deduced within std::visit, clang 19 forgets to make virtual functions.
+      [&]<typename Options, typename F = typename Options::template Model<D>>(
+          const Options& chosen) -> decltype(std::forward<Visitor>(visitor).template operator()<F>(chosen)) {
         static_assert(Filter<F>);
         return std::forward<Visitor>(visitor).template operator()<F>(chosen);
       },
