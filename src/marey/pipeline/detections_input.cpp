@@ -37,20 +37,27 @@ void rank_scores(std::vector<LabelledBox>& boxes) {
 
 class EmptyFrames final : public Source {
  public:
-  EmptyFrames(SourceInfo info, std::vector<std::string> warnings) : info_(std::move(info)), warnings_(std::move(warnings)) {}
+  EmptyFrames(const std::string& name, double rate_hz, std::int64_t count, std::vector<std::string> warnings)
+      : rate_hz_(rate_hz), count_(count), warnings_(std::move(warnings)) {
+    info_.name = name;
+    info_.rate_hz = rate_hz;
+    info_.frame_count = count;
+  }
 
   const SourceInfo& info() const override { return info_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::optional<Frame> next() override {
-    if (next_index_ == *info_.frame_count) return std::nullopt;
+    if (next_index_ == count_) return std::nullopt;
     Frame frame;
     frame.index = next_index_++;
-    frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / *info_.rate_hz);
+    frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / rate_hz_);
     return frame;
   }
 
  private:
   SourceInfo info_;
+  double rate_hz_;
+  std::int64_t count_;
   std::vector<std::string> warnings_;
   std::int64_t next_index_ = 0;
 };
@@ -94,11 +101,8 @@ DetectionsInput open_detections(const std::string& path, std::optional<double> r
     rank_scores(table.boxes);
     table.warnings.push_back(fmt::format("{}: scores are not within 0 and 1; they were ranked instead", path));
   }
-  SourceInfo info;
-  info.name = path;
-  info.rate_hz = rate_hz.value_or(kUsualRate);
-  info.frame_count = table.boxes.back().frame + 1;
-  return {std::make_unique<EmptyFrames>(std::move(info), std::move(table.warnings)),
+  const std::int64_t count = std::int64_t{table.boxes.back().frame} + 1;
+  return {std::make_unique<EmptyFrames>(path, rate_hz.value_or(kUsualRate), count, std::move(table.warnings)),
           std::make_unique<KnownDetections>(std::move(table.boxes))};
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <regex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,30 +55,25 @@ std::size_t number_mark(const std::string& text, std::size_t at) {
   return end < text.size() && text[end] == 'd' ? end - at + 1 : 0;
 }
 
-std::regex matcher(const std::string& pattern) {
-  std::string expression;
-  for (std::size_t at = 0; at < pattern.size(); ++at) {
-    const char c = pattern[at];
-    if (const std::size_t length = number_mark(pattern, at); length > 0) {
-      expression += "[0-9]+";
-      at += length - 1;
-    } else if (c == '*') {
-      expression += ".*";
-    } else if (c == '?') {
-      expression += '.';
-    } else {
-      if (std::ispunct(static_cast<unsigned char>(c)) != 0) expression += '\\';
-      expression += c;
+/// Whether the whole of `name` is what `pattern` describes. Exponential in the number of marks at worst; names are short.
+bool matches(const std::string& pattern, std::size_t p, const std::string& name, std::size_t n) {
+  if (p == pattern.size()) return n == name.size();
+  if (pattern[p] == '*') return matches(pattern, p + 1, name, n) || (n < name.size() && matches(pattern, p, name, n + 1));
+  if (const std::size_t length = number_mark(pattern, p); length > 0) {
+    for (; n < name.size() && is_digit(name[n]); ++n) {
+      if (matches(pattern, p + length, name, n + 1)) return true;
     }
+    return false;
   }
-  return std::regex(expression);
+  return n < name.size() && (pattern[p] == '?' || pattern[p] == name[n]) && matches(pattern, p + 1, name, n + 1);
 }
 
 class PictureFiles final : public Source {
  public:
-  PictureFiles(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz) : files_(std::move(files)) {
+  PictureFiles(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz)
+      : files_(std::move(files)), rate_hz_(rate_hz.value_or(kUsualRate)) {
     info_.name = name;
-    info_.rate_hz = rate_hz.value_or(kUsualRate);
+    info_.rate_hz = rate_hz_;
     info_.frame_count = static_cast<std::int64_t>(files_.size());
     if (files_.empty())
       throw Error("{}: no pictures found; give a video file, a folder of pictures or a pattern such as 'shot_%04d.png'", name);
@@ -107,8 +101,7 @@ class PictureFiles final : public Source {
         leave_out(files_[number], picture.empty() ? "cannot be read" : "has another size");
         continue;
       }
-      return Frame{CameraId{}, next_index_++, timestamp_from_seconds(static_cast<double>(number) / *info_.rate_hz),
-                   std::move(picture)};
+      return Frame{CameraId{}, next_index_++, timestamp_from_seconds(static_cast<double>(number) / rate_hz_), std::move(picture)};
     }
     tell_the_end();
     return std::nullopt;
@@ -136,6 +129,7 @@ class PictureFiles final : public Source {
   }
 
   std::vector<std::string> files_;
+  double rate_hz_;
   SourceInfo info_;
   std::size_t at_ = 0;
   std::int64_t next_index_ = 0;
@@ -165,12 +159,12 @@ std::vector<std::string> find_pictures(const std::string& path) {
   std::error_code error;
   const bool folder = fs::is_directory(path, error);
   const fs::path where = folder ? fs::path(path) : fs::path(path).parent_path();
-  const std::regex wanted = folder ? std::regex(".*") : matcher(fs::path(path).filename().string());
+  const std::string wanted = folder ? "*" : fs::path(path).filename().string();
   std::vector<std::string> found;
   for (const auto& entry : fs::directory_iterator(where.empty() ? fs::path(".") : where, error)) {
     const std::string name = entry.path().filename().string();
     if (!entry.is_regular_file(error) || (folder && (!is_picture_name(name) || name.starts_with('.')))) continue;
-    if (std::regex_match(name, wanted)) found.push_back(entry.path().string());
+    if (matches(wanted, 0, name, 0)) found.push_back(entry.path().string());
   }
   std::sort(found.begin(), found.end(), naturally_less);
   return found;

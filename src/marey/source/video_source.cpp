@@ -22,9 +22,9 @@ class VideoSource final : public Source {
     info_.size = decoder_.size();
     info_.rate_hz = rate_hz ? rate_hz : decoder_.rate_hz();
     info_.frame_count = decoder_.frame_count();
-    if (const auto duration = decoder_.duration_s(); !info_.frame_count && duration && decoder_.rate_hz()) {
-      info_.frame_count = std::llround(*duration * *decoder_.rate_hz());
-    }
+    const auto duration = decoder_.duration_s();
+    const auto rate = decoder_.rate_hz();
+    if (!info_.frame_count && duration && rate) info_.frame_count = std::llround(*duration * *rate);
   }
 
   const SourceInfo& info() const override { return info_; }
@@ -65,7 +65,8 @@ class VideoSource final : public Source {
     if (trouble.damaged > 0) warn(fmt::format("damaged pictures, used as far as they could be decoded: {}", trouble.damaged));
     if (trouble.undecodable > 0) warn(fmt::format("pictures left out because they could not be decoded: {}", trouble.undecodable));
     if (!trouble.broken.empty() || is_short()) {
-      const std::string whole = decoder_.frame_count() ? fmt::format(" of {}", *decoder_.frame_count()) : std::string();
+      const auto count = decoder_.frame_count();
+      const std::string whole = count ? fmt::format(" of {}", *count) : std::string();
       warn(fmt::format("the file breaks off after {} frames{} ({:.1f} s); it was processed as far as it goes", next_index_, whole,
                        seconds(last_time_)));
     }
