@@ -26,7 +26,7 @@ target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshado
                        $<$<BOOL:${MAREY_WERROR}>:-Werror>
                        # libstdc++ 12's own stable_sort and stable_partition call what it has deprecated, and clang tells.
                        $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
-if(MAREY_SANITIZE)
+if(MAREY_SANITIZE)  # The presets with sanitizers let warnings pass: GCC gives false ones there, as its manual says.
   add_compile_options(-fsanitize=${MAREY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MAREY_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes the checks themselves for uses of what is not set
