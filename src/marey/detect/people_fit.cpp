@@ -42,11 +42,13 @@ constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone 
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
-constexpr int kCoarse = 2;  // cells between the places first looked at
+constexpr double kBetter = 1e-9;  // by less, a place is as good as the one before it
+constexpr int kCoarse = 2;        // cells between the places first looked at
 
 class Grid {
  public:
-  Grid(const Box& place, const FitScene& scene, double cell) : cell_(cell), left_(place.left), top_(place.top) {
+  Grid(const Box& place, const FitScene& scene, double cell)
+      : cell_(cell), per_cell_(1 / cell), left_(place.left), top_(place.top) {
     columns_ = std::max(1, static_cast<int>(std::ceil(place.width / cell)));
     rows_ = std::max(1, static_cast<int>(std::ceil(place.height / cell)));
     filled_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
@@ -173,15 +175,15 @@ class Grid {
 
   Cells cells_of(const Box& box, const Part& part) const {
     const auto across = [&](double x) {
-      return static_cast<int>(std::clamp((box.left + x * box.width - left_) / cell_ + 0.5, 0.0, double(columns_)));
+      return static_cast<int>(std::clamp((box.left + x * box.width - left_) * per_cell_ + 0.5, 0.0, double(columns_)));
     };
     const auto down = [&](double y) {
-      return static_cast<int>(std::clamp((box.top + y * box.height - top_) / cell_ + 0.5, 0.0, double(rows_)));
+      return static_cast<int>(std::clamp((box.top + y * box.height - top_) * per_cell_ + 0.5, 0.0, double(rows_)));
     };
     return {across(part.left), down(part.top), across(part.right), down(part.bottom)};
   }
 
-  double cell_;
+  double cell_, per_cell_;
   double left_, top_;
   int columns_ = 0, rows_ = 0;
   std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
@@ -279,7 +281,12 @@ class Fit {
     const auto place_one = [&](const Place& one, int who) {
       place(one, who);
       for (const int other : waiting) {
-        if (may_change(known_box(known[other], scene_), one.box)) nearest[other].reset();
+        const Box box = known_box(known[other], scene_);
+        if (may_change(box, kReachAcross * box.width, kReachUp * box.height, one.box)) nearest[other].reset();
+      }
+      for (Candidate& candidate : candidates_) {
+        const Box& box = candidate.place.box;
+        candidate.stale = candidate.stale || may_change(box, 0, -kAboveHead.top * box.height, one.box);
       }
     };
     for (int newcomers = 0; newcomers < kMostNew;) {
@@ -307,40 +314,57 @@ class Fit {
     }
   }
 
-  /// Whether someone placed in `placed` may change what is best near the known box `known`.
-  bool may_change(const Box& known, const Box& placed) const {
+  /// Whether someone placed in `placed` may change how good a place is that lies within `across` and `up` of `box`.
+  bool may_change(const Box& box, double across, double up, const Box& placed) const {
     const double slack = 3 * grid_.cell();
-    const double across = kReachAcross * known.width + 0.03 * placed.width + slack;
-    const double down = kReachUp * known.height + 0.08 * placed.height + slack;
-    return known.left - across < placed.right() && placed.left < known.right() + across && known.top - down < placed.bottom() &&
-           placed.top < known.bottom() + down;
+    across += 0.03 * placed.width + slack;
+    up += 0.08 * placed.height + slack;
+    return box.left - across < placed.right() && placed.left < box.right() + across && box.top - up < placed.bottom() &&
+           placed.top < box.bottom() + up;
   }
 
-  Place best_anywhere() const {
-    Place best;
-    if (grid_.filled_in_all() < enough_) return best;
-    // From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
+  /// A place for someone new, and what it was worth when last looked at.
+  struct Candidate {
+    Place place;
+    bool stale = true;  ///< someone was placed about there since
+  };
+
+  /// From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
+  void list_candidates() {
     const double step = kCoarse * grid_.cell();
     for (double foot_y = grid_.bottom(); foot_y > grid_.top(); foot_y -= step) {
-      for (double foot_x = grid_.left(); foot_x < grid_.right(); foot_x += step) consider(foot_x, foot_y, best);
+      for (double foot_x = grid_.left(); foot_x < grid_.right(); foot_x += step) {
+        if (const auto size = scene_.size_at(foot_x, foot_y)) candidates_.push_back({{.box = size->box_at(foot_x, foot_y)}});
+      }
+    }
+  }
+
+  Place best_anywhere() {
+    Place best;
+    if (grid_.filled_in_all() < enough_) return best;
+    if (candidates_.empty()) list_candidates();
+    for (Candidate& candidate : candidates_) {
+      if (candidate.stale) candidate = {look_for_new(candidate.place.box), false};
+      if (candidate.place.value > best.value + kBetter) best = candidate.place;
     }
     if (best.value <= -1) return best;
     const auto foot = best.box.foot();
     for (int y = kCoarse - 1; y > -kCoarse; --y) {
-      for (int x = 1 - kCoarse; x < kCoarse; ++x) consider(foot.x() + x * grid_.cell(), foot.y() + y * grid_.cell(), best);
+      for (int x = 1 - kCoarse; x < kCoarse; ++x) {
+        const double foot_x = foot.x() + x * grid_.cell(), foot_y = foot.y() + y * grid_.cell();
+        const auto size = scene_.size_at(foot_x, foot_y);
+        if (!size) continue;
+        const Place place = look_for_new(size->box_at(foot_x, foot_y));
+        if (place.value > best.value + kBetter) best = place;
+      }
     }
     return best;
   }
 
-  /// Takes someone new with feet at (x, y) for the best if that is better.
-  void consider(double foot_x, double foot_y, Place& best) const {
-    const auto size = scene_.size_at(foot_x, foot_y);
-    if (!size) return;
-    const Box there = size->box_at(foot_x, foot_y);
-    Place place = look_at(there);
-    if (place.cover < options_.min_cover_new || place.cover + place.arms < best.value) return;
-    place.value = place.cover + place.arms - above_head(there);
-    if (place.value > best.value + 1e-9) best = place;
+  Place look_for_new(const Box& box) const {
+    Place place = look_at(box);
+    if (place.cover >= options_.min_cover_new) place.value = place.cover + place.arms - above_head(box);
+    return place;
   }
 
   void refine() {
@@ -378,6 +402,7 @@ class Fit {
   const FitOptions& options_;
   double enough_;  ///< px² of unexplained foreground, half of the least that can make someone new
   std::vector<Placed> placed_;
+  std::vector<Candidate> candidates_;
 };
 
 Box bounds_of(std::span<const PixelRun> runs) {
