@@ -10,7 +10,7 @@
 namespace marey {
 namespace {
 
-constexpr double kHeight = 420, kLeft = 70, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
+constexpr double kHeight = 520, kLeft = 110, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
 // Okabe & Ito's colours, which the colour-blind tell apart as well.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999", "#f0e442"};
@@ -86,7 +86,7 @@ class Svg {
 
   void frame(const std::string& title, const std::string& value_label, const Axis& axis) {
     add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kLeft, escaped(title));
-    add(R"svg(<text transform="translate(18 {}) rotate(-90)" text-anchor="middle">{}</text>)svg", kTop + kPlotHeight / 2,
+    add(R"svg(<text transform="translate(52 {}) rotate(-90)" text-anchor="middle">{}</text>)svg", kTop + kPlotHeight / 2,
         escaped(value_label));
     for (const double tick : axis.ticks) {
       const double y = axis.y(tick);
@@ -96,9 +96,9 @@ class Svg {
   }
 
   void legend(const std::vector<std::string>& names) {
-    double x = kLeft, y = kHeight - 34;
+    double x = kLeft, y = kBaseline + 112;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const double width = 26 + 6.6 * static_cast<double>(names[i].size());
+      const double width = 30 + 7.2 * static_cast<double>(names[i].size());
       if (x + width > width_ - 10 && x > kLeft) {
         x = kLeft;
         y += 18;
@@ -145,7 +145,7 @@ std::string to_svg(const BarChart& chart) {
       }
     }
     const double middle = left + (group_width - kGap) / 2;
-    svg.add(R"svg(<text transform="translate({:.1f} {}) rotate(-18)" text-anchor="end">{}</text>)svg", middle + 8, kBaseline + 16,
+    svg.add(R"svg(<text transform="translate({:.1f} {}) rotate(-35)" text-anchor="end">{}</text>)svg", middle + 8, kBaseline + 16,
             escaped(group.name));
   }
   svg.legend(chart.series);
@@ -175,7 +175,8 @@ std::string to_svg(const LineChart& chart) {
     std::string points;
     for (const auto& [x, y] : chart.lines[i].points)
       fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ", place(x), axis.y(y));
-    svg.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2"/>)", points, colour(i));
+    svg.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2"{}/>)", points, colour(i),
+            i < kColours.size() ? "" : R"( stroke-dasharray="6 3")");
     for (const auto& [x, y] : chart.lines[i].points) {
       svg.add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"><title>{}: {:g}, {:g}</title></circle>)", place(x), axis.y(y),
               colour(i), escaped(chart.lines[i].name), x, y);
