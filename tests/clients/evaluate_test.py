@@ -80,7 +80,7 @@ def by_trackeval(truth, tracks):
 
 
 def by_marey(program, truth_path, tracks_path, iou):
-    done = subprocess.run([program, "evaluate", "--truth", truth_path, "--tracks", tracks_path, "--iou", repr(iou), "--json"],
+    done = subprocess.run([program, "evaluate", "--motchallenge", "--truth", truth_path, "--tracks", tracks_path, "--iou", repr(iou), "--json"],
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
