@@ -42,6 +42,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     mark_crowded();
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
+    claim_overlapped(seen);
     keep_merged(seen);
     correct(now, seen);
     retire_lost(now);
@@ -214,6 +215,40 @@ class FilterTracker final : public Tracker<F::dimension> {
     const auto columns = assigner_.assign(static_cast<int>(free_targets_.size()), static_cast<int>(candidates_.size()), pairs_);
     for (int row = 0; row < static_cast<int>(free_targets_.size()); ++row) {
       if (columns[row] != GatedAssigner::nobody) targets_[free_targets_[row]].observation = candidates_[columns[row]];
+    }
+  }
+
+  /// Who turns sharply leaves the gate, yet not at once the place: a confirmed target that claimed nothing takes what lies on its
+  /// box and nobody claimed, before somebody new begins there (after Cao et al., "Observation-centric SORT", 2023).
+  void claim_overlapped(std::span<const Observation<D>> seen) {
+    if constexpr (D == 2) {
+      claimed_.assign(seen.size(), 0);
+      for (const Target<F>& target : targets_) {
+        if (target.observation >= 0) claimed_[target.observation] = 1;
+      }
+      candidates_.clear();
+      points_.clear();
+      for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
+        if (claimed_[i] || !seen[i].box || seen[i].box->empty() || seen[i].score < options_.confident) continue;
+        candidates_.push_back(i);
+        points_.push_back(centre_of(seen[i]));
+      }
+      if (candidates_.empty() || widest_ <= 0) return;
+      grid_.build(points_, widest_);
+      pairs_.clear();
+      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
+        const Target<F>& target = targets_[row];
+        if (!target.confirmed || target.observation >= 0 || !target.size || seconds(*now_ - target.last_seen) > recently) continue;
+        const Box box = target.size->around(in_view(target));
+        grid_.for_each_near(in_view(target), target.unit, [&](int column) {
+          const double overlap = iou(box, *seen[candidates_[column]].box);
+          if (overlap > overlapped) pairs_.push_back({row, column, overlap});
+        });
+      }
+      const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(candidates_.size()), pairs_);
+      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
+        if (columns[row] != GatedAssigner::nobody) targets_[row].observation = candidates_[columns[row]];
+      }
     }
   }
 
@@ -421,6 +456,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double merged_share = 0.6;
   static constexpr double merged_growth = 1.15;
   static constexpr double covered_share = 0.5;
+  static constexpr double overlapped = 0.25;         // IoU of a target's box and what must be the target, there being nobody else
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
   static constexpr double duplicate_iou = 0.75;

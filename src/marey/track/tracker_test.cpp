@@ -67,6 +67,20 @@ TEST(Tracker, TwoWhoCrossKeepTheirNames) {
   EXPECT_NE(left, right);
 }
 
+/// A jump of place and shape at once is too much for the gate, yet nobody else can stand on the very spot.
+TEST(Tracker, WhoStepsAsideAtOnceKeepsHisName) {
+  const auto scene = [](int k) {
+    return Seen{k < 20 ? person(100 + 2.0 * k, 200) : person(86 + 2.0 * k, 196, 0.9, 0.3 * tall, 1.15 * tall)};
+  };
+  std::set<int> names;
+  run(40, scene, [&](int k, std::span<const Track<2>> tracks) {
+    if (k < 10) return;
+    EXPECT_EQ(tracks.size(), 1u) << k;
+    names.insert(number(tracks.front().id));
+  });
+  EXPECT_EQ(names.size(), 1u);
+}
+
 /// Two who meet are seen as one wide region for a second and part again.
 TEST(Tracker, TwoWhoMergeIntoOneRegionComeOutAsThemselves) {
   const auto place = [](int k, int who) { return who == 0 ? 100 + 6.0 * k : 400 - 6.0 * k; };
