@@ -184,6 +184,17 @@ double InteractingModels<D>::gate_distance(const Vector<D>& z, const Matrix<D>& 
 }
 
 template <int D>
+double InteractingModels<D>::search_reach(double variance) const {
+  double widest = 0;
+  for (std::size_t j = 0; j < kModels; ++j) {
+    if (!(probabilities_[j] > 0)) continue;
+    const double sigma = std::sqrt(states_[j].cov(0, 0).trace() + variance);  // at least the ellipse's longest
+    widest = std::max(widest, (states_[j].mean[0] - position_).norm() + options_.gate_sigmas * sigma);
+  }
+  return widest;
+}
+
+template <int D>
 void InteractingModels<D>::summarise() {
   position_.setZero();
   velocity_.setZero();

@@ -88,6 +88,10 @@ class InteractingModels {
   /// The search area is the union of the models' ellipses (ellipsoids) of `gate_sigmas` standard deviations.
   double gate_distance(const Vector<D>& z, const Matrix<D>& R) const;
 
+  /// No measurement whose covariance is at most `variance` in any direction lies in the search area and farther than this from
+  /// position(): cheap to ask before gate_distance.
+  double search_reach(double variance) const;
+
   /// Of cruise, pull, turn, swerve; they add up to 1.
   const std::array<double, kModels>& probabilities() const { return probabilities_; }
   /// Their states, position, velocity and acceleration.

@@ -162,8 +162,11 @@ class RosterTracker final : public Tracker<F::dimension> {
     const bool few = targets_.size() * seen.size() <= kFewPairs;
     if (!few) grid_.build(points_, 2 * options_.marker_width);
     pairs_.clear();
+    const Spread spread = spread_of(seen);
     for (int row = 0; row < std::ssize(targets_); ++row) {
+      const double reach = reach_of(targets_[row], spread);
       const auto consider = [&](int column) {
+        if ((points_[column] - targets_[row].filter.position()).squaredNorm() > reach * reach) return;
         const double worth = gain(targets_[row], seen[column]);
         if (worth > 0) pairs_.push_back({row, column, worth});
       };
@@ -179,6 +182,34 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (columns[row] == GatedAssigner::nobody) continue;
       targets_[row].observation = columns[row];
       claimed_[columns[row]] = 1;
+    }
+  }
+
+  /// What bounds every observation's covariance in this frame.
+  struct Spread {
+    double variance = 0;
+    double narrowest = 0, widest = 0;  // marker
+  };
+
+  Spread spread_of(std::span<const Observation<D>> seen) const {
+    Spread spread;
+    for (const Observation<D>& point : seen) {
+      const double width = width_of(point);
+      spread.variance = std::max(spread.variance, noise_of(point).trace());
+      spread.narrowest = &point == seen.data() ? width : std::min(spread.narrowest, width);
+      spread.widest = std::max(spread.widest, width);
+    }
+    return spread;
+  }
+
+  /// No pair farther apart than this can be worth anything: asked first, because it costs least.
+  double reach_of(const Target& target, const Spread& spread) const {
+    const double fastest = options_.max_speed * target.unseen + target.width;
+    if constexpr (requires { target.filter.search_reach(0.0); }) {
+      const double change = std::max(spread.widest - target.width, target.width - spread.narrowest) - kWidthNoise * target.width;
+      return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
+    } else {
+      return fastest;
     }
   }
 
@@ -311,12 +342,16 @@ class RosterTracker final : public Tracker<F::dimension> {
   /// A newcomer that has stayed is one of those who are missed.
   void adopt_newcomers() {
     pairs_.clear();
+    proven_.clear();
+    for (int i = 0; i < std::ssize(targets_); ++i) {
+      const Target& newcomer = targets_[i];
+      if (!newcomer.on_roster() && newcomer.observation != kNone && newcomer.score >= options_.confirm) proven_.push_back(i);
+    }
     for (int row = 0; row < std::ssize(lost_); ++row) {
       const Target& target = targets_[lost_[row]];
       if (target.observation != kNone) continue;
-      for (int column = 0; column < std::ssize(targets_); ++column) {
+      for (const int column : proven_) {
         const Target& newcomer = targets_[column];
-        if (newcomer.on_roster() || newcomer.observation == kNone || newcomer.score < options_.confirm) continue;
         if ((newcomer.last_place - target.last_place).norm() > options_.max_speed * target.unseen) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way_to(target, newcomer.last_place), kFar)});
       }
@@ -443,7 +478,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   std::vector<Vector<D>> points_, places_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_;
-  std::vector<int> lost_, free_;
+  std::vector<int> lost_, free_, proven_;
   PointGrid<D> grid_;
   GatedAssigner assigner_;
 };
