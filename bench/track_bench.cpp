@@ -8,6 +8,7 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/linear_assignment.h"
 #include "marey/simulate/random.h"
+#include "marey/track/roster_tracker.h"
 #include "marey/track/tracker.h"
 
 namespace marey {
@@ -62,6 +63,44 @@ void tracker_step(benchmark::State& state) {
       benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(tracker_step)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
+
+/// Markers that drift over a sheet with 60 px a side for each, one in fifty missed in a frame.
+void marker_step(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  constexpr double kRate = 30;
+  Random random(3);
+  const double side = 60 * std::sqrt(static_cast<double>(count));
+  std::vector<Vector<2>> places, steps;
+  for (int i = 0; i < count; ++i) {
+    places.emplace_back(random.uniform(0, side), random.uniform(0, side));
+    steps.emplace_back(random.uniform(-2, 2), random.uniform(-2, 2));
+  }
+  std::vector<Observation<2>> seen;
+  const auto look = [&] {
+    seen.clear();
+    for (int i = 0; i < count; ++i) {
+      places[i] += steps[i];
+      if (random.chance(0.02)) continue;
+      auto& point = seen.emplace_back();
+      point.value = places[i] + Vector<2>(random.gaussian(0, 0.05), random.gaussian(0, 0.05));
+      point.covariance = 0.0025 * Matrix<2>::Identity();
+      point.box = Box::from_centre(point.value, 8, 8);
+    }
+  };
+  const auto tracker = make_roster_tracker<2>({});
+  int frame = 0;
+  for (; frame < 5; ++frame) {
+    look();
+    tracker->step(timestamp_from_seconds(frame / kRate), seen);
+  }
+  for (auto _ : state) {
+    state.PauseTiming();
+    look();
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / kRate), seen));
+  }
+}
+BENCHMARK(marker_step)->Arg(1)->Arg(30)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->MinTime(0.2);
 
 /// Every row with about three columns in its gate.
 std::vector<GatedPair> gated_pairs(int count) {
