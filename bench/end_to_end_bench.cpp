@@ -8,8 +8,10 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
 #include <opencv2/video/background_segm.hpp>
 #include <opencv2/videoio.hpp>
+#include <unistd.h>
 
 #include "marey/pipeline/track_people.h"
 #include "marey/source/open_source.h"
@@ -48,7 +50,7 @@ int main(int argc, char** argv) {
     std::printf("%s is not here: install opencv-doc, or name a video\n", video.c_str());
     return 0;
   }
-  const std::string tracks = (std::filesystem::temp_directory_path() / "marey_end_to_end.txt").string();
+  const std::string tracks = (std::filesystem::temp_directory_path() / fmt::format("marey_end_to_end_{}.txt", ::getpid())).string();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole, own_decode = whole;
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {

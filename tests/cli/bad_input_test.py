@@ -64,6 +64,13 @@ class BadInput(unittest.TestCase):
             self.assertEqual(len(line.split(",")), 10, line)
         return done.stderr
 
+    def test_detections_none_of_which_is_confident(self):
+        boxes = self.folder / "boxes.txt"
+        boxes.write_text("".join(f"{f},-1,{10 + 3 * f},50,20,50,{0.2 + 0.01 * (f % 3):.2f}\n" for f in range(1, 31)))
+        said = self.run_marey("track", "--detections", boxes, "--rate", 25, "-o", self.out, code=0).stderr
+        self.assertIn("no score reaches 0.5", said)
+        self.assertEqual(len(self.out.read_text().splitlines()), 30)
+
     def test_missing_file(self):
         self.assertIn("no_such.avi: no such file", self.refused("track", "no_such.avi"))
 

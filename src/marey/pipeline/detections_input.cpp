@@ -100,6 +100,10 @@ DetectionsInput open_detections(const std::string& path, std::optional<double> r
   if (!is_probability(table.boxes)) {
     rank_scores(table.boxes);
     table.warnings.push_back(fmt::format("{}: scores are not within 0 and 1; they were ranked instead", path));
+  } else if (std::none_of(table.boxes.begin(), table.boxes.end(), [](const LabelledBox& box) { return box.score >= kConfident; })) {
+    rank_scores(table.boxes);
+    table.warnings.push_back(
+        fmt::format("{}: no score reaches {}, from which a track begins; they were ranked instead", path, kConfident));
   }
   const std::int64_t count = std::int64_t{table.boxes.back().frame} + 1;
   return {std::make_unique<EmptyFrames>(path, rate_hz.value_or(kUsualRate), count, std::move(table.warnings)),

@@ -16,8 +16,8 @@ struct DetectionsInput {
 };
 
 /// Reads MOT text: `frame,-1,left,top,width,height,score,…`, `rate_hz` frames a second (25 where nothing is given, with a
-/// warning). Scores in [0, 1] are taken as they are. Scores of another scale are ranked: the weakest quarter may continue a track,
-/// the others begin one too. Throws Error where the file cannot be read or a line is malformed.
+/// warning). Scores in [0, 1] are taken as they are. Scores of another scale, or none of 0.5, are ranked: the weakest quarter may
+/// continue a track, the others begin one too. Throws Error where the file cannot be read or a line is malformed.
 DetectionsInput open_detections(const std::string& path, std::optional<double> rate_hz);
 
 }  // namespace marey
