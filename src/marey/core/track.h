@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "marey/core/ids.h"
+#include "marey/core/outline.h"
 #include "marey/geometry/box.h"
 #include "marey/geometry/vector.h"
 
@@ -24,6 +26,7 @@ struct Track {
   bool confirmed = true;           ///< false while evidence is still gathered that there is a target at all
   std::optional<Box> box;          ///< px, where the target has an extent in the image
   double score = 1;                ///< of the observation behind it, in [0, 1]
+  std::shared_ptr<const Outline> outline = nullptr;  ///< in the image, where outlines are followed and this one has one
 };
 
 }  // namespace marey
