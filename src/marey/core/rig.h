@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/geometry/camera.h"
+#include "marey/geometry/ground_view.h"
+
+namespace marey {
+
+/// One camera of a rig: where its pictures come from, and as much of its calibration as is known so far.
+struct RigCamera {
+  std::string name;                            ///< unique within the rig, not empty
+  std::string source;                          ///< a path as `open_source` takes it; empty where there is none
+  std::string detections;                      ///< in place of pictures, what another program detected; empty where there is none
+  std::optional<cv::Rect> region;              ///< px: the camera's part of a larger picture; pixels count from its corner
+  std::optional<double> rate_hz;               ///< in place of what the source's header says
+  double offset_s = 0;                         ///< added to this camera's times gives the rig's, s
+  std::optional<cv::Size> size;                ///< px
+  std::optional<Lens> lens;                    ///< valid for `size`
+  std::optional<Rigid3> camera_from_world;     ///< m
+  std::optional<Matrix<3>> ground_from_image;  ///< px to m, for a camera known only by its ground
+  std::optional<double> rms_px;                ///< 2-D reprojection error of its calibration
+
+  /// Everything that projecting needs; nothing where lens, pose or size is missing.
+  std::optional<Camera> camera() const {
+    if (!lens || !camera_from_world || !size) return std::nullopt;
+    return Camera(*lens, *camera_from_world, *size);
+  }
+
+  /// How it sees the ground: by its camera, else by its homography, else not at all.
+  std::optional<GroundView> ground_view() const {
+    if (const auto whole = camera()) return GroundView(*whole);
+    if (!ground_from_image || !size) return std::nullopt;
+    return GroundView(*ground_from_image, *size);
+  }
+};
+
+/// The cameras of one setup. The world is right-handed, z up, in m (a file with y up is turned when it is read); CameraId i is
+/// cameras[i].
+struct Rig {
+  /// How it was calibrated, and how well: a 2-D reprojection error over all cameras.
+  struct Calibration {
+    std::string method;  ///< "wand", "board", "pitch", …; free text
+    std::optional<double> mean_px, rms_px;
+    std::optional<int> inliers, observations;
+    std::optional<std::string> grade;
+  };
+
+  /// Ground coordinates as the user has them from the world's (x, y, 1): a reflection where the user's frame is left-handed.
+  std::optional<Matrix<3>> ground_from_world;
+  std::optional<Calibration> calibration;
+  std::vector<RigCamera> cameras;
+};
+
+}  // namespace marey

@@ -1,0 +1,60 @@
+#include "marey/geometry/ground_view.h"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace marey {
+namespace {
+
+std::optional<Vector<2>> ground_seen(const Camera& camera, const Vector<2>& pixel) {
+  const auto ray = camera.ray(pixel);
+  if (!ray) return std::nullopt;
+  const double down = -ray->direction.z() * (ray->origin.z() < 0 ? -1 : 1);  // towards the ground, from whichever side
+  if (down <= 1e-9) return std::nullopt;
+  return ray->origin.head<2>() + ray->direction.head<2>() * (std::abs(ray->origin.z()) / down);
+}
+
+// A homography has no sign. The foot of the picture shows the ground before the camera: its weight is made positive.
+Matrix<3> before_the_camera(const Matrix<3>& ground_from_image, cv::Size size) {
+  const double weight = ground_from_image.row(2).dot(Vector<3>(size.width / 2.0, size.height, 1));
+  return weight < 0 ? Matrix<3>(-ground_from_image) : ground_from_image;
+}
+
+}  // namespace
+
+GroundView::GroundView(const Matrix<3>& ground_from_image, cv::Size size)
+    : view_(Homography{before_the_camera(ground_from_image, size), before_the_camera(ground_from_image, size).inverse(), size}) {}
+
+cv::Size GroundView::size() const {
+  if (const Camera* whole = camera()) return whole->size();
+  return std::get<Homography>(view_).size;
+}
+
+std::optional<GroundView::Place> GroundView::place(const Vector<2>& pixel) const {
+  if (const Camera* whole = camera()) {
+    const auto ground = ground_seen(*whole, pixel);
+    if (!ground) return std::nullopt;
+    const auto seen = whole->project_with_jacobian({ground->x(), ground->y(), 0});
+    if (!seen) return std::nullopt;
+    const Matrix<2> by_ground = seen->by_world.leftCols<2>();
+    if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
+    return Place{*ground, by_ground.inverse()};
+  }
+  const Matrix<3>& H = std::get<Homography>(view_).ground_from_image;
+  const Vector<3> at = H * pixel.homogeneous();
+  if (!(at.z() > 1e-12 * H.row(2).norm())) return std::nullopt;
+  const Vector<2> ground = at.hnormalized();
+  return Place{ground, (H.topLeftCorner<2, 2>() - ground * H.row(2).head<2>()) / at.z()};
+}
+
+std::optional<Vector<2>> GroundView::pixel(const Vector<2>& ground) const {
+  if (const Camera* whole = camera()) return whole->project({ground.x(), ground.y(), 0});
+  const Homography& view = std::get<Homography>(view_);
+  const Vector<3> at = view.image_from_ground * ground.homogeneous();
+  // inverse(H) maps back to (pixel, 1) / weight: a positive last entry means a positive weight, thus before the camera.
+  if (!(at.z() > 0)) return std::nullopt;
+  return at.hnormalized();
+}
+
+}  // namespace marey
