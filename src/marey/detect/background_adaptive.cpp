@@ -7,11 +7,11 @@
 // a quantile.
 //
 // - A change of light rescales the means at once (background_light.cpp).
-// - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after half
-// the
-//   time that the model has existed, do the two change places. Pixels in `held` boxes are not counted and not learned.
+// - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
+//   half the time that the model has existed, do the two change places (background_second.cpp). Pixels in `held` boxes are not
+//   counted and not learned.
 // - A ghost, where something of the first frames has left, is a region whose border is an edge in the scene but not in the
-//   frame; it is believed to be scene after a second.
+//   frame (background_regions.h); it is believed to be scene after a second.
 // - Where most of a picture does not fit the scene for seconds (the camera was moved), the model begins anew.
 //
 // Cost: about five bytes read a pixel and frame; a frame teaches one eighth of the rows, in turn. All else grows with what moves.
@@ -29,6 +29,8 @@
 #include "marey/detect/background_kernels.h"
 #include "marey/detect/background_light.h"
 #include "marey/detect/background_plane.h"
+#include "marey/detect/background_regions.h"
+#include "marey/detect/background_second.h"
 #include "marey/detect/background_shadow.h"
 #include "marey/detect/runs.h"
 #include "marey/detect/silhouette.h"
@@ -36,21 +38,13 @@
 namespace marey {
 namespace {
 
-constexpr int kLumaFloor = 8;      // levels: the narrowest band's half width
-constexpr int kChromaFloor = 6;    // levels
-constexpr int kGate = 56;          // 3.5 spreads of 1.15 σ: 4 σ
-constexpr int kQuorum = 4;         // of 9
-constexpr int kStrongPixels = 4;   // that make a region count
-constexpr int kFewestPixels = 10;  // of a region
-constexpr int kTurns = 8;          // frames until each row was taught once
+constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
+constexpr int kChromaFloor = 6;  // levels
+constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
+constexpr int kQuorum = 4;       // of 9
+constexpr int kTurns = 8;        // frames until each row was taught once
 constexpr int kRowsATurn = 16;
-constexpr int kFringe = 3;         // px round a region that are not learned: its blurred rim
-constexpr int kSecondWidth = 10;   // levels: how near a pixel must be to its second mean
-constexpr int kEstablished = 200;  // ticks after which a second mean is the scene's
-constexpr int kAway = 1;           // the bit of a second mean that says that the scene was seen since
-constexpr int kReturn = 25;        // ticks that a return to the second mean is worth: what sways, returns often
-constexpr int kReturnWidens = 12;  // 1/8 levels of spread
-constexpr double kGhost_s = 1;
+constexpr int kFringe = 3;  // px round a region that are not learned: its blurred rim
 constexpr double kStartAnew_s = 2;
 constexpr double kTooMuch = 0.6;  // of the picture
 
@@ -58,16 +52,9 @@ int shift_of(double time_constant, double step) {
   return std::clamp(static_cast<int>(std::lround(std::log2(std::max(time_constant / step, 1.0)))), 1, 7);
 }
 
-/// One frame's foreground before it is cleaned.
-struct Marked {
-  std::vector<PixelRun> runs;
-  std::vector<int> strong;  ///< of each run: its pixels far outside the bands
-  double pixels = 0;
-};
-
 class AdaptiveBackground final : public Background {
  public:
-  explicit AdaptiveBackground(const AdaptiveOptions& options) : options_(options) {}
+  explicit AdaptiveBackground(const AdaptiveOptions& options) : options_(options), second_(options.absorb_after_s) {}
 
   void prime(std::span<const Frame> samples) override {
     std::vector<cv::Mat> luma, cb, cr;
@@ -101,8 +88,8 @@ class AdaptiveBackground final : public Background {
 
     mark(planes);
     if (follow_light(planes)) mark(planes);
-    choose_regions();
-    find_ghosts(planes);
+    regions_.choose(marked_, size_.height);
+    regions_.compare_borders(planes.luma, luma_);
     draw_mask(planes);
     if (start_anew_if_lost(planes)) return {mask_};
     learn(planes, held);
@@ -137,8 +124,7 @@ class AdaptiveBackground final : public Background {
     size_ = size;
     colour_ = colour;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
-    second_ = cv::Mat::zeros(size, CV_8UC1);
-    seen_ = cv::Mat::zeros(size, CV_8UC1);
+    second_.begin(size);
     shadows_.begin(size);
     drawn_.clear();
     const std::size_t padded = static_cast<std::size_t>(size.width) + 4;
@@ -219,84 +205,21 @@ class AdaptiveBackground final : public Background {
 
   // ---- clean -------------------------------------------------------------------------------------------------------------
 
-  /// Keeps the runs of regions that are large and sure enough, in order, with the number of the region of each.
-  void choose_regions() {
-    const std::size_t count = marked_.runs.size();
-    forest_.reset(count);
-    join_neighbours(marked_.runs, 1, forest_);
-    areas_.assign(count, 0);
-    strongs_.assign(count, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const int root = forest_.root(static_cast<int>(i));
-      areas_[root] += marked_.runs[i].end - marked_.runs[i].begin;
-      strongs_[root] += marked_.strong[i];
-    }
-    runs_.clear();
-    region_.clear();
-    borders_.clear();
-    numbers_.assign(count, -1);
-    for (std::size_t i = 0; i < count; ++i) {
-      const int root = forest_.root(static_cast<int>(i));
-      if (areas_[root] < kFewestPixels || strongs_[root] < kStrongPixels) continue;
-      if (numbers_[root] < 0) {
-        numbers_[root] = static_cast<int>(borders_.size());
-        borders_.push_back({});
-      }
-      runs_.push_back(marked_.runs[i]);
-      region_.push_back(numbers_[root]);
-    }
-    row_begin_.assign(static_cast<std::size_t>(size_.height) + 1, 0);
-    for (const PixelRun& run : runs_) ++row_begin_[run.row + 1];
-    for (int y = 0; y < size_.height; ++y) row_begin_[y + 1] += row_begin_[y];
-  }
-
-  /// Adds up, over the left and right borders of each region, how sharp the frame is there and how sharp the scene.
-  void find_ghosts(const FramePlanes& planes) {
-    constexpr int kAcross = 3;
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      const PixelRun& run = runs_[i];
-      if (run.end - run.begin < 2 * kAcross) continue;
-      const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
-      const std::int16_t* means = luma_.mean(run.row);
-      Border& ghost = borders_[region_[i]];
-      const auto add = [&](int inside, int outside) {
-        if (outside < 0 || outside >= size_.width) return;
-        ghost.frame += std::abs(pixels[inside] - pixels[outside]);
-        ghost.scene += std::abs(means[inside] - means[outside]) / 128.0;
-        ++ghost.count;
-      };
-      add(run.begin + kAcross - 1, run.begin - kAcross);
-      add(run.end - kAcross, run.end - 1 + kAcross);
-    }
-  }
-
-  struct Border {
-    double frame = 0, scene = 0;
-    int count = 0;
-    bool is_ghost() const { return count >= 8 && scene > 2 * frame + 4 * count; }
-    bool is_thing() const { return frame > 1.3 * scene; }
-  };
-
-  bool is_known(int row, int column, std::uint8_t pixel) const {
-    return seen_.at<std::uint8_t>(row, column) >= kEstablished &&
-           std::abs(pixel - second_.at<std::uint8_t>(row, column)) <= kSecondWidth;
-  }
-
   void draw_mask(const FramePlanes& planes) {
     for (const PixelRun& run : drawn_)
       std::fill_n(mask_.ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{0});
-    if (options_.suppress_shadows) shadows_.judge(runs_, planes, {luma_, cb_, cr_, black_});
-    for (const PixelRun& run : runs_) {
+    if (options_.suppress_shadows) shadows_.judge(regions_.runs(), planes, {luma_, cb_, cr_, black_});
+    for (const PixelRun& run : regions_.runs()) {
       const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
       const std::int16_t* means = luma_.mean(run.row);
       auto* mask = mask_.ptr<std::uint8_t>(run.row);
       for (int x = run.begin; x < run.end; ++x) {
         const int scene = ((means[x] + 64) >> 7) - black_;
         const bool shadow = options_.suppress_shadows && shadows_.is_shadow(run.row, x, pixels[x] - black_, scene);
-        mask[x] = shadow || is_known(run.row, x, pixels[x]) ? 0 : 255;
+        mask[x] = shadow || second_.knows(run.row, x, pixels[x]) ? 0 : 255;
       }
     }
-    drawn_ = runs_;
+    drawn_ = regions_.runs();
   }
 
   /// After most of the picture did not fit the scene for a while.
@@ -312,8 +235,7 @@ class AdaptiveBackground final : public Background {
   void learn(const FramePlanes& planes, std::span<const Box> held) {
     const double turn_s = mean_step_s_ * kTurns;
     const int shift = shift_of(std::min(options_.memory_s, std::max(age_s_, 1.0)), turn_s);
-    const double tick_s = options_.absorb_after_s / kEstablished;
-    const int ticks = static_cast<int>(age_s_ / tick_s) - static_cast<int>(std::max(0.0, age_s_ - turn_s) / tick_s);
+    const int ticks = second_.ticks_between(age_s_ - turn_s, age_s_);
     const int turn = static_cast<int>(frames_ % kTurns);
     for (int first = turn * kRowsATurn; first < size_.height; first += kTurns * kRowsATurn) {
       const int last = std::min(first + kRowsATurn, size_.height);
@@ -336,9 +258,9 @@ class AdaptiveBackground final : public Background {
     std::fill(row.begin(), row.end(), std::uint8_t{0});
     const int above = std::max(0, top - kFringe);
     const int below = std::min(size_.height, bottom + kFringe + 1);
-    for (std::size_t i = row_begin_[above]; i < row_begin_[below]; ++i) {
-      const int begin = std::max(0, runs_[i].begin - kFringe);
-      const int end = std::min(size_.width, runs_[i].end + kFringe);
+    for (std::size_t i = regions_.begin_of(above); i < regions_.begin_of(below); ++i) {
+      const int begin = std::max(0, regions_.runs()[i].begin - kFringe);
+      const int end = std::min(size_.width, regions_.runs()[i].end + kFringe);
       std::fill(row.begin() + begin, row.begin() + end, std::uint8_t{1});
     }
     mark_held(held, top, bottom, row);
@@ -354,75 +276,20 @@ class AdaptiveBackground final : public Background {
     }
   }
 
-  /// Counts, for the foreground pixels of a row, how long they have looked the same; what has for long enough becomes scene.
+  /// What has stood still for long enough becomes scene; its chroma is taken from the frame.
   void count_still(const FramePlanes& planes, std::span<const Box> held, int y, int ticks) {
-    forget(y, ticks);
-    if (row_begin_[y] == row_begin_[y + 1]) return;
+    second_.forget(y, ticks, regions_);
+    if (regions_.begin_of(y) == regions_.begin_of(y + 1)) return;
     std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
     mark_held(held, y, y, held_row_);
-    const double tick_s = options_.absorb_after_s / kEstablished;
-    const int enough = std::min(kEstablished, static_cast<int>(std::ceil(std::max(2.0, age_s_ / 2) / tick_s)));
-    const int ghost_enough = std::max(2, static_cast<int>(std::lround(kGhost_s / tick_s)));
     const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
-    auto* second = second_.ptr<std::uint8_t>(y);
-    auto* seen = seen_.ptr<std::uint8_t>(y);
-    for (std::size_t i = row_begin_[y]; i < row_begin_[y + 1]; ++i) {
-      const bool ghost = borders_[region_[i]].is_ghost();
-      const bool thing = borders_[region_[i]].is_thing();
-      for (int x = runs_[i].begin; x < runs_[i].end; ++x) {
-        if (held_row_[x] != 0 && !ghost) continue;
-        const int distance = pixels[x] - second[x];
-        if (seen[x] == 0 || (std::abs(distance) > kSecondWidth && seen[x] <= 2 * ticks)) {
-          second[x] = static_cast<std::uint8_t>(pixels[x] & ~kAway);
-          seen[x] = 1;
-          continue;
-        }
-        if (std::abs(distance) > kSecondWidth) {
-          seen[x] = static_cast<std::uint8_t>(seen[x] - 2 * ticks);
-          continue;
-        }
-        const bool returns = (second[x] & kAway) != 0;
-        if (returns) luma_.widen(y, x, kReturnWidens);
-        const int gained = returns ? std::max(ticks, kReturn) : ticks;
-        second[x] = static_cast<std::uint8_t>((second[x] + (distance > 1 ? 2 : distance < -1 ? -2 : 0)) & ~kAway);
-        seen[x] = static_cast<std::uint8_t>(std::min(254, seen[x] + gained));
-        if (ghost && seen[x] >= ghost_enough) {
-          take_for_scene(planes, y, x);
-          seen[x] = 0;
-        } else if (seen[x] >= (thing ? kEstablished : enough)) {
-          take_for_scene(planes, y, x);
-        }
-      }
+    second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
+    for (const int x : taken_) {
+      luma_.believe(y, x, pixels[x]);
+      if (!colour_) continue;
+      cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
+      cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
     }
-  }
-
-  /// Where a row shows the scene, what was seen in front of it fades, and is noted (in the level's last bit) to be away.
-  void forget(int y, int ticks) {
-    auto* second = second_.ptr<std::uint8_t>(y);
-    auto* seen = seen_.ptr<std::uint8_t>(y);
-    const int fading = (ticks + 1) / 2;
-    int x = 0;
-    const auto fade_to = [&](int end) {
-      for (; x < end; ++x) {
-        second[x] = static_cast<std::uint8_t>(second[x] | kAway);
-        seen[x] = static_cast<std::uint8_t>(seen[x] > fading ? seen[x] - fading : 0);
-      }
-    };
-    for (std::size_t i = row_begin_[y]; i < row_begin_[y + 1]; ++i) {
-      fade_to(runs_[i].begin);
-      x = runs_[i].end;
-    }
-    fade_to(size_.width);
-  }
-
-  /// Changes the pixel's two means; its chroma is taken from the frame.
-  void take_for_scene(const FramePlanes& planes, int y, int x) {
-    const std::uint8_t old = luma_.level(y, x);
-    luma_.believe(y, x, planes.luma.at<std::uint8_t>(y, x));
-    second_.at<std::uint8_t>(y, x) = old;
-    if (!colour_) return;
-    cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
-    cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
   }
 
   AdaptiveOptions options_;
@@ -434,8 +301,7 @@ class AdaptiveBackground final : public Background {
   ScenePlane luma_{scaled(kLumaFloor), scaled(kGate)};
   ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};
   ScenePlane cr_{scaled(kChromaFloor), scaled(kGate)};
-  cv::Mat second_;  ///< CV_8UC1: the level seen at a pixel while it was foreground, or scene before
-  cv::Mat seen_;    ///< CV_8UC1: for how long, in ticks of absorb_after_s / kEstablished
+  SecondScene second_;
   LightMeter meter_;
   ShadowFinder shadows_;
 
@@ -447,13 +313,10 @@ class AdaptiveBackground final : public Background {
   // Room for one frame's work.
   std::array<std::vector<std::uint8_t>, 3> marks_;
   std::vector<std::uint8_t> chroma_mark_, vote_, frozen_, half_frozen_, held_row_;
-  Marked marked_;
-  Forest forest_;
-  std::vector<int> areas_, strongs_, numbers_;
-  std::vector<PixelRun> runs_, drawn_;  ///< of the regions chosen, in order; of the frame before
-  std::vector<int> region_;             ///< of each run
-  std::vector<Border> borders_;         ///< of each region
-  std::vector<std::size_t> row_begin_;  ///< the first run of each row
+  MarkedRuns marked_;
+  ForegroundRegions regions_;
+  std::vector<PixelRun> drawn_;  ///< into the mask, for the frame before
+  std::vector<int> taken_;
   cv::Mat mask_;
 
   int scaled(int threshold) const { return std::clamp(static_cast<int>(std::lround(threshold / options_.sensitivity)), 1, 64); }

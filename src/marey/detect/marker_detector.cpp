@@ -15,6 +15,7 @@
 #include "marey/detect/marker_auto_mask.h"
 #include "marey/detect/marker_fit.h"
 #include "marey/detect/marker_levels.h"
+#include "marey/detect/marker_neighbours.h"
 #include "marey/detect/marker_split.h"
 
 namespace marey {
@@ -28,7 +29,6 @@ constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
 constexpr double kColourDeviation = 0.5;   // px; where chroma lies within its four pixels is not known for certain
 constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a coloured marker
 constexpr double kUnlikeArea = 6;          // times the area of a typical disc
-constexpr int kCell = 64;                  // px; blobs are filed by cells to find their neighbours
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
@@ -79,8 +79,6 @@ class MarkerDetector::Impl {
   std::span<const MarkerBlob> find(const cv::Mat& searched);
   void mask_more(const MarkerMask& learned);
   void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
-  void file_blobs(std::span<const MarkerBlob> blobs, cv::Size size);
-  std::span<const MarkerNeighbour> neighbours(std::span<const MarkerBlob> blobs, std::size_t index);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
   void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
                std::vector<Detection>& found);
@@ -97,9 +95,7 @@ class MarkerDetector::Impl {
   cv::Mat heights_;
   MarkerThresholds colour_thresholds_;
   std::vector<std::size_t> chosen_;
-  std::vector<std::vector<std::uint32_t>> cells_;
-  cv::Size cell_count_;
-  std::vector<MarkerNeighbour> near_;
+  MarkerNeighbours neighbours_;
   MarkerWindow window_;
   std::vector<MarkerBlob> full_size_;
   std::vector<double> contrasts_, blurs_, disc_areas_;
@@ -182,7 +178,7 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
     }
   }
   choose(blobs, expected);
-  file_blobs(blobs, luma.size());
+  neighbours_.file(blobs, chosen_, luma.size());
   contrasts_.clear();
   blurs_.clear();
   disc_areas_.clear();
@@ -235,35 +231,6 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<c
   std::sort(chosen_.begin(), chosen_.end());
 }
 
-void MarkerDetector::Impl::file_blobs(std::span<const MarkerBlob> blobs, cv::Size size) {
-  const cv::Size count((size.width + kCell - 1) / kCell, (size.height + kCell - 1) / kCell);
-  if (count != cell_count_) cells_.assign(count.area(), {});
-  cell_count_ = count;
-  for (auto& cell : cells_) cell.clear();
-  for (const std::size_t i : chosen_) {
-    const int column = static_cast<int>(blobs[i].mean_x) / kCell, row = static_cast<int>(blobs[i].mean_y) / kCell;
-    cells_[static_cast<std::size_t>(row) * count.width + column].push_back(static_cast<std::uint32_t>(i));
-  }
-}
-
-/// Other blobs whose light may reach into the window of this one.
-std::span<const MarkerNeighbour> MarkerDetector::Impl::neighbours(std::span<const MarkerBlob> blobs, std::size_t index) {
-  near_.clear();
-  const MarkerBlob& own = blobs[index];
-  const int extent = std::max(own.box.width, own.box.height) / 2 + 3;
-  const cv::Rect reach(own.box.x - extent, own.box.y - extent, own.box.width + 2 * extent, own.box.height + 2 * extent);
-  const auto cell = [](int place, int cells) { return std::clamp(place / kCell, 0, cells - 1); };
-  for (int row = cell(reach.y, cell_count_.height); row <= cell(reach.br().y, cell_count_.height); ++row) {
-    for (int column = cell(reach.x, cell_count_.width); column <= cell(reach.br().x, cell_count_.width); ++column) {
-      for (const std::uint32_t i : cells_[static_cast<std::size_t>(row) * cell_count_.width + column]) {
-        if (i == index || (blobs[i].box & reach).empty()) continue;
-        near_.push_back({{blobs[i].mean_x, blobs[i].mean_y}, std::sqrt(static_cast<double>(blobs[i].area) / std::numbers::pi)});
-      }
-    }
-  }
-  return near_;
-}
-
 MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const MarkerBlob& blob) const {
   MarkerSurroundings around;
   const int x = std::min(static_cast<int>(blob.mean_x), luma.cols - 1), y = std::min(static_cast<int>(blob.mean_y), luma.rows - 1);
@@ -285,7 +252,7 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
                                    std::span<const Expected> expected, std::vector<Detection>& found) {
   const MarkerBlob& blob = blobs[index];
   const MarkerSurroundings around = surroundings(luma, blob);
-  collect_window(luma, blob, around, neighbours(blobs, index), window_);
+  collect_window(luma, blob, around, neighbours_.of(blobs, index), window_);
   MarkerShape lone = fit_disc(window_, blob, around);
   if (options_.colour &&
       (!lone.fitted || lone.contrast < kLeastLumaContrast * around.noise)) {  // luma does not show it: chroma does

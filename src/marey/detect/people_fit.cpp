@@ -12,24 +12,20 @@
 #include "marey/detect/people_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
+#include "marey/detect/people_grid.h"
+
 namespace marey {
 namespace {
 
-/// A part of the body, in fractions of its box.
-struct Part {
-  double left, top, right, bottom;
-};
-constexpr Part kHead = {0.28, 0.0, 0.72, 0.16}, kTrunk = {0.10, 0.16, 0.90, 0.52}, kLegs = {0.18, 0.52, 0.82, 1.0};
+constexpr BodyPart kHead = {0.28, 0.0, 0.72, 0.16}, kTrunk = {0.10, 0.16, 0.90, 0.52}, kLegs = {0.18, 0.52, 0.82, 1.0};
 constexpr double kBodyShare = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the box
 constexpr double kLeastTrunk = 0.15;                                   // filled, of what is not explained: a quick no
-constexpr std::array<Part, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.03, 0.12, 1.03, 1.03}}};
-constexpr Part kWholeBox = {0, 0, 1, 1};
-constexpr Part kAboveHead = {0.25, -0.16, 0.75, -0.02};
+constexpr BodyPart kWholeBox = {0, 0, 1, 1};
+constexpr BodyPart kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
 constexpr double kArmsWorth = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
 constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
@@ -44,153 +40,6 @@ constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
 constexpr double kBetter = 1e-9;  // by less, a place is as good as the one before it
 constexpr int kCoarse = 2;        // cells between the places first looked at
-
-class Grid {
- public:
-  Grid(const Box& place, const FitScene& scene, double cell)
-      : cell_(cell), per_cell_(1 / cell), left_(place.left), top_(place.top) {
-    columns_ = std::max(1, static_cast<int>(std::ceil(place.width / cell)));
-    rows_ = std::max(1, static_cast<int>(std::ceil(place.height / cell)));
-    filled_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
-    valid_.resize(filled_.size());
-    std::vector<int> wide(columns_);
-    for (int column = 0; column < columns_; ++column) wide[column] = overlap(left_ + column * cell_, scene.image.width);
-    for (int row = 0; row < rows_; ++row) {
-      const int tall = overlap(top_ + row * cell_, scene.image.height);
-      for (int column = 0; column < columns_; ++column) valid_[index(row, column)] = tall * wide[column];
-    }
-    sums_.resize(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1));
-  }
-
-  void fill(std::span<const PixelRun> runs, const FitScene& scene) {
-    for (const PixelRun& run : runs) {
-      const int row = static_cast<int>((run.row - top_) / cell_);
-      for (int x = run.begin; x < run.end;) {
-        const int column = static_cast<int>((x - left_) / cell_);
-        const int end = std::min(run.end, static_cast<int>(left_ + (column + 1) * cell_));
-        filled_[index(row, column)] += end - x;
-        x = end;
-      }
-    }
-    if (scene.hidden) leave_out_hidden(scene);
-    first_filled_ = filled_;
-    first_valid_ = valid_;
-    sum();
-  }
-
-  void reset() {
-    filled_ = first_filled_;
-    valid_ = first_valid_;
-    changed_row_ = 0;
-  }
-
-  /// Pixels of `part` of `box` count neither way from now on; `sum` must follow.
-  void explain(const Box& box) {
-    for (const Part& part : kExplained) {
-      const Cells cells = cells_of(box, part);
-      changed_row_ = std::min(changed_row_, cells.top);
-      for (int row = cells.top; row < cells.bottom; ++row) {
-        std::fill(filled_.begin() + index(row, cells.left), filled_.begin() + index(row, cells.right), 0);
-        std::fill(valid_.begin() + index(row, cells.left), valid_.begin() + index(row, cells.right), 0);
-      }
-    }
-  }
-
-  struct alignas(16) Count {
-    int filled = 0, valid = 0;  ///< px² not explained
-    int visible = 0;            ///< px² valid before anyone was placed
-    int unused = 0;             ///< makes four, which a machine adds at once
-
-    Count& operator+=(const Count& other) {
-      filled += other.filled;
-      valid += other.valid;
-      visible += other.visible;
-      unused += other.unused;
-      return *this;
-    }
-    Count& operator-=(const Count& other) {
-      filled -= other.filled;
-      valid -= other.valid;
-      visible -= other.visible;
-      unused -= other.unused;
-      return *this;
-    }
-  };
-
-  /// Makes the integral image of the counts as they stand, from the first row on that has changed.
-  void sum() {
-    const std::size_t stride = columns_ + 1;
-    for (int row = changed_row_; row < rows_; ++row) {
-      Count along;
-      const std::size_t first = index(row, 0);
-      const Count* above = &sums_[row * stride + 1];
-      Count* here = &sums_[(row + 1) * stride + 1];
-      for (int column = 0; column < columns_; ++column) {
-        along += {filled_[first + column], valid_[first + column], first_valid_[first + column]};
-        Count sum = above[column];
-        sum += along;
-        here[column] = sum;
-      }
-    }
-    changed_row_ = rows_;
-  }
-
-  Count count(const Box& box, const Part& part) const {
-    const Cells c = cells_of(box, part);
-    const std::size_t stride = columns_ + 1;
-    Count result = sums_[c.bottom * stride + c.right];
-    result -= sums_[c.top * stride + c.right];
-    result -= sums_[c.bottom * stride + c.left];
-    result += sums_[c.top * stride + c.left];
-    return result;
-  }
-
-  int filled_in_all() const { return sums_.back().filled; }
-  double cell() const { return cell_; }
-  double left() const { return left_; }
-  double top() const { return top_; }
-  double right() const { return left_ + columns_ * cell_; }
-  double bottom() const { return top_ + rows_ * cell_; }
-
- private:
-  struct Cells {
-    int left, top, right, bottom;
-  };
-
-  std::size_t index(int row, int column) const { return static_cast<std::size_t>(row) * columns_ + column; }
-
-  /// How many whole pixels of a cell that begins at `from` lie within a picture `size` long.
-  int overlap(double from, int size) const {
-    return static_cast<int>(std::max(0.0, std::min(from + cell_, static_cast<double>(size)) - std::max(from, 0.0)));
-  }
-
-  void leave_out_hidden(const FitScene& scene) {
-    for (int row = 0; row < rows_; ++row) {
-      for (int column = 0; column < columns_; ++column) {
-        const std::size_t i = index(row, column);
-        if (filled_[i] == 0 && scene.hidden(left_ + (column + 0.5) * cell_, top_ + (row + 0.5) * cell_)) valid_[i] = 0;
-      }
-    }
-  }
-
-  Cells cells_of(const Box& box, const Part& part) const {
-    const auto across = [&](double x) {
-      return static_cast<int>(std::clamp((box.left + x * box.width - left_) * per_cell_ + 0.5, 0.0, double(columns_)));
-    };
-    const auto down = [&](double y) {
-      return static_cast<int>(std::clamp((box.top + y * box.height - top_) * per_cell_ + 0.5, 0.0, double(rows_)));
-    };
-    return {across(part.left), down(part.top), across(part.right), down(part.bottom)};
-  }
-
-  double cell_, per_cell_;
-  double left_, top_;
-  int columns_ = 0, rows_ = 0;
-  std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
-  std::vector<int> first_filled_, first_valid_;  ///< the same before anyone was placed
-  std::vector<Count> sums_;                      ///< integral image
-  int changed_row_ = 0;                          ///< from which row on it is out of date
-};
 
 Box known_box(const Box& box, const FitScene& scene) {
   const auto foot = box.foot();
@@ -208,7 +57,7 @@ Box moved(const Box& box, double dx, double dy) {
 
 class Fit {
  public:
-  Fit(Grid& grid, const FitScene& scene, const PersonSize& typical, const FitOptions& options)
+  Fit(PeopleGrid& grid, const FitScene& scene, const PersonSize& typical, const FitOptions& options)
       : grid_(grid), scene_(scene), options_(options) {
     enough_ = 0.5 * options.min_cover_new * kLeastVisible * kBodyShare * typical.width * typical.height;
   }
@@ -233,7 +82,7 @@ class Fit {
     Place place;
     place.box = box;
     place.cover = -1;
-    Grid::Count body = grid_.count(box, kTrunk);
+    PeopleGrid::Count body = grid_.count(box, kTrunk);
     if (body.filled < kLeastTrunk * body.valid) return place;
     body += grid_.count(box, kHead);
     body += grid_.count(box, kLegs);
@@ -247,7 +96,7 @@ class Fit {
   }
 
   double above_head(const Box& box) const {
-    const Grid::Count count = grid_.count(box, kAboveHead);
+    const PeopleGrid::Count count = grid_.count(box, kAboveHead);
     return count.valid > 0 ? kAboveHeadCost * count.filled / count.valid : 0;
   }
 
@@ -390,14 +239,14 @@ class Fit {
     grid_.reset();
     grid_.sum();
     for (Placed& one : placed_) {
-      Grid::Count body = grid_.count(one.box, kHead);
+      PeopleGrid::Count body = grid_.count(one.box, kHead);
       body += grid_.count(one.box, kTrunk);
       body += grid_.count(one.box, kLegs);
       one.seen = body.valid > 0 ? static_cast<double>(body.filled) / body.valid : 0;
     }
   }
 
-  Grid& grid_;
+  PeopleGrid& grid_;
   const FitScene& scene_;
   const FitOptions& options_;
   double enough_;  ///< px² of unexplained foreground, half of the least that can make someone new
@@ -432,7 +281,7 @@ std::vector<Placed> fit_people(std::span<const PixelRun> runs, std::span<const B
   const double cell = std::max(1.0, std::round(typical.height / options.cells_tall));
   const Box wide{std::floor(place.left - typical.width), std::floor(place.top - typical.height / 4),
                  place.width + 2 * typical.width + 1, place.height + typical.height + 1};
-  Grid grid(wide, scene, cell);
+  PeopleGrid grid(wide, scene, cell);
   grid.fill(runs, scene);
   return Fit(grid, scene, typical, options).run(known);
 }

@@ -16,9 +16,10 @@
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/point_grid.h"
-#include "marey/core/error.h"
 #include "marey/geometry/chi_square.h"
+#include "marey/track/check_frame.h"
 #include "marey/track/common_motion.h"
+#include "marey/track/crowd.h"
 #include "marey/track/target.h"
 #include "marey/track/tracker.h"
 
@@ -36,10 +37,11 @@ class FilterTracker final : public Tracker<F::dimension> {
         gate_(chi_square_quantile(D, options.gate_probability)) {}
 
   std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
-    check(now, seen);
+    check_time(now, now_);
+    check_finite(now, seen);
     predict_to(now);
     follow_camera(seen);
-    mark_crowded();
+    if constexpr (D == 2) crowd_.mark_crowded(targets_, camera_);
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     claim_overlapped(seen);
@@ -65,22 +67,6 @@ class FilterTracker final : public Tracker<F::dimension> {
   }
 
  private:
-  void check(Timestamp now, std::span<const Observation<D>> seen) const {
-    if (now_ && now <= *now_) {
-      throw Error("the frame at {:.6f} s does not come after the one at {:.6f} s; the times of frames must grow", seconds(now),
-                  seconds(*now_));
-    }
-    for (const Observation<D>& observation : seen) {
-      const bool box_is_finite =
-          !observation.box || (std::isfinite(observation.box->left) && std::isfinite(observation.box->top) &&
-                               std::isfinite(observation.box->width) && std::isfinite(observation.box->height));
-      if (!observation.value.allFinite() || !observation.covariance.allFinite() || !std::isfinite(observation.score) ||
-          !box_is_finite) {
-        throw Error("an observation at {:.6f} s is not a finite number; leave it out", seconds(now));
-      }
-    }
-  }
-
   void predict_to(Timestamp now) {
     const double dt = now_ ? seconds(now - *now_) : 0.0;
     now_ = now;
@@ -162,30 +148,6 @@ class FilterTracker final : public Tracker<F::dimension> {
     return (room - cost) / 2;
   }
 
-  /// A target whose box meets another's may be seen in part, or as one with it: its size then says less.
-  void mark_crowded() {
-    if constexpr (D == 2) {
-      points_.clear();
-      widest_ = 0;
-      for (Target<F>& target : targets_) {
-        target.crowded = false;
-        points_.push_back(in_view(target));
-        if (target.size) widest_ = std::max(widest_, target.unit);
-      }
-      if (widest_ <= 0) return;
-      neighbours_.build(points_, widest_);
-      for (Target<F>& target : targets_) {
-        if (!target.size) continue;
-        const Box box = target.size->around(in_view(target));
-        neighbours_.for_each_near(in_view(target), (target.unit + widest_) / 2, [&](int index) {
-          const Target<F>& other = targets_[index];
-          if (other.id == target.id || !other.size || target.crowded) return;
-          target.crowded = intersection(box, other.size->around(in_view(other))).area() > crowded_share * box.area();
-        });
-      }
-    }
-  }
-
   template <typename Chosen>
   void claim(std::span<const Observation<D>> seen, Chosen&& chosen) {
     candidates_.clear();
@@ -233,8 +195,8 @@ class FilterTracker final : public Tracker<F::dimension> {
         candidates_.push_back(i);
         points_.push_back(centre_of(seen[i]));
       }
-      if (candidates_.empty() || widest_ <= 0) return;
-      grid_.build(points_, widest_);
+      if (candidates_.empty() || crowd_.widest() <= 0) return;
+      grid_.build(points_, crowd_.widest());
       pairs_.clear();
       for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
         const Target<F>& target = targets_[row];
@@ -285,7 +247,7 @@ class FilterTracker final : public Tracker<F::dimension> {
       target.evidence = std::min(most_evidence, target.evidence + evidence_of(observation.score));
       if (target.evidence >= options_.confirm) target.confirmed = true;
     }
-    mark_hidden(seen);
+    if constexpr (D == 2) crowd_.mark_hidden(targets_, seen);
     for (Target<F>& target : targets_) {
       if (target.observation < 0) target.evidence -= target.hidden ? hidden_evidence : miss_evidence;
     }
@@ -293,60 +255,13 @@ class FilterTracker final : public Tracker<F::dimension> {
 
   static double evidence_of(double score) { return 0.4 + 0.8 * std::clamp(score, 0.0, 1.0); }
 
-  /// A target that is not seen is hidden where another target, or the region that one was seen in, covers it.
-  void mark_hidden(std::span<const Observation<D>> seen) {
-    if constexpr (D == 2) {
-      for (Target<F>& target : targets_) {
-        if (target.observation >= 0 || !target.size) continue;
-        const Box box = target.size->around(in_view(target));
-        const auto covers = [&](const Box& other) { return intersection(box, other).area() > covered_share * box.area(); };
-        neighbours_.for_each_near(in_view(target), target.unit / 2 + widest_, [&](int index) {
-          const Target<F>& other = targets_[index];
-          if (target.hidden || other.observation < 0 || !other.size) return;
-          const std::optional<Box>& region = seen[other.observation].box;
-          target.hidden = covers(other.size->around(in_view(other))) || (region && covers(*region));
-        });
-      }
-    }
-  }
-
-  /// A region over several targets is those targets, merged, whether one of them claims it or none: they stay within it, keep
-  /// their sizes and wait for it to part; nobody new begins there.
+  /// Who has merged with others stays within their region, keeps its size and waits for it to part; nobody new begins there.
   void keep_merged(std::span<const Observation<D>> seen) {
     merged_.assign(seen.size(), 0);
     if constexpr (D == 2) {
-      if (widest_ <= 0) return;
-      claimant_.assign(seen.size(), -1);
-      for (int i = 0; i < static_cast<int>(targets_.size()); ++i) {
-        if (targets_[i].observation >= 0) claimant_[targets_[i].observation] = i;
-      }
-      for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (!seen[i].box || seen[i].box->empty()) continue;
-        if (claimant_[i] >= 0 && !outgrows(*seen[i].box, targets_[claimant_[i]])) continue;
-        find_covered(*seen[i].box);
-        if (covered_.size() + (claimant_[i] >= 0 ? 1 : 0) < 2) continue;
-        merged_[i] = 1;
-        for (const int index : covered_) stay_within(targets_[index], seen[i]);
-      }
+      crowd_.find_merged(targets_, seen, merged_,
+                         [&](Target<F>& target, const Observation<D>& region) { stay_within(target, region); });
     }
-  }
-
-  static bool outgrows(const Box& region, const Target<F>& target) {
-    return target.size &&
-           (region.width > merged_growth * target.size->width() || region.height > merged_growth * target.size->height());
-  }
-
-  /// Confirmed targets that are not seen and lie within the region for the most part, into `covered_`.
-  void find_covered(const Box& region) {
-    covered_.clear();
-    const double reach = std::max(region.width, region.height) / 2 + widest_;
-    neighbours_.for_each_near(region.centre(), reach, [&](int index) {
-      const Target<F>& target = targets_[index];
-      if (!target.confirmed || target.observation >= 0 || !target.size) return;
-      const Box box = target.size->around(in_view(target));
-      if (intersection(box, region).area() > merged_share * box.area()) covered_.push_back(index);
-    });
-    std::sort(covered_.begin(), covered_.end());
   }
 
   void stay_within(Target<F>& target, const Observation<D>& region) {
@@ -447,15 +362,11 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double size_room = 3;           // the same for its size
   static constexpr double recently = 0.35;         // s; a target seen since tells of the camera's motion
   static constexpr double fading = 0.6;            // s unseen after which a target is e times less likely to be there
-  static constexpr double crowded_share = 0.2;
   static constexpr double crowded_size_limit = 9;  // a box whose size is not believed costs no more than this
   static constexpr double newcomer_cost = 1;       // a confirmed target has the first claim
   static constexpr double miss_evidence = 0.7;
   static constexpr double hidden_evidence = 0.1;
   static constexpr double most_evidence = 10;
-  static constexpr double merged_share = 0.6;
-  static constexpr double merged_growth = 1.15;
-  static constexpr double covered_share = 0.5;
   static constexpr double overlapped = 0.25;         // IoU of a target's box and what must be the target, there being nobody else
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
@@ -476,10 +387,8 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<Sighting> expected_, sightings_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_, merged_;
-  std::vector<int> covered_, claimant_;
-  PointGrid<D> grid_;        // of observations
-  PointGrid<D> neighbours_;  // of targets
-  double widest_ = 0;        // of their boxes' heights
+  PointGrid<D> grid_;  // of observations
+  Crowd<F> crowd_;
   GatedAssigner assigner_;
 };
 

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -21,6 +20,9 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
+#include "marey/track/check_frame.h"
+#include "marey/track/roster_adoption.h"
+#include "marey/track/roster_target.h"
 
 namespace marey {
 namespace {
@@ -31,7 +33,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   static constexpr int D = F::dimension;
 
   RosterTracker(const RosterTrackerOptions& options, const typename F::Options& filter_options)
-      : options_(options), filter_options_(filter_options) {
+      : options_(options), filter_options_(filter_options), sight_(options), adoption_(options, filter_options) {
     std::set<std::string> seen;
     for (const std::string& label : options.labels) {
       if (!seen.insert(label).second) throw Error("the label \"{}\" occurs twice; every marker needs a name of its own", label);
@@ -45,7 +47,7 @@ class RosterTracker final : public Tracker<F::dimension> {
     } else {
       claim(seen);
       meet(seen);
-      find_lost(seen);
+      adoption_.find_lost(targets_, seen, claimed_, sight_);
       correct(seen);
       judge_newcomers();
       start_unclaimed(seen);
@@ -65,32 +67,12 @@ class RosterTracker final : public Tracker<F::dimension> {
   }
 
  private:
-  static constexpr int kNone = -1;
-
-  /// A newcomer is not reported; a provisional target, from the first frame, is, but has yet to prove that it is no false point.
-  enum class Standing { newcomer, provisional, established };
-
-  struct Target {
-    TrackId id;
-    std::string label;
-    F filter;
-    double width;             // of its marker
-    Vector<D> last_place;     // where it was last seen
-    double unseen = 0;        // s, since then
-    int observation = kNone;  // in this frame
-    int covered_by = kNone;   // the observation that it is taken to be behind
-    bool crowded = false;     // another target is within a marker's width
-    Standing standing = Standing::established;
-    double score = 0;  // log-likelihood ratio of a target against clutter, until it is established
-
-    bool on_roster() const { return standing != Standing::newcomer; }
-  };
+  using Target = RosterTarget<F>;
+  using Standing = typename Target::Standing;
+  static constexpr int kNone = Target::kNone;
 
   void predict_to(Timestamp now) {
-    if (now_ && now <= *now_) {
-      throw Error("the frame at {:.6f} s does not come after the one at {:.6f} s; the times of frames must grow", seconds(now),
-                  seconds(*now_));
-    }
+    check_time(now, now_);
     dt_ = now_ ? seconds(now - *now_) : 0.0;
     now_ = now;
     for (Target& target : targets_) {
@@ -123,37 +105,11 @@ class RosterTracker final : public Tracker<F::dimension> {
   void start(const Observation<D>& observation, int index, Standing standing) {
     targets_.push_back({.id = TrackId{next_id_++},
                         .label = {},
-                        .filter = F(filter_options_, observation.value, noise_of(observation)),
-                        .width = width_of(observation),
+                        .filter = F(filter_options_, observation.value, sight_.noise_of(observation)),
+                        .width = sight_.width_of(observation),
                         .last_place = observation.value,
                         .observation = index,
                         .standing = standing});
-  }
-
-  double width_of(const Observation<D>& observation) const {
-    if constexpr (D == 2) {
-      if (observation.box) return std::sqrt(observation.box->area());
-    }
-    return options_.marker_width;
-  }
-
-  Matrix<D> noise_of(const Observation<D>& observation) const {
-    Matrix<D> R = observation.covariance;
-    R.diagonal().array() += options_.place_noise * options_.place_noise;
-    return R;
-  }
-
-  /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that.
-  Matrix<D> noise_of(const Observation<D>& observation, const Target& target) const {
-    Matrix<D> R = noise_of(observation);
-    const double change = std::abs(width_of(observation) - target.width) - kWidthNoise * target.width;
-    if (change > 0) R.diagonal().array() += square(change);
-    return R;
-  }
-
-  bool alike(const Target& target, const Observation<D>& observation) const {
-    const double ratio = width_of(observation) / target.width;
-    return ratio < kMostGrowth && ratio > 1 / kMostGrowth;
   }
 
   void claim(std::span<const Observation<D>> seen) {
@@ -194,8 +150,8 @@ class RosterTracker final : public Tracker<F::dimension> {
   Spread spread_of(std::span<const Observation<D>> seen) const {
     Spread spread;
     for (const Observation<D>& point : seen) {
-      const double width = width_of(point);
-      spread.variance = std::max(spread.variance, noise_of(point).trace());
+      const double width = sight_.width_of(point);
+      spread.variance = std::max(spread.variance, sight_.noise_of(point).trace());
       spread.narrowest = &point == seen.data() ? width : std::min(spread.narrowest, width);
       spread.widest = std::max(spread.widest, width);
     }
@@ -206,7 +162,8 @@ class RosterTracker final : public Tracker<F::dimension> {
   double reach_of(const Target& target, const Spread& spread) const {
     const double fastest = options_.max_speed * target.unseen + target.width;
     if constexpr (requires { target.filter.search_reach(0.0); }) {
-      const double change = std::max(spread.widest - target.width, target.width - spread.narrowest) - kWidthNoise * target.width;
+      const double change =
+          std::max(spread.widest - target.width, target.width - spread.narrowest) - RosterSight<F>::kWidthNoise * target.width;
       return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
     } else {
       return fastest;
@@ -223,9 +180,9 @@ class RosterTracker final : public Tracker<F::dimension> {
   double gain(const Target& target, const Observation<D>& point) const {
     const Vector<D> residual = point.value - target.filter.position();
     if (residual.squaredNorm() > square(options_.max_speed * target.unseen + target.width)) return 0;
-    const Matrix<D> R = noise_of(point, target);
+    const Matrix<D> R = sight_.noise_of(point, target);
     if (target.filter.gate_distance(point.value, R) > 1) return 0;
-    if (target.unseen > 1.5 * dt_ && expected_clutter(residual.norm() + target.width) > kClutterLimit) return 0;
+    if (target.unseen > 1.5 * dt_ && !sight_.believes_jump(residual.norm() + target.width)) return 0;
     const Matrix<D> S = target.filter.innovation_covariance(R);
     const double cost = residual.dot(S.inverse() * residual) + std::log(S.determinant() / square(reference_variance()));
     return std::max(1e-3, kRoom - cost) + (target.on_roster() ? kRoom : 0);
@@ -242,7 +199,7 @@ class RosterTracker final : public Tracker<F::dimension> {
         if (other.observation == kNone || other.id == target.id) continue;
         const Observation<D>& point = seen[other.observation];
         const double distance = (point.value - target.filter.position()).norm();
-        const double reach = 0.5 * (width_of(point) + target.width);
+        const double reach = 0.5 * (sight_.width_of(point) + target.width);
         if (distance < reach && distance < nearest) {
           nearest = distance;
           target.covered_by = other.observation;
@@ -275,126 +232,24 @@ class RosterTracker final : public Tracker<F::dimension> {
     }
   }
 
-  /// Brings targets that are missed and points that nobody claims together: every pair within reach, the nearest sum.
-  void find_lost(std::span<const Observation<D>> seen) {
-    lost_.clear();
-    free_.clear();
-    for (int i = 0; i < std::ssize(targets_); ++i) {
-      if (targets_[i].observation == kNone && targets_[i].covered_by == kNone && targets_[i].standing == Standing::established)
-        lost_.push_back(i);
-    }
-    for (int i = 0; i < std::ssize(seen); ++i) {
-      if (!claimed_[i]) free_.push_back(i);
-    }
-    unexplained_ += kClutterMemory *
-                    (std::max<double>(0, static_cast<double>(free_.size()) - static_cast<double>(lost_.size())) - unexplained_);
-    if (!lost_.empty()) {
-      adopt_points(seen);
-      adopt_newcomers();
-    }
-  }
-
-  /// How far a target's own motion leaves it from a place; where it turned or stopped unseen, its last place tells better.
-  double way_to(const Target& target, const Vector<D>& place) const {
-    return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
-  }
-
-  void adopt_points(std::span<const Observation<D>> seen) {
-    if (free_.empty() || std::ssize(lost_) * std::ssize(free_) > kMostLostPairs) return;
-    pairs_.clear();
-    for (int row = 0; row < std::ssize(lost_); ++row) {
-      const Target& target = targets_[lost_[row]];
-      for (int column = 0; column < std::ssize(free_); ++column) {
-        const Vector<D>& place = seen[free_[column]].value;
-        const double reach = options_.max_speed * target.unseen + target.width;
-        if ((place - target.last_place).norm() > reach || !alike(target, seen[free_[column]])) continue;
-        const double way = way_to(target, place);
-        if (expected_clutter(way + target.width) > kClutterLimit) continue;
-        pairs_.push_back({row, column, 2 * kFar - std::min(way, kFar)});
-      }
-    }
-    const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(free_.size()), pairs_);
-    for (int row = 0; row < std::ssize(lost_); ++row) {
-      if (columns[row] == GatedAssigner::nobody) continue;
-      const int index = free_[columns[row]];
-      begin_anew(targets_[lost_[row]], seen[index]);
-      targets_[lost_[row]].observation = index;
-      claimed_[index] = 1;
-    }
-  }
-
-  /// False points to be expected in one frame within `radius` of a place.
-  double expected_clutter(double radius) const {
-    const double share = std::pow(radius, D) / std::max(std::pow(radius, D), std::pow(extent_, D));
-    return unexplained_ * share;
-  }
-
-  /// The motion before the jump tells little of the motion after it; half of the velocity seen since is kept for the start.
-  void begin_anew(Target& target, const Observation<D>& point) {
-    const double jump = (point.value - target.filter.position()).norm();
-    if (target.filter.gate_distance(point.value, noise_of(point)) <= kGentleJump || jump < target.width) return;
-    F fresh(filter_options_, target.last_place, noise_of(point));
-    fresh.predict(target.unseen);
-    if (fresh.gate_distance(point.value, noise_of(point)) > 1) fresh = F(filter_options_, point.value, noise_of(point));
-    target.filter = fresh;
-  }
-
-  /// A newcomer that has stayed is one of those who are missed.
-  void adopt_newcomers() {
-    pairs_.clear();
-    proven_.clear();
-    for (int i = 0; i < std::ssize(targets_); ++i) {
-      const Target& newcomer = targets_[i];
-      if (!newcomer.on_roster() && newcomer.observation != kNone && newcomer.score >= options_.confirm) proven_.push_back(i);
-    }
-    for (int row = 0; row < std::ssize(lost_); ++row) {
-      const Target& target = targets_[lost_[row]];
-      if (target.observation != kNone) continue;
-      for (const int column : proven_) {
-        const Target& newcomer = targets_[column];
-        if ((newcomer.last_place - target.last_place).norm() > options_.max_speed * target.unseen) continue;
-        pairs_.push_back({row, column, 2 * kFar - std::min(way_to(target, newcomer.last_place), kFar)});
-      }
-    }
-    if (pairs_.empty()) return;
-    const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(targets_.size()), pairs_);
-    for (int row = 0; row < std::ssize(lost_); ++row) {
-      if (columns[row] == GatedAssigner::nobody) continue;
-      Target& target = targets_[lost_[row]];
-      Target& newcomer = targets_[columns[row]];
-      target.filter = newcomer.filter;
-      target.observation = newcomer.observation;
-      newcomer.observation = kNone;
-    }
-  }
-
   void correct(std::span<const Observation<D>> seen) {
     for (Target& target : targets_) {
       if (target.observation == kNone) continue;
       const Observation<D>& point = seen[target.observation];
-      Matrix<D> R = noise_of(point, target);
+      Matrix<D> R = sight_.noise_of(point, target);
       if (target.crowded) R.diagonal().array() += square(kCrowdNoise * target.width);
-      if (target.standing != Standing::established) target.score += log_ratio(target, point.value, R);
+      if (target.standing != Standing::established) target.score += sight_.log_ratio(target, point.value, R);
       target.filter.correct(point.value, R);
-      if (!target.crowded) target.width += kWidthMemory * (width_of(point) - target.width);
+      if (!target.crowded) target.width += kWidthMemory * (sight_.width_of(point) - target.width);
       target.last_place = point.value;
       target.unseen = 0;
-      extent_ = std::max(extent_, point.value.cwiseAbs().maxCoeff());
+      sight_.widen_scene(point.value);
     }
     for (Target& target : targets_) {
       if (target.covered_by == kNone) continue;
       target.last_place = target.filter.position();  // it is seen, though not apart
       target.unseen = std::min(target.unseen, kCoast / 2);
     }
-  }
-
-  /// How much likelier the point is the target's than a false one, as a logarithm.
-  double log_ratio(const Target& target, const Vector<D>& place, const Matrix<D>& R) const {
-    const Matrix<D> S = target.filter.innovation_covariance(R);
-    const Vector<D> residual = place - target.filter.position();
-    const double clutter_density = std::max(unexplained_, kLeastClutter) / std::pow(extent_, D);
-    return -0.5 * (residual.dot(S.inverse() * residual) + std::log(S.determinant()) + D * std::log(2 * std::numbers::pi)) -
-           std::log(clutter_density);
   }
 
   /// A newcomer that misses a frame was a false point; so was a provisional target that misses several.
@@ -451,18 +306,10 @@ class RosterTracker final : public Tracker<F::dimension> {
   static constexpr double kWidestGate = 5;        // standard deviations
   static constexpr double kCrowded = 1.4;         // marker widths between two that disturb each other's centres
   static constexpr double kCrowdNoise = 0.25;     // marker widths by which they do
-  static constexpr double kGentleJump = 1;        // gates
-  static constexpr double kClutterMemory = 0.1;   // a frame
-  static constexpr double kClutterLimit = 0.02;   // false points to be expected where a jump is still believed at once
-  static constexpr double kLeastClutter = 0.01;   // false points a frame that are always thought possible
   static constexpr double kMissPenalty = 3;       // log of 1 over the chance that a marker is missed
-  static constexpr double kWidthNoise = 0.2;      // of the width: what the pixels' raster makes of it
-  static constexpr double kMostGrowth = 2.5;      // a lost marker comes back no larger, no smaller than by this
   static constexpr double kWidthMemory = 0.1;     // a frame
-  static constexpr double kFar = 1e6;             // px
   static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is looked at
   static constexpr std::size_t kFewTargets = 64;
-  static constexpr long kMostLostPairs = 1'000'000;  // glare: nobody is looked for in it
   static constexpr int kMostTargets = 20'000;
 
   RosterTrackerOptions options_;
@@ -470,15 +317,14 @@ class RosterTracker final : public Tracker<F::dimension> {
   std::optional<Timestamp> now_;
   double dt_ = 0;
   int next_id_ = 1;
-  double unexplained_ = 0;       // points a frame that nobody explains, a running mean
-  double extent_ = 1;            // of the scene, px
+  RosterSight<F> sight_;
+  RosterAdoption<F> adoption_;
   std::vector<Target> targets_;  // in the order of their ids
   std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<Vector<D>> points_, places_;
   std::vector<GatedPair> pairs_;
   std::vector<char> claimed_;
-  std::vector<int> lost_, free_, proven_;
   PointGrid<D> grid_;
   GatedAssigner assigner_;
 };

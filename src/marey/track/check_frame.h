@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "marey/core/error.h"
+#include "marey/core/observation.h"
+#include "marey/core/time.h"
+
+namespace marey {
+
+/// Throws Error where a frame does not come after the one `before` it.
+inline void check_time(Timestamp now, std::optional<Timestamp> before) {
+  if (before && now <= *before) {
+    throw Error("the frame at {:.6f} s does not come after the one at {:.6f} s; the times of frames must grow", seconds(now),
+                seconds(*before));
+  }
+}
+
+/// Throws Error where an observation holds what is no finite number.
+template <int D>
+void check_finite(Timestamp now, std::span<const Observation<D>> seen) {
+  for (const Observation<D>& observation : seen) {
+    const bool box_is_finite =
+        !observation.box || (std::isfinite(observation.box->left) && std::isfinite(observation.box->top) &&
+                             std::isfinite(observation.box->width) && std::isfinite(observation.box->height));
+    if (!observation.value.allFinite() || !observation.covariance.allFinite() || !std::isfinite(observation.score) ||
+        !box_is_finite)
+      throw Error("an observation at {:.6f} s is not a finite number; leave it out", seconds(now));
+  }
+}
+
+}  // namespace marey
