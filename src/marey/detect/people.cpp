@@ -75,13 +75,18 @@ std::vector<PixelRun> runs_within(std::span<const PixelRun> runs, const Box& box
 Detection detection_of(const Box& box, std::span<const PixelRun> runs, double score, cv::Size image) {
   Detection detection;
   detection.box = clipped(box, image);
-  detection.centre = detection.box.centre();
   const double across = 1 + 0.08 * box.width, down = 1 + 0.04 * box.height;
   const double doubt = 1 / std::max(score, 0.2);
   detection.covariance = Vector<2>(across * across * doubt, down * down * doubt).asDiagonal();
   detection.score = score;
   std::vector<PixelRun> part = runs_within(runs, box);
-  for (const PixelRun& run : part) detection.area += run.end - run.begin;
+  Vector<2> sum = Vector<2>::Zero();
+  for (const PixelRun& run : part) {
+    const double length = run.end - run.begin;
+    detection.area += length;
+    sum += length * Vector<2>((run.begin + run.end - 1) / 2.0, run.row);
+  }
+  detection.centre = detection.area > 0 ? Vector<2>(sum / detection.area) : detection.box.centre();
   detection.outline = outline_of(part);
   return detection;
 }

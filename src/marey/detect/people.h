@@ -20,7 +20,7 @@ struct PeopleOptions {
 
 /// People who move, or moved, before a fixed camera: foreground of a background model, cut into people by the size that they
 /// have at each place, which is learned from the recording itself. Boxes hold whole bodies, also where a part is hidden, and end
-/// at the picture's border. A detection's centre is the middle of its box.
+/// at the picture's border.
 class PeopleDetector final : public Detector {
  public:
   /// What was seen and not reported, or reported with doubt, since the beginning.

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/part_name.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -121,7 +122,7 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
   parts_->path = path;
-  parts_->part = path + ".part";
+  parts_->part = part_name(path);
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   try {

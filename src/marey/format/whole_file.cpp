@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "marey/core/error.h"
+#include "marey/core/part_name.h"
 
 namespace marey {
 
@@ -16,7 +17,10 @@ WholeFile::WholeFile(const std::string& path) : path_(path) {
   if (fs::is_directory(status)) throw Error("{}: is a folder; name a file", path);
   const bool special = fs::exists(status) && !fs::is_regular_file(status);
   // Where the name is a link, the file behind it is what is replaced.
-  if (!special) part_ = (fs::is_regular_file(status) ? fs::canonical(path, error).string() : path) + ".part";
+  if (!special) {
+    target_ = fs::is_regular_file(status) ? fs::canonical(path, error).string() : path;
+    part_ = part_name(target_);
+  }
   file_.reset(std::fopen(special ? path.c_str() : part_.c_str(), "wb"));
   if (file_ == nullptr) fail(errno);
 }
@@ -45,7 +49,7 @@ void WholeFile::finish() {
     fail(error);
   }
   std::error_code error;
-  fs::rename(part_, part_.substr(0, part_.size() - 5), error);
+  fs::rename(part_, target_, error);
   if (error) fail(error.value());
 }
 

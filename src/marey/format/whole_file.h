@@ -7,7 +7,7 @@
 
 namespace marey {
 
-/// A text file that appears whole or not at all: it is written beside its name (with ".part" behind it) and gets its name in
+/// A text file that appears whole or not at all: it is written beside its name (core/part_name.h) and gets its name in
 /// `finish`. What is no file, such as a pipe or /dev/stdout, is written as it comes.
 class WholeFile {
  public:
@@ -30,7 +30,8 @@ class WholeFile {
   [[noreturn]] void fail(int error) const;
 
   std::string path_;
-  std::string part_;  // empty where the name is written directly
+  std::string target_;  // what it is renamed to: `path`, or what a link of that name leads to
+  std::string part_;    // empty where the name is written directly
   std::unique_ptr<std::FILE, CloseFile> file_;
 };
 

@@ -34,6 +34,19 @@ TEST(WholeFile, WithoutFinishTheOldOneStays) {
   EXPECT_EQ(entries(folder), 1);
 }
 
+TEST(WholeFile, OfTwoWritersTheLastToFinishStaysWhole) {
+  const test::TemporaryFolder folder;
+  WholeFile one(folder / "tracks.txt");
+  WholeFile other(folder / "tracks.txt");
+  one.write("the one's text\n");
+  other.write("the other's\n");
+  one.finish();
+  EXPECT_EQ(test::read_file(folder / "tracks.txt"), "the one's text\n");
+  other.finish();
+  EXPECT_EQ(test::read_file(folder / "tracks.txt"), "the other's\n");
+  EXPECT_EQ(entries(folder), 1);
+}
+
 TEST(WholeFile, ALinkStaysALink) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "real.txt", "old");

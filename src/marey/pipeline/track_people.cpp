@@ -68,7 +68,7 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
   std::vector<Observation<2>> result;
   result.reserve(detections.size());
   for (const Detection& detection : detections) {
-    result.push_back({.value = detection.centre,
+    result.push_back({.value = detection.box.centre(),
                       .covariance = detection.covariance,
                       .camera = camera,
                       .score = detection.score,
