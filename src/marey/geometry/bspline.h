@@ -20,20 +20,21 @@ struct SplineWeights {
   double derivative[max_order] = {};  ///< by u; sum 0
 };
 
-/// The weights at `u` (any finite number; periodic in [0, count)) for `count` ≥ `order` control points, 2 ≤ `order` ≤ max_order.
+/// The weights at `u` (finite; periodic in [0, count)) for `count` ≥ `order` control points, 2 ≤ `order` ≤ max_order.
 SplineWeights spline_weights(int order, int count, double u);
 
 /// A closed uniform B-spline in the plane: x(u) = Σ xᵢ B(u − i), u periodic in [0, M), with B symmetric round 0, so that control
 /// point i pulls most at u = i. `order` is degree + 1: 4 for cubic. Orientation is as seen on the screen, y pointing down.
 class ClosedSpline {
  public:
-  /// Throws Error where the order is not in [2, SplineWeights::max_order], there are fewer control points than the order or
-  /// than 3, or one is not finite.
+  /// 2 ≤ `order` ≤ SplineWeights::max_order; at least `order` control points, and at least 3; all finite.
   ClosedSpline(int order, std::vector<Vector<2>> control_points);
 
   int order() const { return order_; }
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<Vector<2>>& control_points() const { return points_; }
+  /// To be moved, not to be more or fewer.
+  std::span<Vector<2>> control_points() { return points_; }
 
   Vector<2> at(double u) const;
   Vector<2> derivative(double u) const;
@@ -47,10 +48,10 @@ class ClosedSpline {
   /// Derivatives of the centroid's x (row 0) and y (row 1) by x₀ y₀ x₁ y₁ …: 2 × 2M.
   Eigen::Matrix<double, 2, Eigen::Dynamic> centroid_gradient() const;
 
-  /// px; by Gauss-Legendre quadrature of each span, to about 1e-6 of it.
+  /// px; of the polygon of 32 points a span.
   double length() const;
-  /// Parameters of `count` ≥ 1 places evenly spaced along the curve, the first at u = 0.
-  std::vector<double> evenly_spaced(int count) const;
+  /// Parameters of `places.size()` places evenly spaced along the curve, the first at u = 0, to a hundredth of a span.
+  void evenly_spaced(std::span<double> places) const;
 
   /// `per_span` ≥ 1 points for each control point, in the order of u from 0.
   std::vector<Vector<2>> polygon(int per_span = 8) const;
@@ -64,16 +65,16 @@ class ClosedSpline {
 
 /// How a polygon becomes a spline.
 struct SplineFitOptions {
-  int order = 4;
+  int order = 4;           ///< 2 … SplineWeights::max_order
   int least = 8;           ///< control points to begin with
-  int most = 24;           ///< and to end with
+  int most = 24;           ///< and to end with; both are raised to what the order needs
   double tolerance = 0.5;  ///< px, RMS distance between polygon and curve; the fewest control points that reach it are taken
 };
 
-/// The least-squares spline of a closed polygon (ordered corners, edges counted by their length), its parameter going with arc
-/// length from the polygon's topmost corner. Nothing where the polygon has fewer than 3 corners, no area, or a corner that is not
-/// finite; with fewer control points than asked for where the polygon is too short to determine them. Throws Error where the
-/// options are out of their domain.
+/// The least-squares spline of a closed polygon (ordered corners, edges counted by their length); its parameter goes with arc
+/// length, from the polygon's topmost corner (of several the leftmost) clockwise on the screen. It has no more control points than
+/// the polygon has px of length. Nothing where that is fewer than the order needs, or the polygon has fewer than 3 corners, no
+/// area, or a corner that is not finite.
 std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const SplineFitOptions& options = {});
 
 /// Area by the shoelace formula, px²: positive where the corners run clockwise on the screen.
