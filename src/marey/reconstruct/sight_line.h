@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "marey/geometry/camera.h"
@@ -17,6 +18,9 @@ struct SightLine {
   Vector<3> direction = Vector<3>::UnitZ();  ///< of length 1
   Eigen::Matrix<double, 2, 3> across;        ///< ∂pixel/∂world at distance 1 on the half-line, px
   double sigma = 1;                          ///< standard deviation of the pixel along each axis, px
+
+  /// Pixels a radian at the pixel, the mean of all directions.
+  double scale() const { return std::sqrt(across.squaredNorm() / 2); }
 
   /// How far along the half-line `world` lies, m; not positive behind the camera.
   double depth(const Vector<3>& world) const { return direction.dot(world - origin); }

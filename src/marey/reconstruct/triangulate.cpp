@@ -11,17 +11,10 @@
 namespace marey {
 namespace {
 
-constexpr int kMostRays = 64;
 constexpr int kMostSteps = 25;
-constexpr double kSmallStep = 1e-5;   // standard deviations of the point: far below noise
+constexpr double kSmallStep = 1e-3;   // standard deviations of the point: far below noise
 constexpr double kFarthest = 1e6;     // m
 constexpr double kClearlyBetter = 3;  // a left-out ray is known for the wrong one where any other fits worse by this factor
-
-struct Fit {
-  Vector<3> position;
-  Matrix<3> information;
-  double chi_square = 0;
-};
 
 /// The point with the least sum of squared distances to the half-lines' lines; nothing where they are parallel.
 std::optional<Vector<3>> nearest_to_all(std::span<const SightLine> rays, std::uint64_t used) {
@@ -49,8 +42,41 @@ bool wide_enough(std::span<const SightLine> rays, std::uint64_t used, double lea
   return least_cosine < std::cos(least_angle);
 }
 
+double limit_of(int rays, double false_alarm) {
+  // z such that a normal variable exceeds it with the given probability: Abramowitz & Stegun 26.2.23.
+  const double t = std::sqrt(-2 * std::log(std::min(false_alarm, 0.5)));
+  const double z = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double degrees = std::max(1, 2 * rays - 3);
+  const double root = 1 - 2 / (9 * degrees) + z * std::sqrt(2 / (9 * degrees));
+  return degrees * root * root * root;
+}
+
+std::uint64_t all_of(std::span<const SightLine> rays) {
+  return rays.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << rays.size()) - 1;
+}
+
+}  // namespace
+
+struct Triangulator::Fit {
+  Vector<3> position;
+  Matrix<3> information;
+  double chi_square = 0;
+};
+
+/// What is left without one ray.
+struct Triangulator::Rejection {
+  Fit fit;
+  std::uint64_t used;
+};
+
+Triangulator::Triangulator(const TriangulateOptions& options) : options_(options) {
+  for (int rays = 2; rays <= kMostRays; ++rays) limits_[rays] = limit_of(rays, options.false_alarm);
+}
+
 /// Gauss and Newton's method with Huber's weights.
-std::variant<Fit, NoPoint> fit(std::span<const SightLine> rays, std::uint64_t used, const Vector<3>& start, double huber) {
+std::variant<Triangulator::Fit, NoPoint> Triangulator::fit(std::span<const SightLine> rays, std::uint64_t used,
+                                                           const Vector<3>& start) const {
+  const double huber = options_.huber;
   Fit fit{start, Matrix<3>::Zero(), 0};
   for (int step = 0; step < kMostSteps; ++step) {
     Matrix<3> H = Matrix<3>::Zero();
@@ -84,19 +110,14 @@ std::variant<Fit, NoPoint> fit(std::span<const SightLine> rays, std::uint64_t us
 }
 
 /// The best fit without one of the rays, and which; nothing where none is sound, or two could be the wrong one.
-struct Rejection {
-  Fit fit;
-  std::uint64_t used;
-};
-
-std::optional<Rejection> without_one(std::span<const SightLine> rays, std::uint64_t used, const TriangulateOptions& options) {
+std::optional<Triangulator::Rejection> Triangulator::without_one(std::span<const SightLine> rays, std::uint64_t used) const {
   std::optional<Rejection> best;
   double second = std::numeric_limits<double>::infinity();
   for (std::uint64_t left = used; left != 0; left &= left - 1) {
     const std::uint64_t rest = used & ~(left & ~(left - 1));
     const auto start = nearest_to_all(rays, rest);
-    if (!start || !wide_enough(rays, rest, options.least_angle)) continue;
-    const auto tried = fit(rays, rest, *start, options.huber);
+    if (!start || !wide_enough(rays, rest, options_.least_angle)) continue;
+    const auto tried = fit(rays, rest, *start);
     const Fit* found = std::get_if<Fit>(&tried);
     if (!found) continue;
     if (!best || found->chi_square < best->fit.chi_square) {
@@ -107,14 +128,13 @@ std::optional<Rejection> without_one(std::span<const SightLine> rays, std::uint6
     }
   }
   if (!best) return std::nullopt;
-  const bool sound = best->fit.chi_square <= most_chi_square(std::popcount(best->used), options.false_alarm);
   // Two rays nearly always meet somewhere: of three, it must be plain that the other pairs do not.
-  const double limit = most_chi_square(std::popcount(best->used), options.false_alarm);
-  if (sound && std::popcount(best->used) == 2 && second < kClearlyBetter * limit) return std::nullopt;
+  const double limit = most_chi_square(std::popcount(best->used));
+  if (best->fit.chi_square <= limit && std::popcount(best->used) == 2 && second < kClearlyBetter * limit) return std::nullopt;
   return best;
 }
 
-SpacePoint point_of(std::span<const SightLine> rays, std::uint64_t used, const Fit& fit) {
+SpacePoint Triangulator::point_of(std::span<const SightLine> rays, std::uint64_t used, const Fit& fit) {
   SpacePoint point;
   point.position = fit.position;
   point.covariance = fit.information.inverse();
@@ -129,28 +149,20 @@ SpacePoint point_of(std::span<const SightLine> rays, std::uint64_t used, const F
   return point;
 }
 
-Triangulation solve(std::span<const SightLine> rays, std::uint64_t used, const Vector<3>& start,
-                    const TriangulateOptions& options) {
-  const auto first = fit(rays, used, start, options.huber);
-  if (const auto* reason = std::get_if<NoPoint>(&first); reason && (!options.reject || std::popcount(used) < 3)) return *reason;
+Triangulation Triangulator::solve(std::span<const SightLine> rays, std::uint64_t used, const Vector<3>& start) const {
+  const auto first = fit(rays, used, start);
+  if (const auto* reason = std::get_if<NoPoint>(&first); reason && (!options_.reject || std::popcount(used) < 3)) return *reason;
   const Fit* sound = std::get_if<Fit>(&first);
-  if (sound && sound->chi_square <= most_chi_square(std::popcount(used), options.false_alarm)) return point_of(rays, used, *sound);
-  if (!options.reject) return NoPoint::rays_disagree;
+  if (sound && sound->chi_square <= most_chi_square(std::popcount(used))) return point_of(rays, used, *sound);
+  if (!options_.reject) return NoPoint::rays_disagree;
   while (std::popcount(used) > 2) {
-    const auto better = without_one(rays, used, options);
+    const auto better = without_one(rays, used);
     if (!better) break;
     used = better->used;
-    if (better->fit.chi_square <= most_chi_square(std::popcount(used), options.false_alarm))
-      return point_of(rays, used, better->fit);
+    if (better->fit.chi_square <= most_chi_square(std::popcount(used))) return point_of(rays, used, better->fit);
   }
   return NoPoint::rays_disagree;
 }
-
-std::uint64_t all_of(std::span<const SightLine> rays) {
-  return rays.size() >= kMostRays ? ~std::uint64_t{0} : (std::uint64_t{1} << rays.size()) - 1;
-}
-
-}  // namespace
 
 std::string_view meaning(NoPoint reason) {
   switch (reason) {
@@ -168,31 +180,22 @@ std::string_view meaning(NoPoint reason) {
   return "";
 }
 
-double most_chi_square(int rays, double false_alarm) {
-  // z such that a normal variable exceeds it with the given probability: Abramowitz & Stegun 26.2.23.
-  const double t = std::sqrt(-2 * std::log(std::min(false_alarm, 0.5)));
-  const double z = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-  const double degrees = std::max(1, 2 * rays - 3);
-  const double root = 1 - 2 / (9 * degrees) + z * std::sqrt(2 / (9 * degrees));
-  return degrees * root * root * root;
-}
-
-Triangulation triangulate(std::span<const SightLine> rays, const TriangulateOptions& options) {
+Triangulation Triangulator::operator()(std::span<const SightLine> rays) const {
   if (rays.size() > kMostRays) rays = rays.first(kMostRays);
   if (rays.size() < 2) return NoPoint::too_few_rays;
   const std::uint64_t used = all_of(rays);
-  if (!wide_enough(rays, used, options.least_angle)) return NoPoint::parallel_rays;
+  if (!wide_enough(rays, used, options_.least_angle)) return NoPoint::parallel_rays;
   const auto start = nearest_to_all(rays, used);
   if (!start) return NoPoint::parallel_rays;
-  return solve(rays, used, *start, options);
+  return solve(rays, used, *start);
 }
 
-Triangulation triangulate(std::span<const SightLine> rays, const Vector<3>& near, const TriangulateOptions& options) {
+Triangulation Triangulator::operator()(std::span<const SightLine> rays, const Vector<3>& near) const {
   if (rays.size() > kMostRays) rays = rays.first(kMostRays);
   if (rays.size() < 2) return NoPoint::too_few_rays;
   const std::uint64_t used = all_of(rays);
-  if (!wide_enough(rays, used, options.least_angle)) return NoPoint::parallel_rays;
-  return solve(rays, used, near, options);
+  if (!wide_enough(rays, used, options_.least_angle)) return NoPoint::parallel_rays;
+  return solve(rays, used, near);
 }
 
 }  // namespace marey

@@ -8,7 +8,9 @@
 // "Robust estimation of a location parameter", 1964.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -46,14 +48,38 @@ struct TriangulateOptions {
   bool reject = true;         ///< leave out wrong rays; else they make the whole point disagree
 };
 
-/// At most 64 rays: the 64th and those after it are not looked at. Deterministic.
-Triangulation triangulate(std::span<const SightLine> rays, const TriangulateOptions& options = {});
+/// Triangulates again and again under the same options. At most 64 rays: those after them are not looked at. Deterministic, and
+/// allocates nothing.
+class Triangulator {
+ public:
+  explicit Triangulator(const TriangulateOptions& options = {});
 
-/// The same from a point that is known to be near, such as a prediction: saves the first guess.
-Triangulation triangulate(std::span<const SightLine> rays, const Vector<3>& near, const TriangulateOptions& options = {});
+  Triangulation operator()(std::span<const SightLine> rays) const;
 
-/// The number that the sum of squares of `rays` sound rays stays below with the probability 1 − `false_alarm`. Wilson and
-/// Hilferty's approximation, good to a few per cent; rays ≥ 2.
-double most_chi_square(int rays, double false_alarm);
+  /// The same from a point that is known to be near, such as a prediction: saves the first guess.
+  Triangulation operator()(std::span<const SightLine> rays, const Vector<3>& near) const;
+
+  /// The number that the sum of squares of so many sound rays stays below with the probability 1 − `false_alarm`. Wilson and
+  /// Hilferty's approximation, good to a few per cent; rays in [2, 64].
+  double most_chi_square(int rays) const { return limits_[rays]; }
+
+ private:
+  struct Fit;
+  struct Rejection;
+  Triangulation solve(std::span<const SightLine> rays, std::uint64_t used, const Vector<3>& start) const;
+  std::variant<Fit, NoPoint> fit(std::span<const SightLine> rays, std::uint64_t used, const Vector<3>& start) const;
+  std::optional<Rejection> without_one(std::span<const SightLine> rays, std::uint64_t used) const;
+  static SpacePoint point_of(std::span<const SightLine> rays, std::uint64_t used, const Fit& fit);
+
+  static constexpr int kMostRays = 64;
+
+  TriangulateOptions options_;
+  std::array<double, kMostRays + 1> limits_{};
+};
+
+/// One point, once.
+inline Triangulation triangulate(std::span<const SightLine> rays, const TriangulateOptions& options = {}) {
+  return Triangulator(options)(rays);
+}
 
 }  // namespace marey

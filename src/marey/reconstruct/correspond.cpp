@@ -1,0 +1,74 @@
+#include "marey/reconstruct/correspond.h"
+
+#include "marey/core/error.h"
+#include "marey/reconstruct/claims.h"
+#include "marey/reconstruct/frame_rays.h"
+#include "marey/reconstruct/meetings.h"
+#include "marey/reconstruct/ray_groups.h"
+
+namespace marey {
+
+class Corresponder::Impl {
+ public:
+  Impl(std::vector<Camera> cameras, const CorrespondOptions& options)
+      : options_(options),
+        triangulator_(options.triangulate),
+        frame_(std::move(cameras)),
+        claims_(options.sigmas, triangulator_),
+        meetings_(frame_.all_cameras(), options.sigmas, triangulator_) {}
+
+  const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
+    frame_.build(seen, options_.noise_px);
+    groups_.clear(frame_);
+    claims_.claim(frame_, expected, groups_, result_.missed);
+    meetings_.find(frame_, groups_);
+    const auto sure = groups_.groups().size();
+    meetings_.find_pairs(frame_, groups_);
+    report(seen.size(), options_.fewest_rays > 2 ? sure : groups_.groups().size());
+    return result_;
+  }
+
+ private:
+  /// Groups from `sure` on are reported apart.
+  void report(std::size_t observations, std::size_t sure) {
+    seen_.clear();
+    result_.points.clear();
+    result_.by_two_rays.clear();
+    for (const RayGroups::Group& group : groups_.groups()) {
+      for (const int ray : groups_.members(group)) seen_.push_back(frame_.observation(ray));
+    }
+    std::size_t begin = 0, index = 0;
+    for (const RayGroups::Group& group : groups_.groups()) {
+      const std::span<const int> seen = std::span(seen_).subspan(begin, static_cast<std::size_t>(group.count));
+      begin += seen.size();
+      (index++ < sure ? result_.points : result_.by_two_rays).push_back({group.point, seen, group.expected});
+    }
+    result_.unexplained = static_cast<int>(observations - seen_.size());
+  }
+
+  CorrespondOptions options_;
+  Triangulator triangulator_;
+  FrameRays frame_;
+  TrackClaims claims_;
+  RayMeetings meetings_;
+  RayGroups groups_;
+  std::vector<int> seen_;
+  Correspondences result_;
+};
+
+Corresponder::Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options) {
+  if (cameras.size() < 2 || cameras.size() > 64) {
+    throw Error("{} calibrated {} given; a place in space takes 2 to 64", cameras.size(),
+                cameras.size() == 1 ? "camera is" : "cameras are");
+  }
+  impl_ = std::make_unique<Impl>(std::move(cameras), options);
+}
+Corresponder::~Corresponder() = default;
+Corresponder::Corresponder(Corresponder&&) noexcept = default;
+Corresponder& Corresponder::operator=(Corresponder&&) noexcept = default;
+
+const Correspondences& Corresponder::match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
+  return impl_->match(seen, expected);
+}
+
+}  // namespace marey

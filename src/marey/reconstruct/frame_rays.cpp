@@ -1,0 +1,76 @@
+#include "marey/reconstruct/frame_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marey {
+namespace {
+
+constexpr double kSmallestCell = 8;  // px
+constexpr int kMostCells = 4096;     // a camera
+
+}  // namespace
+
+void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
+  lines_.clear();
+  pixels_.clear();
+  observations_.clear();
+  starts_.assign(cameras_.size() + 1, 0);
+  const auto known = [&](const Observation<2>& one) {
+    return number(one.camera) >= 0 && number(one.camera) < cameras() && one.value.allFinite();
+  };
+  for (const Observation<2>& one : seen) {
+    if (known(one)) ++starts_[number(one.camera) + 1];
+  }
+  for (std::size_t c = 0; c < cameras_.size(); ++c) starts_[c + 1] += starts_[c];
+  by_camera_.resize(static_cast<std::size_t>(starts_.back()));
+  for (int i = 0; i < std::ssize(seen); ++i) {
+    if (known(seen[i])) by_camera_[starts_[number(seen[i].camera)]++] = i;
+  }
+  // Each start has moved to the next one's.
+  for (int c = 0, begin = 0; c < cameras(); begin = starts_[c++]) {
+    order_.assign(by_camera_.begin() + begin, by_camera_.begin() + starts_[c]);
+    lay_grid(c, seen);
+    Grid& grid = grids_[c];
+    grid.begin = size();
+    grid.largest_sigma = 0;
+    int left_out = 0;
+    std::size_t cell = 0;
+    for (int k = 0; k < std::ssize(order_); ++k) {
+      while (cell < grid.starts.size() && grid.starts[cell] <= k) grid.starts[cell++] += grid.begin - left_out;
+      const Observation<2>& one = seen[order_[k]];
+      const double sigma = std::sqrt(std::max(0.0, one.covariance.trace() / 2) + noise_px * noise_px);
+      const auto line = sight_line(cameras_[c], c, one.value, std::max(sigma, 1e-6));
+      if (!line) {
+        ++left_out;
+        continue;
+      }
+      lines_.push_back(*line);
+      pixels_.push_back(one.value);
+      observations_.push_back(order_[k]);
+      grid.largest_sigma = std::max(grid.largest_sigma, line->sigma);
+    }
+    while (cell < grid.starts.size()) grid.starts[cell++] += grid.begin - left_out;
+    grid.end = size();
+  }
+}
+
+/// Sorts `order_` by cells; `starts` then counts from the camera's first blob.
+void FrameRays::lay_grid(int camera, std::span<const Observation<2>> seen) {
+  Grid& grid = grids_[camera];
+  const cv::Size size = cameras_[camera].size();
+  const double area = std::max(1.0, static_cast<double>(size.width) * size.height);
+  const double cells = std::clamp<double>(static_cast<double>(order_.size()), 1, kMostCells);
+  grid.cell = std::max(kSmallestCell, std::sqrt(area / cells));
+  grid.columns = static_cast<int>(size.width / grid.cell) + 1;
+  grid.rows = static_cast<int>(size.height / grid.cell) + 1;
+  grid.starts.assign(static_cast<std::size_t>(grid.columns) * grid.rows + 1, 0);
+  for (const int i : order_) ++grid.starts[grid.cell_of(seen[i].value) + 1];
+  for (std::size_t i = 1; i < grid.starts.size(); ++i) grid.starts[i] += grid.starts[i - 1];
+  starts_of_cells_.assign(grid.starts.begin(), grid.starts.end());
+  sorted_.resize(order_.size());
+  for (const int i : order_) sorted_[starts_of_cells_[grid.cell_of(seen[i].value)]++] = i;
+  order_.swap(sorted_);
+}
+
+}  // namespace marey
