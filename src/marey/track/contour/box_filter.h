@@ -11,6 +11,7 @@ namespace marey {
 
 struct BoxFilterOptions {
   double place_noise = 1;        ///< px, of a measured centre and of a measured edge
+  double initial_velocity = 5;   ///< px a frame, standard deviation before anything is known
   double velocity_noise = 0.5;   ///< px a frame, a frame
   double size_noise = 0.3;       ///< px a frame: drift of the edges against the centre
   double largest_change = 0.25;  ///< of width or height: a box that differs by more is not believed (Xu et al.: frozen)

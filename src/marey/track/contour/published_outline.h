@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "marey/core/frame.h"
 #include "marey/core/outline.h"
+#include "marey/core/time.h"
 #include "marey/geometry/vector.h"
+#include "marey/track/contour/shape_filter.h"
 
 namespace marey {
 
@@ -29,11 +32,28 @@ class PublishedOutline {
   /// Error where an option is out of its domain or no spline fits a silhouette.
   PublishedOutline(const PublishedOptions& options, std::span<const Vector<2>> before, std::span<const Vector<2>> now);
 
-  /// The next frame. Velocities in the outline are px/s by the frames' times.
+  /// The next frame, which has a picture. In the outline it returns, velocities are px/s and rates 1/s by the frames' times, from
+  /// the second call on; before, a frame counts as a second.
   const Outline& step(const Frame& frame);
   const Outline& outline() const { return outline_; }
 
  private:
+  void search(const cv::Mat& luma);
+  void correct();
+  void report();
+
+  PublishedOptions options_;
+  ShapeFilter shape_;
+  // The motion filter: velocity in px a frame, growth a frame; variances. The three do not mix, since nothing couples them.
+  Vector<2> velocity_;
+  double growth_;
+  double velocity_variance_, growth_variance_;
+  Vector<2> centre_;
+  double arm_;  // px, from the centre to the first control point
+  std::vector<SplineWeights> weights_;
+  std::vector<double> places_;
+  std::optional<Timestamp> time_;
+  std::optional<double> frame_seconds_;
   Outline outline_;
 };
 

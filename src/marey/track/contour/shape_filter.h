@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,39 +9,42 @@
 
 namespace marey {
 
-/// How a shape may change from one frame to the next, standard deviations in px.
+/// How an outline may stray from its prediction within one step, standard deviations.
 struct ShapeNoise {
-  double bend = 1;       ///< of a control point against the others
-  double together = 1;   ///< of a part of the outline some control points wide, as a leg moves
-  double shift = 0;      ///< of all alike: how badly the motion is known
-  double growth = 0;     ///< relative: of all away from the centre
+  double bend = 0;      ///< px, of a control point against all others
+  double together = 0;  ///< px, of neighbouring control points alike, as a leg moves
+  double shift = 0;     ///< px, of all alike: how badly the motion is known
+  double growth = 0;    ///< relative, of all away from the centre
 };
 
-/// The shape filter: the control points of a closed spline, with the covariance of their coordinates x₀ y₀ x₁ y₁ ….
+/// The shape filter: the control points of a closed spline, and the covariance of their coordinates.
 class ShapeFilter {
  public:
+  /// Begins at `spline`, each coordinate known to `deviation` px.
   ShapeFilter(ClosedSpline spline, double deviation);
 
   /// x ← x + shift + growth (x − centre), the paper's prediction; `shift` in px, `growth` relative.
   void predict(const Vector<2>& shift, double growth, const Vector<2>& centre, const ShapeNoise& noise);
 
-  /// Variance, px², of the curve at `place` along `normal`, as it is predicted.
+  /// Variance of the curve's position at `place` along the unit vector `normal`, px².
   double variance(const SplineWeights& place, const Vector<2>& normal) const;
 
-  /// The curve at `place` was found `offset` px along `normal` from `foot`, with `noise` px².
-  void correct(const SplineWeights& place, const Vector<2>& normal, double innovation, double noise);
+  /// The curve was found at `position` (px along `normal`: a point's dot product with it), with variance `noise` px² > 0.
+  /// Nothing is done where the innovation lies beyond `gate` standard deviations; returns whether it was believed.
+  bool correct(const SplineWeights& place, const Vector<2>& normal, double position, double noise, double gate);
 
   const ClosedSpline& spline() const { return spline_; }
-  Vector<2> deviation(int control_point) const;
-  Matrix<2> centroid_covariance() const;
+  Vector<2> deviation(int control_point) const;  ///< px
+  Matrix<2> centroid_covariance() const;         ///< px²
 
  private:
-  void project(const SplineWeights& place, const Vector<2>& normal) const;
+  /// Fills `gain_` with P h of the line; returns hᵀ P h.
+  double project(const SplineWeights& place, const Vector<2>& normal) const;
 
   ClosedSpline spline_;
-  Eigen::MatrixXd P_;
-  Eigen::MatrixXd together_;         // correlation of the control points' common motion, by their distance along the curve
-  mutable Eigen::VectorXd gain_;     // P h of the line at hand
+  Eigen::MatrixXd P_;                   // of x₀ x₁ … y₀ y₁ …, px²
+  Eigen::VectorXd alike_;               // correlation of the noise of two control points by how far apart they are
+  mutable Eigen::VectorXd gain_, out_;  // what a step needs, kept so that it is allocated once
 };
 
 }  // namespace marey

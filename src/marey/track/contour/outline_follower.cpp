@@ -1,0 +1,367 @@
+// The system of Arnaut & Costa with what it lacked. For each target and frame: the shape filter is predicted by the motion filter
+// (the paper's equation), the outline is searched along lines normal to it, the lines correct the shape filter, and the centre and
+// the growth of the corrected outline correct the motion filter.
+//
+// Beyond the paper: lines carry variances and must agree with the filter's own; targets nearer to the camera own their pixels, so
+// that lines on a neighbour say nothing; a target of which too little is seen keeps its shape and coasts on its motion filter;
+// one of which a part is hidden by the scene is held stiff; and an outline that left its target begins anew at the silhouette that
+// the tracker says is the target's.
+// Cost a frame: targets × (lines × (length of a line + (2M)²) + (2M)²); nothing is allocated once every target has been seen.
+// References: Arnaut & Costa, TECCEN 2(1), 2009; MacCormick & Blake, IJCV 39(1), 2000; Blake & Isard, "Active Contours", 1998.
+#include "marey/track/contour/outline_follower.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/line_search.h"
+#include "marey/track/contour/motion_filter.h"
+#include "marey/track/contour/shape_filter.h"
+
+namespace marey {
+namespace {
+
+using Finding = MeasurementLine::Finding;
+
+constexpr int kMostControlPoints = 64, kMostLines = 512;
+constexpr int kFewestControlPoints = 8, kChosenAtMost = 24;  // where the tolerance chooses
+// Noise, in heights of the target (px where it says so); each √second where it is a motion.
+constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part is hidden by the scene
+constexpr double kAcceleration = 0.6, kGrowthDrift = 0.15;
+constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
+constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
+                 kHiddenCentre = 4;                   // how the centre swings with the steps; the last: factor
+constexpr double kGrowthNoise = 2;                    // 1/s, of the growth read off two outlines
+constexpr double kGate = 3.5;                         // standard deviations
+constexpr double kLeastReach = 4, kMostReach = 0.25;  // of a line: px; heights
+constexpr double kSeen = 0.6, kPartly = 0.25;         // shares of the lines found
+constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
+constexpr double kShareMemory = 0.05;
+constexpr double kSameBox = 0.5;      // IoU of outline and silhouette below which the outline has left its target
+constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
+constexpr double kHintScore = 0.3;    // continues a track, begins none
+constexpr double kVelocityDoubt = 2;  // heights/s, of a velocity from two silhouettes
+constexpr double kGrowthDoubt = 0.5;  // 1/s
+
+void check(const OutlineOptions& options) {
+  if (options.order < 2 || options.order > SplineWeights::max_order) {
+    throw Error("an outline of order {} cannot be; give one from 2 to {} (4 is cubic)", options.order, +SplineWeights::max_order);
+  }
+  const int needed = std::max(options.order, 3);
+  if (options.control_points && (*options.control_points < needed || *options.control_points > kMostControlPoints)) {
+    throw Error("{} control points for an outline of order {}; give from {} to {}", *options.control_points, options.order, needed,
+                kMostControlPoints);
+  }
+  if (options.lines < 1 || options.lines > kMostLines) {
+    throw Error("{} measurement lines an outline; give from 1 to {}", options.lines, kMostLines);
+  }
+  if (!(options.tolerance > 0)) throw Error("the tolerance of an outline is {} px; it must be positive", options.tolerance);
+  if (!(options.least_height >= 1))
+    throw Error("the least height of an outline is {} px; it must be 1 or more", options.least_height);
+}
+
+SplineFitOptions fit_options(const OutlineOptions& options) {
+  const int needed = std::max(options.order, 3);
+  if (options.control_points) return {options.order, *options.control_points, *options.control_points, options.tolerance};
+  return {options.order, std::max(needed, kFewestControlPoints), std::max(needed, kChosenAtMost), options.tolerance};
+}
+
+struct Silhouette {
+  ClosedSpline spline;
+  Timestamp time;
+};
+
+struct FollowedTarget {
+  TrackId id;
+  ShapeFilter shape;
+  MotionFilter motion;
+  double height;           // px
+  double usual_share = 1;  // of the pixels within the outline that are foreground
+  double share = 1;
+  Box box = {};
+  Outline::State state = Outline::State::seen;
+  Footprint footprint = {};
+  std::vector<MeasurementLine> lines = {};
+  std::array<std::shared_ptr<Outline>, 3> slots = {};  // a reader may still hold one
+  int hint = -1;                                       // index of what `look` said of it
+};
+
+}  // namespace
+
+class OutlineFollower::Implementation {
+ public:
+  explicit Implementation(const OutlineOptions& options) : options_(options), places_(options.lines) { check(options); }
+
+  std::span<const Observation<2>> look(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
+    const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;
+    now_ = frame.time;
+    hints_.clear();
+    for (FollowedTarget& target : targets_) {
+      predict(target, dt);
+      target.hint = -1;
+    }
+    if (foreground.mask.empty()) return hints_;
+    order_by_nearness();
+    for (const int index : nearest_first_) observe(targets_[index], foreground.mask, dt);
+    for (FollowedTarget& target : targets_) hint(target, detections);
+    return hints_;
+  }
+
+  std::span<const Track<2>> attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {
+    std::erase_if(targets_, [&](const FollowedTarget& target) {
+      return std::none_of(tracks.begin(), tracks.end(), [&](const Track<2>& track) { return track.id == target.id; });
+    });
+    std::erase_if(first_seen_, [&](const auto& one) { return one.second.time != before_; });
+    tracks_.assign(tracks.begin(), tracks.end());
+    for (Track<2>& track : tracks_) {
+      const auto own = track.observation ? static_cast<std::size_t>(*track.observation) : detections.size();
+      const Detection* seen = own < detections.size() ? &detections[own] : nullptr;
+      if (seen != nullptr && (seen->group || seen->box.height < options_.least_height)) seen = nullptr;
+      const auto target =
+          std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == track.id; });
+      if (target != targets_.end()) {
+        if (seen != nullptr) put_right(*target, *seen);
+        track.outline = report(*target);
+      } else if (seen != nullptr) {
+        track.outline = begin(track.id, *seen);
+      }
+    }
+    before_ = now_.value_or(Timestamp{});
+    return tracks_;
+  }
+
+ private:
+  void predict(FollowedTarget& target, double dt) {
+    const bool held = target.state == Outline::State::held;
+    const double stiff = target.state == Outline::State::seen ? 1 : kStiff;
+    const double step = std::sqrt(dt) * target.height;
+    const double growth = held ? 0 : std::clamp(dt * target.motion.growth(), -0.2, 0.2);
+    const ShapeNoise noise{.bend = held ? 0 : kBend * stiff * step,
+                           .together = held ? 0 : kTogether * stiff * step,
+                           .shift = dt * target.motion.velocity_deviation().mean(),
+                           .growth = held ? 0 : dt * target.motion.growth_deviation()};
+    target.shape.predict(dt * target.motion.velocity(), growth, target.shape.spline().centroid(), noise);
+    target.motion.predict(dt, {.acceleration = kAcceleration * target.height, .growth = kGrowthDrift});
+    target.box = target.shape.spline().box();
+    polygon_ = target.shape.spline().polygon(4);
+    target.footprint.fill(polygon_);
+  }
+
+  /// A person whose feet are lower in the picture stands nearer to the camera.
+  void order_by_nearness() {
+    nearest_first_.resize(targets_.size());
+    for (std::size_t i = 0; i < targets_.size(); ++i) nearest_first_[i] = static_cast<int>(i);
+    std::stable_sort(nearest_first_.begin(), nearest_first_.end(),
+                     [&](int a, int b) { return targets_[a].box.bottom() > targets_[b].box.bottom(); });
+  }
+
+  void observe(FollowedTarget& target, const cv::Mat& mask, double dt) {
+    others_.clear();
+    const Box wide = grown(target.box, 2 + kMostReach * target.height);
+    for (const FollowedTarget& other : targets_) {
+      if (&other != &target && intersection(other.box, wide).area() > 0) others_.push_back(&other.footprint);
+    }
+    target.share = foreground_share(target, mask);
+    place_lines(target);
+    const LineScene scene{mask, others_};
+    int found = 0, askable = 0;
+    for (std::size_t i = 0; i < target.lines.size(); ++i) {
+      MeasurementLine& line = target.lines[i];
+      search_line(line, scene, deviations_[i]);
+      found += line.finding == Finding::found ? 1 : 0;
+      askable += line.finding != Finding::outside ? 1 : 0;
+    }
+    correct(target, found, askable, dt);
+  }
+
+  void correct(FollowedTarget& target, int found, int askable, double dt) {
+    const bool hidden = target.share < kHiddenShare * target.usual_share;
+    const double part = askable > 0 ? static_cast<double>(found) / askable : 0;
+    if (part < kPartly || target.share < 0.4 * target.usual_share) {
+      target.state = Outline::State::held;
+      return;
+    }
+    const double predicted_area = target.shape.spline().area();
+    int believed = 0;
+    for (std::size_t i = 0; i < target.lines.size(); ++i) {
+      MeasurementLine& line = target.lines[i];
+      if (line.finding != Finding::found) continue;
+      const double position = line.normal.dot(line.foot) + line.offset;
+      if (target.shape.correct(weights_[i], line.normal, position, line.variance, kGate)) {
+        ++believed;
+      } else {
+        line.finding = Finding::outlier;
+      }
+    }
+    target.state = believed >= kSeen * askable && !hidden ? Outline::State::seen
+                   : believed >= kPartly * askable        ? Outline::State::partly
+                                                          : Outline::State::held;
+    if (target.state == Outline::State::held) return;
+    const bool clear = target.state == Outline::State::seen;
+    const Matrix<2> P = target.shape.centroid_covariance();
+    const Vector<2> gait = (clear ? 1 : kHiddenCentre) * target.height * Vector<2>(kGaitAcross, kGaitDown);
+    const Vector<2> deviation = (P.diagonal() + gait.cwiseAbs2()).cwiseSqrt();
+    const Vector<2> centre = target.shape.spline().centroid();
+    target.motion.correct_centre(centre, deviation);
+    const double area = target.shape.spline().area();
+    if (clear && dt > 0 && area > 0 && predicted_area > 0) {
+      const double measured = target.motion.growth() + (std::sqrt(area / predicted_area) - 1) / dt;
+      target.motion.correct_growth(measured, kGrowthNoise);
+      target.usual_share += kShareMemory * (target.share - target.usual_share);
+      target.height += kShareMemory * (target.shape.spline().box().height - target.height);
+    }
+  }
+
+  static Box grown(const Box& box, double by) { return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by}; }
+
+  /// Of the pixels that the target covers and no other does.
+  double foreground_share(const FollowedTarget& target, const cv::Mat& mask) const {
+    const Footprint& own = target.footprint;
+    const int left = std::max(0, own.left()), right = std::min(mask.cols, own.left() + own.width());
+    int covered = 0, filled = 0;
+    for (int y = std::max(0, own.top()); y < std::min(mask.rows, own.top() + own.height()); ++y) {
+      const std::uint8_t* pixels = mask.ptr<std::uint8_t>(y);
+      const std::uint8_t* inside = own.row(y).data();
+      for (int x = left; x < right; ++x) {
+        const int one = inside[x - own.left()];
+        covered += one;
+        filled += one & (pixels[x] >> 7);
+      }
+    }
+    return covered > 0 ? static_cast<double>(filled) / covered : 0;
+  }
+
+  void place_lines(FollowedTarget& target) {
+    const ClosedSpline& spline = target.shape.spline();
+    spline.evenly_spaced(places_);
+    target.lines.clear();
+    weights_.clear();
+    deviations_.clear();
+    for (const double place : places_) {
+      const SplineWeights weights = spline_weights(spline.order(), spline.count(), place);
+      Vector<2> at = Vector<2>::Zero(), slope = Vector<2>::Zero();
+      for (int j = 0; j < spline.order(); ++j) {
+        const Vector<2>& point = spline.control_points()[(weights.first + j) % spline.count()];
+        at += weights.value[j] * point;
+        slope += weights.derivative[j] * point;
+      }
+      const double length = slope.norm();
+      if (!(length > 1e-6)) continue;
+      const Vector<2> normal(slope.y() / length, -slope.x() / length);
+      const double deviation = std::sqrt(std::max(0.0, target.shape.variance(weights, normal)));
+      const double most = std::max(kLeastReach, kMostReach * target.height);
+      target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kLeastReach, most)});
+      weights_.push_back(weights);
+      deviations_.push_back(deviation);
+    }
+  }
+
+  void hint(FollowedTarget& target, std::span<const Detection> detections) {
+    if (target.state == Outline::State::held) return;
+    const Box box = target.shape.spline().box();
+    target.box = box;
+    for (const Detection& detection : detections) {
+      if (iou(detection.box, box) > kExplained || intersection(detection.box, box).area() > 0.6 * box.area()) return;
+    }
+    const Vector<2> deviation = target.motion.centre_deviation();
+    target.hint = static_cast<int>(hints_.size());
+    hints_.push_back({.value = box.centre(),
+                      .covariance = Matrix<2>((deviation.cwiseAbs2() + Vector<2>::Constant(4)).asDiagonal()),
+                      .score = kHintScore,
+                      .box = box});
+  }
+
+  /// The tracker says that `seen` is this target: where the outline is somewhere else, it begins anew there.
+  void put_right(FollowedTarget& target, const Detection& seen) {
+    if (iou(target.shape.spline().box(), seen.box) >= kSameBox && target.state != Outline::State::held) return;
+    const auto spline = fit_spline(seen.outline, fit_options(options_));
+    if (!spline || iou(spline->box(), seen.box) < kSameBox) return;
+    target.motion = MotionFilter(spline->centroid(), target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
+    target.shape = ShapeFilter(*spline, kSilhouetteNoise);
+    target.state = Outline::State::seen;
+    target.lines.clear();
+  }
+
+  /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
+  /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
+  std::shared_ptr<const Outline> begin(TrackId id, const Detection& seen) {
+    auto spline = fit_spline(seen.outline, fit_options(options_));
+    if (!spline || iou(spline->box(), seen.box) < kSameBox) return nullptr;
+    const auto first = first_seen_.find(id);
+    if (first == first_seen_.end()) {
+      first_seen_.emplace(id, Silhouette{std::move(*spline), *now_});
+      return nullptr;
+    }
+    const double dt = seconds(*now_ - first->second.time);
+    const ClosedSpline& before = first->second.spline;
+    const Vector<2> centre = spline->centroid(), velocity = (centre - before.centroid()) / dt;
+    const double growth = (std::sqrt(spline->area() / before.area()) - 1) / dt;
+    const double height = seen.box.height;
+    MotionFilter motion(centre, Vector<2>::Zero(), 0, kSilhouetteNoise, kVelocityDoubt * height, kGrowthDoubt);
+    const double noise = std::sqrt(2) * (kSilhouetteNoise + kGaitAcross * height) / dt;
+    motion = MotionFilter(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthDoubt);
+    motion.correct_growth(growth, kGrowthNoise);
+    targets_.push_back({.id = id, .shape = ShapeFilter(std::move(*spline), kSilhouetteNoise), .motion = motion, .height = height});
+    first_seen_.erase(first);
+    return report(targets_.back());
+  }
+
+  std::shared_ptr<const Outline> report(FollowedTarget& target) const {
+    auto slot = std::find_if(target.slots.begin(), target.slots.end(),
+                             [](const std::shared_ptr<Outline>& one) { return one && one.use_count() == 1; });
+    if (slot == target.slots.end()) {
+      slot = std::find(target.slots.begin(), target.slots.end(), nullptr);
+      if (slot == target.slots.end()) slot = target.slots.begin();
+      *slot = std::make_shared<Outline>();
+    }
+    Outline& outline = **slot;
+    const ClosedSpline& spline = target.shape.spline();
+    outline.order = spline.order();
+    outline.control_points = spline.control_points();
+    outline.deviations.resize(spline.count());
+    for (int i = 0; i < spline.count(); ++i) outline.deviations[i] = target.shape.deviation(i);
+    outline.centre = target.motion.centre();
+    outline.velocity = target.motion.velocity();
+    outline.scale_rate = target.motion.growth();
+    outline.centre_deviation = target.motion.centre_deviation();
+    outline.velocity_deviation = target.motion.velocity_deviation();
+    outline.scale_rate_deviation = target.motion.growth_deviation();
+    outline.lines = target.lines;
+    outline.state = target.state;
+    return *slot;
+  }
+
+  OutlineOptions options_;
+  std::optional<Timestamp> now_;
+  Timestamp before_{};  // of the last frame attached
+  std::vector<FollowedTarget> targets_;
+  std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame
+  std::vector<Observation<2>> hints_;
+  std::vector<Track<2>> tracks_;
+  // What a frame needs, kept so that it is allocated once.
+  std::vector<int> nearest_first_;
+  std::vector<const Footprint*> others_;
+  std::vector<double> places_, deviations_;
+  std::vector<SplineWeights> weights_;
+  std::vector<Vector<2>> polygon_;
+};
+
+OutlineFollower::OutlineFollower(const OutlineOptions& options) : self_(std::make_unique<Implementation>(options)) {}
+OutlineFollower::~OutlineFollower() = default;
+OutlineFollower::OutlineFollower(OutlineFollower&&) noexcept = default;
+OutlineFollower& OutlineFollower::operator=(OutlineFollower&&) noexcept = default;
+
+std::span<const Observation<2>> OutlineFollower::look(const Frame& frame, const Foreground& foreground,
+                                                      std::span<const Detection> detections) {
+  return self_->look(frame, foreground, detections);
+}
+
+std::span<const Track<2>> OutlineFollower::attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {
+  return self_->attach(tracks, detections);
+}
+
+}  // namespace marey
