@@ -9,6 +9,7 @@ namespace marey::cli {
 void add_track(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_simulate_people(CLI::App& simulate);  ///< below `simulate`
 void add_experiment(CLI::App& app);
 
 }  // namespace marey::cli

@@ -88,6 +88,7 @@ void add_simulate(CLI::App& app) {
       ->capture_default_str();
   markers->add_flag("-q,--quiet", options->quiet, "say nothing");
   markers->callback([options] { run(*options); });
+  add_simulate_people(*simulate);
 }
 
 }  // namespace marey::cli

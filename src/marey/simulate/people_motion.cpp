@@ -86,7 +86,7 @@ class Director {
   };
   std::vector<Lane> lanes(int wanted) const;
   void begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal);
-  void walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity);
+  void walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander);
   void change_shape(Walker& walker, bool abrupt);
 
   LevelCamera camera_;
@@ -97,23 +97,17 @@ class Director {
 };
 
 std::vector<Director::Lane> Director::lanes(int wanted) const {
+  // As many as wanted and as fit, about the middle of the picture.
+  const double middle = camera_.size.height / 2.0;
+  const double room = wanted * kLaneHeights * height_at(middle);
   std::vector<Lane> found;
-  double row = camera_.size.height - 6;
-  while (true) {
+  for (double row = std::min(camera_.size.height - 6.0, middle + room / 2 - 0.4 * height_at(middle));
+       static_cast<int>(found.size()) < wanted;) {
     const double height = height_at(row);
     const double top = row - kLaneHeights * height;
-    if (top < 4) break;
+    if (top < 4 && !found.empty()) break;
     found.push_back({row - 0.55 * height, row});
     row = top;
-  }
-  if (found.empty()) found.push_back({0.8 * camera_.size.height, 0.95 * camera_.size.height});
-  // As many as wanted, from the middle of the picture outwards.
-  while (static_cast<int>(found.size()) > wanted) {
-    if (found.size() % 2 == 0) {
-      found.pop_back();
-    } else {
-      found.erase(found.begin());
-    }
   }
   return found;
 }
@@ -156,28 +150,33 @@ void Director::in_lanes(bool abrupt, bool over_border) {
       if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.3, 1.5);
       walker.wished_speed = speed();
       if (over_border) {
-        // At the side, half outside at times: then back in, as the same person, for he never was wholly gone; or as another.
         const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
-        if (column < -0.3 * height || column > width - 1 + 0.3 * height) {
+        const bool gone = column < -0.3 * height || column > width - 1 + 0.3 * height;
+        if (gone) {
           walker.id = new_figure(team++ % 2);
           walker.stance.place = side(right);
         }
+        // Some turn back at the very border, half of them outside.
         right = !right;
+        if (random_.chance(0.35)) {
+          walker.goal = place(right ? width - 1 : 0);
+          continue;
+        }
       }
       walker.goal = over_border ? side(right) : place(random_.uniform(low, high));
     }
   }
 }
 
-void Director::walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity) {
+/// On a way that passes a place at a moment; its heading swings by up to `wander` rad, for nobody walks like a machine.
+void Director::walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander) {
   Walker walker;
   walker.id = id;
   walker.stance.speed = velocity.norm();
   walker.stance.heading = std::atan2(velocity.y(), velocity.x());
   walker.stance.place = at - when * velocity;
   walker.stance.phase = random_.uniform(0, 2 * std::numbers::pi);
-  const double wander = random_.uniform(0.05, 0.2);  // rad: nobody walks like a machine
-  const double beat = random_.uniform(0.15, 0.4);    // Hz
+  const double beat = random_.uniform(0.15, 0.4);  // Hz
   const double heading = walker.stance.heading;
   for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
     motion_.frames[frame].push_back({walker.id, walker.stance});
@@ -203,8 +202,8 @@ void Director::crossing() {
   const Vector<2> common = options_.pace * Vector<2>(random_.uniform(-1.6, 1.6), random_.uniform(-0.6, 0.6));
   const double side = random_.chance(0.5) ? 0.5 : -0.5;
   const double drift = random_.uniform(-0.2, 0.2);
-  walk_straight(far, far_at, middle, common + Vector<2>(side * apart, drift));
-  walk_straight(near, near_at, middle, common - Vector<2>(side * apart, drift));
+  walk_straight(far, far_at, middle, common + Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
+  walk_straight(near, near_at, middle, common - Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
 }
 
 void Director::behind_posts() {
@@ -216,16 +215,17 @@ void Director::behind_posts() {
     const double hidden = random_.uniform(0.2, 1) * options_.hidden_s;
     const Vector<2> at = ground(camera_.size.width * random_.uniform(0.4, 0.6), row);
     const double px_per_m = camera_(Vector<3>(at.x(), at.y(), 0))->scale;
-    // The board hides the whole width of a person for that long, and shall leave half of the picture free.
-    const double widest = 0.5 * camera_.size.width / px_per_m;
+    // The board hides the whole width of a person for that long; the way ends within the picture.
+    const double length = static_cast<double>(motion_.frames.size()) * dt_;
     const double person = kWide * height / px_per_m;
-    const double pace = std::min(options_.pace * random_.uniform(0.9, 2.4), (widest - person) / hidden);
+    const double half = 0.36 * camera_.size.width / px_per_m;
+    const double pace = std::min(options_.pace * random_.uniform(0.9, 2.4), half / (0.6 * length));
     const double wide = person + pace * hidden;
     const double side = random_.chance(0.5) ? 1 : -1;
-    const double middle = random_.uniform(0.4, 0.55) * static_cast<double>(motion_.frames.size()) * dt_;
-    walk_straight(id, at, middle, {side * pace, random_.uniform(-0.08, 0.08) * pace});
+    const double middle = random_.uniform(0.4, 0.55) * length;
+    walk_straight(id, at, middle, {side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
     const Vector<2> front = at - Vector<2>(0, 0.9);
-    motion_.posts.push_back({front - Vector<2>(wide / 2, 0), front + Vector<2>(wide / 2, 0), 2.3, {74, 82, 96}});
+    motion_.posts.push_back({front - Vector<2>(wide / 2, 0), front + Vector<2>(wide / 2, 0), 2.7, {74, 82, 96}});
   }
 }
 

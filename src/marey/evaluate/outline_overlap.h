@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+
+#include <opencv2/core.hpp>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// A true silhouette on a lattice of `samples` × `samples` points per pixel. Lattice column i lies at x = (i + ½) / samples − ½ px.
+struct SilhouetteMask {
+  cv::Mat mask;      ///< CV_8UC1, not zero where the silhouette is
+  cv::Point corner;  ///< the lattice place of mask's first point
+  int samples = 1;
+};
+
+/// How a curve and a silhouette overlap, px².
+struct OutlineOverlap {
+  double shared = 0;      ///< inside both
+  double outline = 0;     ///< inside the curve
+  double silhouette = 0;  ///< of the silhouette
+
+  /// Intersection over union, in [0, 1]; 0 where both are empty.
+  double iou() const;
+};
+
+/// Lays a closed polygon (px; inside is where a ray crosses it an odd number of times) over a silhouette, lattice point by lattice
+/// point. With `picture`, only what lies in a picture of that size counts. Cost: the lattice points of both boxes.
+OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* picture = nullptr);
+
+}  // namespace marey
