@@ -11,5 +11,6 @@ void add_evaluate(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_simulate_people(CLI::App& simulate);  ///< below `simulate`
 void add_experiment(CLI::App& app);
+void add_calibrate(CLI::App& app);
 
 }  // namespace marey::cli

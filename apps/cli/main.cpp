@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   marey::cli::add_track(app);
   marey::cli::add_evaluate(app);
   marey::cli::add_simulate(app);
+  marey::cli::add_calibrate(app);
   marey::cli::add_experiment(app);
   try {
     app.parse(argc, argv);

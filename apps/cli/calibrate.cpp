@@ -1,0 +1,12 @@
+#include "calibrate_commands.h"
+#include "commands.h"
+
+namespace marey::cli {
+
+void add_calibrate(CLI::App& app) {
+  CLI::App* calibrate = app.add_subcommand("calibrate", "Find out how the cameras see: their lenses, and where they stand");
+  calibrate->require_subcommand(1);
+  add_calibrate_lens(*calibrate);
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// The subcommands of `marey calibrate`, one short file each; see commands.h.
+namespace marey::cli {
+
+void add_calibrate_lens(CLI::App& calibrate);
+
+}  // namespace marey::cli

@@ -1,0 +1,137 @@
+#include "marey/pipeline/calibrate_lens.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/core/rig.h"
+#include "marey/format/rig_file.h"
+
+#include "calibrate_commands.h"
+#include "progress_bar.h"
+
+namespace marey::cli {
+namespace {
+
+struct CalibrateLens {
+  std::string input, board, out, picture;
+  std::string name = "camera";
+  LensRunOptions run;
+  bool json = false;
+  bool quiet = false;
+};
+
+nlohmann::json as_json(const CalibrateLens& command, const LensRun& run) {
+  const LensCalibration& found = run.calibration;
+  const nlohmann::json figures = {
+      {"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
+  nlohmann::json camera = figures;
+  const Vector<2>& focal = focal_of(found.lens);
+  const Vector<2>& principal = principal_of(found.lens);
+  camera["size"] = {found.size.width, found.size.height};
+  camera["model"] = name_of(found.lens);
+  camera["focal"] = {focal.x(), focal.y()};
+  camera["principal"] = {principal.x(), principal.y()};
+  camera["distortion"] = std::visit([](const auto& lens) { return nlohmann::json(lens.distortion); }, found.lens);
+  camera["covered"] = found.covered;
+  camera["deviation"] = {{"focal", found.deviation.focal * focal.x()},
+                         {"principal", {found.deviation.principal.x(), found.deviation.principal.y()}},
+                         {"distortion", found.deviation.distortion}};
+  for (const LensCalibration::View& view : found.views) {
+    nlohmann::json entry = {{"name", view.name}, {"rms_px", view.rms_px}};
+    if (!view.refused.empty()) entry["refused"] = view.refused;
+    camera["views"].push_back(std::move(entry));
+  }
+  return {{"all", figures}, {"cameras", {{command.name, camera}}}, {"warnings", found.warnings}};
+}
+
+void print_table(const LensRun& run) {
+  const LensCalibration& found = run.calibration;
+  const Vector<2>& focal = focal_of(found.lens);
+  const Vector<2>& principal = principal_of(found.lens);
+  int used = 0;
+  for (const LensCalibration::View& view : found.views) used += view.refused.empty() ? 1 : 0;
+  fmt::print("{} pictures, {} show the board, {} used; corners cover {:.0f} % of the picture\n", run.frames, run.sightings, used,
+             100 * found.covered);
+  fmt::print("  error       {:8.3f} px RMS, {:.3f} px mean over {} of {} corners\n", found.rms_px, found.mean_px, found.inliers,
+             found.observations);
+  fmt::print("  focal       {:8.2f} {:8.2f} px  ± {:.2f}\n", focal.x(), focal.y(), found.deviation.focal * focal.x());
+  fmt::print("  principal   {:8.2f} {:8.2f} px  ± {:.2f} {:.2f}\n", principal.x(), principal.y(), found.deviation.principal.x(),
+             found.deviation.principal.y());
+  fmt::print("  {:<8}   ", name_of(found.lens));
+  std::visit(
+      [&](const auto& lens) {
+        for (std::size_t i = 0; i < lens.distortion.size(); ++i) {
+          if (found.deviation.distortion[i] > 0) fmt::print(" {:.5f} ± {:.5f}", lens.distortion[i], found.deviation.distortion[i]);
+        }
+      },
+      found.lens);
+  fmt::print("\n");
+  for (const LensCalibration::View& view : found.views) {
+    if (!view.refused.empty()) fmt::print("  not used: {}: {}\n", view.name, view.refused);
+  }
+}
+
+Rig rig_of(const CalibrateLens& command, const LensCalibration& found) {
+  RigCamera camera;
+  camera.name = command.name;
+  camera.size = found.size;
+  camera.lens = found.lens;
+  camera.rms_px = found.rms_px;
+  Rig rig;
+  rig.cameras.push_back(std::move(camera));
+  return rig;
+}
+
+void run(const CalibrateLens& command) {
+  const Board board = parse_board(command.board);
+  LensRunOptions options = command.run;
+  LensRun found;
+  {
+    ProgressBar bar(command.quiet);
+    options.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { bar.show("looking for the board", done, all); };
+    found = calibrate_lens_from(command.input, board, options);
+  }
+  if (!command.out.empty()) write_rig(rig_of(command, found.calibration), command.out);
+  for (const std::string& sentence : found.calibration.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (command.json) {
+    fmt::print("{}\n", as_json(command, found).dump(2));
+  } else {
+    print_table(found);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_lens(CLI::App& calibrate) {
+  auto options = std::make_shared<CalibrateLens>();
+  CLI::App* command = calibrate.add_subcommand("lens", "One camera's lens, from pictures of a board");
+  command->add_option("input", options->input, "a video, a folder of pictures or a pattern such as 'shot_%02d.jpg'")->required();
+  command
+      ->add_option("--board", options->board,
+                   "chess:9x6:0.025 (inner corners, m) or charuco:COLSxROWS:SQUARE:MARKER:DICT, :inverted behind it where black "
+                   "and white are exchanged")
+      ->required();
+  command->add_option("-o,--out", options->out, "rig file for the camera");
+  command->add_option("--model", options->run.lens.model, "of the lens")
+      ->check(CLI::IsMember(lens_models()))
+      ->capture_default_str();
+  command
+      ->add_option("--coefficients", options->run.lens.coefficients, "how many of the model's distortion coefficients are sought")
+      ->check(CLI::Range(0, 8))
+      ->capture_default_str();
+  command->add_flag("--square-pixels", options->run.lens.square_pixels, "one focal length for both axes");
+  command->add_option("--camera", options->name, "the camera's name in the rig")->capture_default_str();
+  command->add_option("--views", options->run.most_views, "pictures that the solution rests on, at most")
+      ->check(CLI::Range(3, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "print JSON instead of a table");
+  command->add_flag("-q,--quiet", options->quiet, "no progress");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace marey::cli

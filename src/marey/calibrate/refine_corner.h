@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// The place where four squares of a board meet, refined from `start`, px. `grey` is CV_8UC1 and `spacing` the distance to the
+/// nearest other corner: what lies farther away than a share of it is not looked at. Nothing where there is no corner within reach.
+std::optional<Vector<2>> refine_corner(const cv::Mat& grey, const Vector<2>& start, double spacing);
+
+}  // namespace marey

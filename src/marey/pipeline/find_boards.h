@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/calibrate/board_detector.h"
+#include "marey/core/source.h"
+
+namespace marey {
+
+/// A board in one frame of a camera.
+struct BoardSighting {
+  std::int64_t frame = 0;
+  Timestamp time{};  ///< by the camera's own clock
+  double sharpness = 0;
+  BoardView view;
+};
+
+/// All that one camera saw of a board.
+struct BoardSightings {
+  cv::Size size;                         ///< px, of the region where there is one
+  std::int64_t frames = 0;               ///< looked at
+  std::vector<BoardSighting> sightings;  ///< in the order of time
+  std::vector<std::string> warnings;     ///< the source's
+};
+
+struct FindBoardsOptions {
+  std::int64_t every = 1;                                                   ///< look at every so many-th frame only
+  std::optional<cv::Rect> region;                                           ///< px: the camera's part of a larger picture
+  std::function<void(std::int64_t, std::optional<std::int64_t>)> progress;  ///< frames done and in all; may be empty
+};
+
+/// Looks for the board in the source's frames, several at once. Throws Error where the region is not within the picture.
+BoardSightings find_boards(Source& source, const BoardDetector& detector, const FindBoardsOptions& options = {});
+
+}  // namespace marey
