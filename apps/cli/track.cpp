@@ -8,14 +8,16 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/pipeline/track_people.h"
 
 #include "commands.h"
+#include "known.h"
 #include "marker_options.h"
+#include "people_options.h"
 #include "progress_bar.h"
+#include "track_summary.h"
 
 namespace marey::cli {
 namespace {
@@ -25,9 +27,10 @@ struct TrackCommand {
   std::string out;
   std::string format;
   std::string overlay;
-  std::string background = std::string(AdaptiveOptions::name);
+  std::string plot;
   std::string filter;
   std::string targets = "people";
+  PeopleFlags people;
   MarkerFlags markers;
   bool live = false;
   bool quiet = false;
@@ -56,81 +59,18 @@ std::string default_output(const PeopleInput& input, TrackFormat format) {
 }
 
 TrackOutput output_of(const TrackCommand& command) {
-  TrackOutput output{.tracks = command.out, .overlay = command.overlay};
+  TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
   const auto by_ending = track_format_of(command.out);
   if (!command.format.empty()) {
     output.format = parse_track_format(command.format);
   } else if (by_ending) {
     output.format = *by_ending;
+  } else if (command.people.outline) {
+    output.format = TrackFormat::jsonl;  // the others hold no outlines
   }
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty()) output.tracks = default_output(command.input, output.format);
   return output;
-}
-
-/// The filters' own parameters are in pixels, for things that move as people do who are this high.
-constexpr double kBodyHeight = 100;
-
-TrackPeopleOptions people_options(const TrackCommand& command) {
-  TrackPeopleOptions options;
-  options.background = parse_background(command.background);
-  if (!command.filter.empty() && filter_named(command.filter).index() != options.tracker.filter.index()) {
-    options.tracker.filter = scaled(filter_named(command.filter), 1 / kBodyHeight);
-  }
-  options.live = command.live;
-  return options;
-}
-
-void print_json(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
-  const nlohmann::json json = {
-      {"frames", summary.frames},
-      {"seconds", summary.seconds},
-      {"people", summary.people},
-      {"rows", summary.rows},
-      {"detections", summary.detections},
-      {"dropped", {{"noise", summary.noise}, {"misfits", summary.misfits}, {"too_brief", summary.too_brief}}},
-      {"elapsed", elapsed},
-      {"stopped", summary.stopped},
-      {"warnings", summary.warnings},
-      {"tracks", output.tracks},
-      {"overlay", output.overlay.empty() ? nlohmann::json() : nlohmann::json(output.overlay)}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
-/// On standard error, so that tracks may go to standard output.
-void print_summary(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
-  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.people, summary.people == 1 ? "person" : "people",
-             summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
-  if (summary.too_brief > 0) fmt::print(stderr, "left out: {} seen too briefly to be believed\n", summary.too_brief);
-  if (summary.noise > 0) fmt::print(stderr, "left out: {} moving regions too small to be a part of a person\n", summary.noise);
-  if (summary.misfits > 0) fmt::print(stderr, "left out: {} moving regions that no body explains\n", summary.misfits);
-  fmt::print(stderr, "tracks: {}\n", output.tracks);
-  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
-}
-
-void print_json(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
-  nlohmann::json json = {
-      {"frames", summary.frames},         {"seconds", summary.seconds},
-      {"markers", summary.markers},       {"rows", summary.rows},
-      {"detections", summary.detections}, {"elapsed", elapsed},
-      {"stopped", summary.stopped},       {"warnings", summary.warnings},
-      {"tracks", output.tracks},          {"overlay", output.overlay.empty() ? nlohmann::json() : nlohmann::json(output.overlay)}};
-  if (summary.noise) {
-    json["noise"] = {{"measurement_px", summary.noise->measurement_sigma}, {"acceleration_px_s2", summary.noise->acceleration}};
-  }
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
-void print_summary(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
-  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.markers,
-             summary.markers == 1 ? "marker" : "markers", summary.frames, summary.seconds,
-             static_cast<double>(summary.frames) / elapsed);
-  if (summary.noise) {
-    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n",
-               summary.noise->measurement_sigma, summary.noise->acceleration);
-  }
-  fmt::print(stderr, "tracks: {}\n", output.tracks);
-  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
 }
 
 /// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order, and tells what came of it.
@@ -164,30 +104,16 @@ void run(const TrackCommand& command, const TrackOutput& output, Track&& track) 
 void run(const TrackCommand& command) {
   const TrackOutput output = output_of(command);
   if (command.targets == "markers") {
+    if (command.people.outline) throw Error("--outline follows people; markers are points: leave out one of the two");
     if (!command.input.detections.empty()) throw Error("--detections brings boxes, not markers; leave out --targets markers");
     const TrackMarkersOptions options = marker_options(command.markers, command.filter, command.live);
     run(command, output, [&](const RunHooks& hooks) {
       return track_markers(command.input.pictures, command.input.rate_hz, output, options, hooks);
     });
   } else {
-    const TrackPeopleOptions options = people_options(command);
+    const TrackPeopleOptions options = people_options(command.people, command.filter, command.live);
     run(command, output, [&](const RunHooks& hooks) { return track_people(command.input, output, options, hooks); });
   }
-}
-
-/// A value that `parse` must take, or the command line is wrong: its message, which lists what is valid, is shown.
-template <typename Parse>
-CLI::Validator known(Parse parse) {
-  return CLI::Validator(
-      [parse](std::string& text) -> std::string {
-        try {
-          parse(text);
-          return "";
-        } catch (const Error& error) {
-          return error.what();
-        }
-      },
-      "");
 }
 
 std::string filter_names() {
@@ -209,9 +135,12 @@ void add_track(CLI::App& app) {
       ->excludes(input);
   command->add_option("-o,--output", options->out,
                       "where the tracks go; - for standard output (default: INPUT_tracks.txt in this folder)");
-  command->add_option("--format", options->format, "one of " + track_format_names() + " (default: by OUT's ending, else mot)")
+  command
+      ->add_option("--format", options->format,
+                   "one of " + track_format_names() + " (default: by OUT's ending, else mot, with --outline jsonl)")
       ->check(known([](const std::string& text) { parse_track_format(text); }));
   command->add_option("--overlay", options->overlay, "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4");
+  command->add_option("--plot", options->plot, "a picture of the ways that were gone, in the image's coordinates: FILE.svg");
   command->add_option("--rate", options->input.rate_hz, "frames a second, where the file does not tell or is wrong")
       ->check(CLI::Validator(
           [](std::string& text) -> std::string {
@@ -220,8 +149,6 @@ void add_track(CLI::App& app) {
             return valid ? "" : "\"" + text + "\" is no rate; it must be a positive number of frames a second";
           },
           "HZ"));
-  command->add_option("--background", options->background, "the model of the empty scene, one of " + background_names())
-      ->check(known([](const std::string& text) { parse_background(text); }));
   command->add_option("--filter", options->filter, "what predicts each person's motion, one of " + filter_names())
       ->check(known([](const std::string& text) { filter_named(text); }));
   command->add_option("--targets", options->targets, "what is followed: people or markers")
@@ -231,6 +158,7 @@ void add_track(CLI::App& app) {
   command->add_flag("--live", options->live, "write each frame's tracks as they come; nothing is improved by what came later");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary; warnings stay");
   command->add_flag("--json", options->json, "print the summary as JSON on standard output");
+  add_people_options(*command, options->people);
   add_marker_options(*command, options->markers);
   command->callback([options] {
     if (options->input.pictures.empty() && options->input.detections.empty()) {

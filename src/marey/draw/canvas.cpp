@@ -105,6 +105,23 @@ void Canvas::strokes(const std::vector<Stroke>& strokes, const Colour& colour, d
   lay(stencil, part.tl(), colour);
 }
 
+void Canvas::discs(const std::vector<cv::Point2f>& centres, double radius, const Colour& colour, double opacity) {
+  if (centres.empty()) return;
+  cv::Point2f low = centres[0], high = low;
+  for (const cv::Point2f& centre : centres) {
+    low = {std::min(low.x, centre.x), std::min(low.y, centre.y)};
+    high = {std::max(high.x, centre.x), std::max(high.y, centre.y)};
+  }
+  const cv::Rect part = even_part({low, high}, radius + 1);
+  if (part.empty()) return;
+  cv::Mat stencil = cv::Mat::zeros(part.size(), CV_8UC1);
+  for (const cv::Point2f& centre : centres) {
+    cv::circle(stencil, fine(centre - cv::Point2f(part.tl())), cvRound(radius * (1 << kShift)), cv::Scalar(255 * opacity),
+               cv::FILLED, cv::LINE_AA, kShift);
+  }
+  lay(stencil, part.tl(), colour);
+}
+
 void Canvas::rectangle(const cv::Rect2f& where, const Colour& colour, double thickness, double opacity) {
   const cv::Rect part = even_part(where, thickness + 1);
   if (part.empty()) return;

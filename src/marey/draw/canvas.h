@@ -28,6 +28,8 @@ class Canvas {
   };
   /// Strokes of one colour, one after the other, blended as one: where they meet nothing is darker.
   void strokes(const std::vector<Stroke>& strokes, const Colour& colour, double thickness);
+  /// Filled discs of one colour.
+  void discs(const std::vector<cv::Point2f>& centres, double radius, const Colour& colour, double opacity = 1);
   void rectangle(const cv::Rect2f& where, const Colour& colour, double thickness, double opacity = 1);
   /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the picture.
   void tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height);

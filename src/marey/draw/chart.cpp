@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "marey/draw/svg_text.h"
+
 namespace marey {
 namespace {
 
@@ -17,26 +19,6 @@ constexpr std::array<const char*, 8> kColours{"#0072b2", "#e69f00", "#009e73", "
 
 const char* colour(std::size_t index) {
   return kColours[index % kColours.size()];
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
 }
 
 /// A value axis from `low` to `high` in round steps.

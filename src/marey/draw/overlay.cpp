@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "marey/draw/canvas.h"
+#include "marey/geometry/bspline.h"
 
 namespace marey {
 namespace {
@@ -24,13 +25,44 @@ Vector<2> foot_of(const Track<2>& track) {
   return track.box ? track.box->foot() : track.position;
 }
 
+Vector<2> centre_of(const Track<2>& track) {
+  return track.outline ? track.outline->centre : track.position;
+}
+
+void draw_lines(Canvas& canvas, const Outline& outline, double unit) {
+  constexpr Colour kLine{255, 255, 255};
+  std::vector<Canvas::Stroke> lines;
+  std::vector<cv::Point2f> crossings;
+  for (const MeasurementLine& line : outline.lines) {
+    const bool found = line.finding == MeasurementLine::Finding::found;
+    lines.push_back(
+        {to_point(line.foot - line.reach * line.normal), to_point(line.foot + line.reach * line.normal), found ? 0.55 : 0.25});
+    if (found) crossings.push_back(to_point(line.foot + line.offset * line.normal));
+  }
+  canvas.strokes(lines, kLine, 1);
+  canvas.discs(crossings, 0.8 * unit, kLine, 0.9);
+}
+
+void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, double unit) {
+  const std::vector<Vector<2>> corners = ClosedSpline(outline.order, outline.control_points).polygon();
+  const bool seen = outline.state != Outline::State::held;
+  std::vector<Canvas::Stroke> curve;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    curve.push_back({to_point(corners[i]), to_point(corners[(i + 1) % corners.size()]), seen ? 1.0 : 0.6});
+  canvas.strokes(curve, colour, seen ? 1.4 * unit : 1);
+  std::vector<cv::Point2f> points;
+  for (const Vector<2>& point : outline.control_points) points.push_back(to_point(point));
+  canvas.discs(points, 1.2 * unit, colour);
+}
+
 }  // namespace
 
 Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks) {
   Canvas canvas(picture);
   // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
   const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
-  for (const Track<2>& track : tracks) trails_[track.id].push_back({now, foot_of(track)});
+  for (const Track<2>& track : tracks)
+    trails_[track.id].push_back({now, options_.trail_of_centres ? centre_of(track) : foot_of(track)});
 
   for (auto trail = trails_.begin(); trail != trails_.end();) {
     auto& steps = trail->second;
@@ -49,6 +81,11 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Tra
   }
 
   for (const Track<2>& track : tracks) {
+    if (track.outline) {
+      draw_lines(canvas, *track.outline, unit);
+      draw_curve(canvas, *track.outline, colour_of(number(track.id)), unit);
+      continue;
+    }
     if (!track.box) continue;
     const bool seen = track.state == Track<2>::State::observed;
     canvas.rectangle(edge_of(*track.box), colour_of(number(track.id)), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);

@@ -14,11 +14,13 @@ namespace marey {
 
 struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
+  bool trail_of_centres = false;             ///< trails show where centres went, not feet
 };
 
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
-/// predicted, and a trail of where its foot was that fades with age. Colours are steady by number. Lines and numbers grow with the
-/// picture.
+/// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
+/// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
+/// Colours are steady by number. Lines and numbers grow with the picture.
 class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options) {}

@@ -77,6 +77,22 @@ TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   EXPECT_EQ(changed(empty, last, {0, 0, 200, 120}), 0) << "all of it has faded";
 }
 
+TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
+  Track<2> track = at(1, 50, 40);
+  auto outline = std::make_shared<Outline>();
+  outline->control_points = {{60, 40}, {70, 65}, {60, 90}, {50, 65}};
+  outline->deviations.assign(4, {1, 1});
+  outline->centre = {60, 65};
+  track.outline = outline;
+  const Picture curve = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{track});
+  EXPECT_EQ(changed(empty, curve, {66, 80, 8, 11}), 0) << "no corner of a box";
+  EXPECT_GT(changed(empty, curve, {52, 45, 16, 40}), 60);
+  outline->lines.push_back({.foot = {66, 65}, .normal = {1, 0}, .reach = 30, .finding = MeasurementLine::Finding::found});
+  const Picture lines = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{track});
+  EXPECT_GT(changed(curve, lines, {74, 64, 22, 3}), 20) << "the measurement line, outside of the curve";
+}
+
 TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
   const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
   const cv::Rect all(0, 42, 200, 60);

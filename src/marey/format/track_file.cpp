@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/format/outline_json.h"
 
 namespace marey {
 namespace {
@@ -67,7 +68,12 @@ void append_json(std::string& lines, std::int64_t frame, Timestamp time, const T
     fmt::format_to(out, R"("left":{:.2f},"top":{:.2f},"width":{:.2f},"height":{:.2f},)", track.box->left, track.box->top,
                    track.box->width, track.box->height);
   }
-  fmt::format_to(out, "\"state\":\"{}\"}}\n", name_of(track.state));
+  fmt::format_to(out, R"("state":"{}")", name_of(track.state));
+  if (track.outline) {
+    lines += R"(,"outline":)";
+    append_json(lines, *track.outline);
+  }
+  lines += "}\n";
 }
 
 }  // namespace

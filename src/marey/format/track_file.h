@@ -15,7 +15,8 @@ namespace marey {
 /// How tracks in the image are written, one line for each target in each frame:
 ///   mot    MOTChallenge text: frame,id,left,top,width,height,conf,-1,-1,-1; frames and pixels count from 1
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
-///   jsonl  one JSON object a line with the same names; what is missing is left out
+///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
+///          (outline_json.h)
 enum class TrackFormat { mot, csv, jsonl };
 
 /// Every format's name with commas between, the default one first.

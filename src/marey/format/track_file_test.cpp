@@ -29,6 +29,36 @@ std::vector<Track<2>> two_tracks() {
   return {seen, guessed};
 }
 
+TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
+  Track<2> track = two_tracks()[0];
+  auto outline = std::make_shared<Outline>();
+  outline->order = 3;
+  outline->state = Outline::State::partly;
+  outline->control_points = {{1, 2}, {3.25, 4}, {5, 6.5}};
+  outline->deviations = {{0.5, 0.25}, {1, 1}, {2, 3}};
+  outline->centre = {3, 4};
+  outline->velocity = {10, -20};
+  outline->scale_rate = 0.125;
+  outline->velocity_deviation = {1.5, 2};
+  outline->scale_rate_deviation = 0.0625;
+  track.outline = outline;
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "tracks", TrackFormat::jsonl);
+  file.write(6, Timestamp{}, std::vector{track});
+  file.finish();
+  const auto json = nlohmann::json::parse(test::read_file(folder / "tracks"))["outline"];
+  EXPECT_EQ(json["state"], "partly");
+  EXPECT_EQ(json["order"], 3);
+  EXPECT_EQ(json["control_points"], nlohmann::json::parse("[[1.0,2.0],[3.25,4.0],[5.0,6.5]]"));
+  EXPECT_EQ(json["deviations"], nlohmann::json::parse("[[0.5,0.25],[1.0,1.0],[2.0,3.0]]"));
+  EXPECT_EQ(json["centre"], nlohmann::json::parse("[3.0,4.0]"));
+  EXPECT_EQ(json["velocity"], nlohmann::json::parse("[10.0,-20.0]"));
+  EXPECT_EQ(json["scale_rate"], 0.125);
+  EXPECT_EQ(json["centre_deviation"], nlohmann::json::parse("[0.0,0.0]"));
+  EXPECT_EQ(json["velocity_deviation"], nlohmann::json::parse("[1.5,2.0]"));
+  EXPECT_EQ(json["scale_rate_deviation"], 0.0625);
+}
+
 std::string written(TrackFormat format) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", format);

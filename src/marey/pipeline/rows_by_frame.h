@@ -1,9 +1,13 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "marey/core/track.h"
+#include "marey/pipeline/outlines_of_rows.h"
+#include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
 namespace marey {
@@ -11,16 +15,20 @@ namespace marey {
 /// Hands out a table of rows, sorted by frame, frame by frame. The table must outlive it.
 class RowsByFrame {
  public:
-  /// `labels[id]` is the label of track `id`, where there is one.
-  explicit RowsByFrame(const std::vector<TrackRow>& rows, std::vector<std::string> labels = {})
-      : at_(rows.begin()), end_(rows.end()), labels_(std::move(labels)) {}
+  /// `labels[id]` is the label of track `id`, where there is one. With `outlines`, which must outlive it, tracks have theirs.
+  explicit RowsByFrame(const std::vector<TrackRow>& rows, std::vector<std::string> labels = {},
+                       OutlineRecording* outlines = nullptr)
+      : at_(rows.begin()), end_(rows.end()), labels_(std::move(labels)) {
+    if (outlines != nullptr) outlines_.emplace(*outlines);
+  }
 
   /// The tracks of `frame`, which grows from call to call; valid until the next call.
   const std::vector<Track<2>>& at(std::int64_t frame) {
     tracks_.clear();
-    for (; at_ != end_ && at_->frame <= frame; ++at_) {
-      if (at_->frame == frame) tracks_.push_back(track_of(*at_));
-    }
+    while (at_ != end_ && at_->frame < frame) ++at_;
+    const auto first = at_;
+    for (; at_ != end_ && at_->frame == frame; ++at_) tracks_.push_back(track_of(*at_));
+    if (outlines_) outlines_->attach(frame, std::span(first, at_), tracks_);
     return tracks_;
   }
 
@@ -39,6 +47,7 @@ class RowsByFrame {
 
   std::vector<TrackRow>::const_iterator at_, end_;
   std::vector<std::string> labels_;
+  std::optional<OutlinesOfRows> outlines_;
   std::vector<Track<2>> tracks_;
 };
 

@@ -14,6 +14,7 @@ struct TrackOutput {
   std::string tracks;
   TrackFormat format = TrackFormat::mot;
   std::string overlay = {};  ///< a film with the tracks drawn into the pictures; empty for none
+  std::string plot = {};     ///< an SVG picture of the ways that were gone, in the coordinates of the image; empty for none
 };
 
 struct TrackProgress {

@@ -14,6 +14,7 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
 #include "marey/pipeline/marker_video.h"
+#include "marey/pipeline/plot_file.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/pipeline/rows_by_frame.h"
 #include "marey/source/open_source.h"
@@ -33,6 +34,7 @@ class MarkerRun {
     if (options.fit_noise && !options.live) fit();
     tracker_ = make_roster_tracker<2>(options_.tracker);
     file_.emplace(output.tracks, output.format);
+    if (!output.plot.empty()) plot_.emplace(output.plot, "Trajectories in " + source_->info().name);
     if (!output.overlay.empty()) movie_.emplace(output.overlay, source_->info().size, source_->info().rate_hz);
   }
 
@@ -49,6 +51,7 @@ class MarkerRun {
       file_->finish();
     }
     if (movie_) movie_->finish();
+    if (plot_) plot_->finish();
     summary_.markers = std::ssize(names_);
     if (summary_.detections == 0) {
       summary_.warnings.push_back(pictures_ +
@@ -135,6 +138,7 @@ class MarkerRun {
     file_->write(frame, time, tracks);
     summary_.rows += std::ssize(tracks);
     for (const Track<2>& track : tracks) names_.insert(track.id);
+    if (plot_) plot_->add(frame, tracks);
   }
 
   /// A second look at the pictures, because the tracks of a frame are known only after the last one.
@@ -161,6 +165,7 @@ class MarkerRun {
   MarkerDetector detector_;
   std::unique_ptr<Tracker<2>> tracker_;
   std::optional<TrackFile> file_;
+  std::optional<PlotFile> plot_;
   std::optional<MovieWriter> movie_;
   Overlay overlay_;
   Recording recording_;

@@ -10,9 +10,12 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
 #include "marey/pipeline/detections_input.h"
+#include "marey/pipeline/plot_file.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/pipeline/rows_by_frame.h"
 #include "marey/source/open_source.h"
+#include "marey/track/contour/outline_follower.h"
+#include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
 namespace marey {
@@ -93,8 +96,14 @@ class Run {
         hooks_(hooks),
         eyes_(open_eyes(input, options)),
         tracker_(make_tracker<2>(tracker_options(input, options))),
-        file_(output.tracks, output.format) {
+        file_(output.tracks, output.format),
+        overlay_({.trail_of_centres = options.outlines.has_value()}) {
     const SourceInfo& info = eyes_.source->info();
+    if (options.outlines) {
+      follower_.emplace(*options.outlines);
+      if (!options.live) outlines_.emplace(output.tracks, !output.overlay.empty());
+    }
+    if (!output.plot.empty()) plot_.emplace(output.plot, "Trajectories in " + info.name);
     if (!output.overlay.empty()) movie_.emplace(output.overlay, info.size, info.rate_hz);
   }
 
@@ -109,6 +118,7 @@ class Run {
       file_.finish();
     }
     if (movie_) movie_->finish();
+    if (plot_) plot_->finish();
     summary_.people = static_cast<std::int64_t>(people_.size());
     return std::move(summary_);
   }
@@ -120,12 +130,13 @@ class Run {
     while (auto frame = eyes_.source->next()) {
       const std::vector<Expected> expected = expected_of(tracker_->expected(frame->time));
       const Detections seen = eyes_.detector->detect(*frame, expected);
-      const auto tracks = tracker_->step(frame->time, observations_of(seen.detections, frame->camera));
+      const auto tracks = follow(*frame, seen);
       for (const Track<2>& track : tracks) (track.confirmed ? believed : begun).insert(track.id);
       if (options_.live) {
         tell(*frame, tracks);
       } else {
         recording_.add(frame->index, frame->time, tracks);
+        if (outlines_) outlines_->add(frame->index, tracks);
       }
       summary_.detections += static_cast<std::int64_t>(seen.detections.size());
       summary_.frames = frame->index + 1;
@@ -143,6 +154,15 @@ class Run {
     }
   }
 
+  /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
+  std::span<const Track<2>> follow(const Frame& frame, const Detections& seen) {
+    std::vector<Observation<2>> observations = observations_of(seen.detections, frame.camera);
+    if (!follower_) return tracker_->step(frame.time, observations);
+    const auto hints = follower_->look(frame, seen.foreground, seen.detections);
+    observations.insert(observations.end(), hints.begin(), hints.end());
+    return follower_->attach(tracker_->step(frame.time, observations), seen.detections);
+  }
+
   void tell(const Frame& frame, std::span<const Track<2>> tracks) {
     std::vector<Track<2>> confirmed;
     std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(confirmed),
@@ -154,19 +174,27 @@ class Run {
   void tell_confirmed(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks) {
     file_.write(frame, time, tracks);
     summary_.rows += static_cast<std::int64_t>(tracks.size());
-    for (const Track<2>& track : tracks) people_.insert(track.id);
+    for (const Track<2>& track : tracks) {
+      people_.insert(track.id);
+      if (!track.outline) continue;
+      ++summary_.outlines;
+      if (track.outline->state == Outline::State::held) ++summary_.held;
+    }
+    if (plot_) plot_->add(frame, tracks);
   }
 
   void write(const std::vector<TrackRow>& rows) {
-    RowsByFrame by_frame(rows);
+    RowsByFrame by_frame = rows_by_frame(rows);
     for (std::int32_t frame = 0; frame < summary_.frames; ++frame)
       tell_confirmed(frame, recording_.time_of(frame), by_frame.at(frame));
   }
 
+  RowsByFrame rows_by_frame(const std::vector<TrackRow>& rows) { return RowsByFrame(rows, {}, outlines_ ? &*outlines_ : nullptr); }
+
   /// A second look at the pictures, because the tracks of a frame are known only after the last one.
   void draw(const std::vector<TrackRow>& rows) {
     const auto source = read_ahead(open_source(input_.pictures, input_.rate_hz));
-    RowsByFrame by_frame(rows);
+    RowsByFrame by_frame = rows_by_frame(rows);
     const bool stopped_before = summary_.stopped;  // then the film shows what was tracked until then
     for (std::int64_t done = 0; done < summary_.frames;) {
       const auto frame = source->next();
@@ -183,7 +211,10 @@ class Run {
   RunHooks hooks_;
   Eyes eyes_;
   std::unique_ptr<Tracker<2>> tracker_;
+  std::optional<OutlineFollower> follower_;
+  std::optional<OutlineRecording> outlines_;
   TrackFile file_;
+  std::optional<PlotFile> plot_;
   std::optional<MovieWriter> movie_;
   Overlay overlay_;
   Recording recording_;
@@ -198,6 +229,8 @@ TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, c
   if (input.pictures.empty() == input.detections.empty()) throw Error("give either pictures or detections to track");
   if (input.rate_hz && !(*input.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *input.rate_hz);
   if (input.pictures.empty() && !output.overlay.empty()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
+  if (input.pictures.empty() && options.outlines)
+    throw Error("{}: outlines are searched in pictures; give those", input.detections);
   return Run(input, output, options, hooks)();
 }
 

@@ -10,7 +10,7 @@ namespace {
 TrackRow row_of(std::int32_t frame, const Track<2>& track) {
   TrackRow row;
   row.frame = frame;
-  row.id = number(track.id);
+  row.id = row.first_id = number(track.id);
   row.x = static_cast<float>(track.position.x());
   row.y = static_cast<float>(track.position.y());
   row.vx = static_cast<float>(track.velocity.x());

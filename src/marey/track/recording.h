@@ -9,10 +9,11 @@
 
 namespace marey {
 
-/// One target in one frame, as small as a match of 90 minutes needs it: 48 bytes. px and px/s.
+/// One target in one frame, as small as a match of 90 minutes needs it: 52 bytes. px and px/s.
 struct TrackRow {
   std::int32_t frame = 0;  ///< 0-based
   std::int32_t id = 0;
+  std::int32_t first_id = 0;                       ///< what the tracker called it; `id` is given anew when tracklets are joined
   float x = 0, y = 0;                              ///< position
   float vx = 0, vy = 0;                            ///< velocity
   float left = 0, top = 0, width = 0, height = 0;  ///< box; width and height are 0 where the target has no extent

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "marey/pipeline/track_people.h"
+
+namespace marey::cli {
+
+/// What `marey track --targets people` understands beyond what every target needs.
+struct PeopleFlags {
+  std::string background = std::string(AdaptiveOptions::name);
+  bool outline = false;
+  std::optional<int> control_points;
+  std::optional<int> order;
+  std::optional<int> lines;
+};
+
+void add_people_options(CLI::App& command, PeopleFlags& flags);
+
+/// Throws Error where a flag's value is out of its domain.
+TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
+
+}  // namespace marey::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "marey/pipeline/track_markers.h"
+#include "marey/pipeline/track_people.h"
+
+namespace marey::cli {
+
+/// On standard output. `elapsed` in s.
+void print_json(const TrackSummary& summary, const TrackOutput& output, double elapsed);
+void print_json(const MarkerSummary& summary, const TrackOutput& output, double elapsed);
+
+/// On standard error, so that tracks may go to standard output.
+void print_summary(const TrackSummary& summary, const TrackOutput& output, double elapsed);
+void print_summary(const MarkerSummary& summary, const TrackOutput& output, double elapsed);
+
+}  // namespace marey::cli

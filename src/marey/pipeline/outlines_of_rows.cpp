@@ -1,0 +1,45 @@
+#include "marey/pipeline/outlines_of_rows.h"
+
+#include <cassert>
+#include <utility>
+
+namespace marey {
+namespace {
+
+/// The outline moved with its target from `from` to `to`, and scaled about it.
+std::shared_ptr<const Outline> carried(const Outline& outline, const Vector<2>& from, const Vector<2>& to, double scale) {
+  auto result = std::make_shared<Outline>(outline);
+  const auto move = [&](const Vector<2>& point) -> Vector<2> { return to + scale * (point - from); };
+  for (Vector<2>& point : result->control_points) point = move(point);
+  for (Vector<2>& deviation : result->deviations) deviation *= scale;
+  result->centre = move(outline.centre);
+  result->lines.clear();
+  result->state = Outline::State::held;
+  return result;
+}
+
+}  // namespace
+
+void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, std::span<Track<2>> tracks) {
+  assert(rows.size() == tracks.size());
+  const OutlineRecording::Frame& outlines = recording_.at(frame);
+  std::swap(last_, before_);
+  last_.clear();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const TrackRow& row = rows[i];
+    const Vector<2> place(row.x, row.y);
+    if (row.observed()) {
+      const auto found = outlines.find(row.first_id);
+      if (found == outlines.end()) continue;
+      tracks[i].outline = found->second;
+      last_[row.id] = {found->second, place, row.height};
+    } else if (const auto known = before_.find(row.id); known != before_.end()) {
+      const Last& last = known->second;
+      const double scale = last.height > 0 && row.has_box() ? row.height / last.height : 1;
+      tracks[i].outline = carried(*last.outline, last.place, place, scale);
+      last_[row.id] = last;
+    }
+  }
+}
+
+}  // namespace marey

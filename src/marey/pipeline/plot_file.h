@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "marey/draw/trajectory_plot.h"
+#include "marey/format/whole_file.h"
+
+namespace marey {
+
+/// A plot of trajectories that becomes a file at the end of a run; that it can be written shows at the beginning.
+class PlotFile {
+ public:
+  /// Throws Error where nothing can be written at `path`.
+  PlotFile(const std::string& path, std::string title) : file_(path), title_(std::move(title)) {}
+
+  void add(std::int64_t frame, std::span<const Track<2>> tracks) { plot_.add(frame, tracks); }
+
+  /// Throws Error where the place is full.
+  void finish() {
+    file_.write(plot_.to_svg(title_));
+    file_.finish();
+  }
+
+ private:
+  WholeFile file_;
+  std::string title_;
+  TrajectoryPlot plot_;
+};
+
+}  // namespace marey
