@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/read_file.h"
 
 namespace marey {
 namespace {
@@ -200,27 +201,6 @@ class Parser {
   std::uint32_t first_without_size_ = 0;
 };
 
-struct CloseFile {
-  void operator()(std::FILE* file) const {
-    if (file != stdin) std::fclose(file);
-  }
-};
-
-std::string whole_text(const std::string& path) {
-  const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
-  if (!file) throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
-  std::string text;
-  std::size_t filled = 0;
-  for (;;) {
-    text.resize(std::max<std::size_t>(filled + filled / 2, std::size_t{1} << 20));
-    filled += std::fread(text.data() + filled, 1, text.size() - filled, file.get());
-    if (filled < text.size()) break;
-  }
-  if (std::ferror(file.get()) != 0) throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
-  text.resize(filled);
-  return text;
-}
-
 }  // namespace
 
 MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind) {
@@ -228,7 +208,7 @@ MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind)
 }
 
 MotTable read_mot(const std::string& path, MotKind kind) {
-  const std::string text = whole_text(path);
+  const std::string text = read_file(path);
   return parse_mot(text, path == "-" ? "standard input" : path, kind);
 }
 

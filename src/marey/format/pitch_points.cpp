@@ -1,0 +1,156 @@
+#include "marey/format/pitch_points.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <pugixml.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/read_file.h"
+
+namespace marey {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '"'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view at) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto end = text.find_first_of(at);
+    parts.push_back(trimmed(text.substr(0, end)));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed != std::errc() || stop != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 1e6)
+    return std::nullopt;
+  return value;
+}
+
+/// "a,b", with or without parentheses.
+std::optional<Vector<2>> pair(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() >= 2 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
+  const auto parts = split(text, ",");
+  if (parts.size() != 2) return std::nullopt;
+  const auto x = number(parts[0]), y = number(parts[1]);
+  if (!x || !y) return std::nullopt;
+  return Vector<2>(*x, *y);
+}
+
+// --- CSV ---------------------------------------------------------------------------------------------------------------
+
+constexpr std::array<std::array<std::string_view, 4>, 4> kColumnNames = {{{"x", "pitch_x", "world_x", "ground_x"},
+                                                                          {"y", "pitch_y", "world_y", "ground_y"},
+                                                                          {"u", "image_x", "px", "pixel_x"},
+                                                                          {"v", "image_y", "py", "pixel_y"}}};
+
+/// Where x, y, u, v stand, by the header; nothing where the line is none.
+std::optional<std::array<std::size_t, 4>> columns_of(const std::vector<std::string_view>& header) {
+  std::array<std::size_t, 4> columns{};
+  for (std::size_t wanted = 0; wanted < 4; ++wanted) {
+    const auto found = std::find_if(header.begin(), header.end(), [&](std::string_view name) {
+      return std::find(kColumnNames[wanted].begin(), kColumnNames[wanted].end(), name) != kColumnNames[wanted].end();
+    });
+    if (found == header.end()) return std::nullopt;
+    columns[wanted] = static_cast<std::size_t>(found - header.begin());
+  }
+  return columns;
+}
+
+PitchClicks parse_csv(std::string_view text, const std::string& name) {
+  PitchClicks clicks;
+  std::array<std::size_t, 4> columns = {0, 1, 2, 3};
+  int line_number = 0;
+  bool first = true;
+  for (std::string_view line : split(text, "\n")) {
+    ++line_number;
+    if (line.empty() || line.front() == '#') continue;
+    const auto fields = split(line, ",;\t");
+    if (std::exchange(first, false) && !number(fields[0])) {
+      const auto named = columns_of(fields);
+      if (!named) throw Error("{}:{}: the header must name the columns x, y (m on the pitch), u, v (px)", name, line_number);
+      columns = *named;
+      continue;
+    }
+    std::array<double, 4> values{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto value = columns[i] < fields.size() ? number(fields[columns[i]]) : std::nullopt;
+      if (!value)
+        throw Error("{}:{}: four numbers are wanted, x,y,u,v: a place on the pitch in m and its pixel", name, line_number);
+      values[i] = *value;
+    }
+    clicks.points.push_back({{values[0], values[1]}, {values[2], values[3]}, fmt::format("({:g},{:g})", values[0], values[1])});
+  }
+  return clicks;
+}
+
+// --- CVAT ----------------------------------------------------------------------------------------------------------------
+
+/// Continuous coordinates from the top left corner of the picture to ours, whose integers are pixel centres.
+std::optional<std::vector<Vector<2>>> cvat_pixels(std::string_view text) {
+  std::vector<Vector<2>> pixels;
+  for (const std::string_view one : split(text, ";")) {
+    const auto pixel = pair(one);
+    if (!pixel) return std::nullopt;
+    pixels.push_back(pixel->array() - 0.5);
+  }
+  return pixels;
+}
+
+PitchClicks parse_cvat(std::string_view text, const std::string& name) {
+  pugi::xml_document document;
+  const auto parsed = document.load_buffer(text.data(), text.size());
+  if (!parsed) throw Error("{}: this is no whole XML file: {} at byte {}", name, parsed.description(), parsed.offset);
+  PitchClicks clicks;
+  const auto images = document.select_nodes("//image");
+  if (images.empty()) throw Error("{}: no <image> in it; export the task as \"CVAT for images\"", name);
+  for (const auto& image : images) {
+    for (const pugi::xml_node node : image.node().children()) {
+      const std::string_view kind = node.name(), label = node.attribute("label").value();
+      if (kind != "points" && kind != "polyline") continue;
+      const auto pixels = cvat_pixels(node.attribute("points").value());
+      if (!pixels) throw Error("{}: <{} label=\"{}\">: its points are no numbers", name, kind, label);
+      if (kind == "points") {
+        const auto ground = pair(label);
+        if (!ground) throw Error("{}: the label \"{}\" is no place on the pitch; it must read (x,y), in m", name, label);
+        for (const Vector<2>& pixel : *pixels) clicks.points.push_back({*ground, pixel, std::string(label)});
+        continue;
+      }
+      const auto middle = label.find(")-(");
+      const auto from = middle == std::string_view::npos ? std::nullopt : pair(label.substr(0, middle + 1));
+      const auto to = middle == std::string_view::npos ? std::nullopt : pair(label.substr(middle + 2));
+      if (!from || !to || (*from - *to).norm() < 1e-6)
+        throw Error("{}: the label \"{}\" is no line of the pitch; it must read (x,y)-(x,y), in m", name, label);
+      clicks.lines.push_back({*from, *to, *pixels, std::string(label)});
+    }
+  }
+  return clicks;
+}
+
+}  // namespace
+
+PitchClicks parse_pitch_clicks(std::string_view text, const std::string& name) {
+  PitchClicks clicks = trimmed(text).starts_with('<') ? parse_cvat(text, name) : parse_csv(text, name);
+  if (clicks.points.empty() && clicks.lines.empty()) throw Error("{}: not one point of the pitch is in it", name);
+  return clicks;
+}
+
+PitchClicks read_pitch_clicks(const std::string& path) {
+  return parse_pitch_clicks(read_file(path), path);
+}
+
+}  // namespace marey
