@@ -22,8 +22,8 @@ TEST(PitchPoints, CsvWithAndWithoutAHeader) {
 
 TEST(PitchPoints, CvatPointsAndLines) {
   const auto clicks = parse_pitch_clicks(
-      R"(<annotations><image id="0"><points label="(16.5,0)" points="1912.70,773.00"/>)"
-      R"(<polyline label="(0,0)-(105,0)" points="10.5,20.5;30.5,40.5"/><box label="ball"/></image></annotations>)",
+      R"xml(<annotations><image id="0"><points label="(16.5,0)" points="1912.70,773.00"/>)xml"
+      R"xml(<polyline label="(0,0)-(105,0)" points="10.5,20.5;30.5,40.5"/><box label="ball"/></image></annotations>)xml",
       "clicks.xml");
   ASSERT_EQ(clicks.points.size(), 1u);
   EXPECT_EQ(clicks.points[0].ground, Vector<2>(16.5, 0));
@@ -49,7 +49,7 @@ TEST(PitchPoints, WhatIsNotReadIsSaidWithItsLine) {
   EXPECT_NE(message("").find("not one point"), std::string::npos);
   EXPECT_NE(message("<annotations><image/>").find("no whole XML"), std::string::npos);
   EXPECT_NE(message("<annotations></annotations>").find("no <image>"), std::string::npos);
-  EXPECT_NE(message(R"(<a><image><points label="corner" points="1,2"/></image></a>)").find("\"corner\""), std::string::npos);
+  EXPECT_NE(message(R"xml(<a><image><points label="corner" points="1,2"/></image></a>)xml").find("\"corner\""), std::string::npos);
 }
 
 TEST(PitchPoints, ARealExport) {
