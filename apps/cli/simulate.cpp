@@ -89,6 +89,7 @@ void add_simulate(CLI::App& app) {
   markers->add_flag("-q,--quiet", options->quiet, "say nothing");
   markers->callback([options] { run(*options); });
   add_simulate_people(*simulate);
+  add_simulate_room(*simulate);
 }
 
 }  // namespace marey::cli
