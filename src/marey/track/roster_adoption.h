@@ -43,7 +43,16 @@ class RosterAdoption {
  private:
   /// How far a target's own motion leaves it from a place; where it turned or stopped unseen, its last place tells better.
   double way_to(const Target& target, const Vector<D>& place) const {
+    if (target.guided > 0) return (place - target.filter.position()).norm();
     return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
+  }
+
+  /// Whether a target that was lost can be at a place. Where companions tell of it, they are believed for a while.
+  bool may_be_at(const Target& target, const Vector<D>& place) const {
+    if (target.guided > 0 && target.unseen < kBelieved) {
+      return (place - target.filter.position()).norm() <= kGuidedReach * std::sqrt(target.guided) + target.width;
+    }
+    return (place - target.last_place).norm() <= options_.max_speed * target.unseen + target.width;
   }
 
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
@@ -54,8 +63,7 @@ class RosterAdoption {
       const Target& target = targets[lost_[row]];
       for (int column = 0; column < std::ssize(free_); ++column) {
         const Vector<D>& place = seen[free_[column]].value;
-        const double reach = options_.max_speed * target.unseen + target.width;
-        if ((place - target.last_place).norm() > reach || !sight.alike(target, seen[free_[column]])) continue;
+        if (target.guided > 0 || !may_be_at(target, place) || !sight.alike(target, seen[free_[column]])) continue;
         const double way = way_to(target, place);
         if (!sight.believes_jump(way + target.width)) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way, kFar)});
@@ -95,7 +103,7 @@ class RosterAdoption {
       if (target.observation != Target::kNone) continue;
       for (const int column : proven_) {
         const Target& newcomer = targets[column];
-        if ((newcomer.last_place - target.last_place).norm() > options_.max_speed * target.unseen) continue;
+        if (!may_be_at(target, newcomer.last_place)) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way_to(target, newcomer.last_place), kFar)});
       }
     }
@@ -112,6 +120,8 @@ class RosterAdoption {
   }
 
   static constexpr double kGentleJump = 1;           // gates
+  static constexpr double kGuidedReach = 6;          // standard deviations of what companions say
+  static constexpr double kBelieved = 2;             // s
   static constexpr double kFar = 1e6;                // px
   static constexpr long kMostLostPairs = 1'000'000;  // glare: nobody is looked for in it
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include <Eigen/LU>
@@ -29,6 +30,8 @@ struct RosterTarget {
   double unseen = 0;                ///< s, since then
   int observation = kNone;          ///< in this frame
   int covered_by = kNone;           ///< the observation that it is taken to be behind
+  std::optional<int> member = {};   ///< its number among companions
+  double guided = 0;                ///< while it is unseen: variance of where its companions say that it is; 0 where they do not
   bool crowded = false;             ///< another target is within a marker's width
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established
@@ -60,6 +63,7 @@ class RosterSight {
   /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that.
   Matrix<D> noise_of(const Observation<D>& observation, const RosterTarget<F>& target) const {
     Matrix<D> R = noise_of(observation);
+    R.diagonal().array() += target.guided;
     const double change = std::abs(width_of(observation) - target.width) - kWidthNoise * target.width;
     if (change > 0) R.diagonal().array() += change * change;
     return R;

@@ -21,6 +21,7 @@
 #include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
 #include "marey/track/check_frame.h"
+#include "marey/track/companions.h"
 #include "marey/track/roster_adoption.h"
 #include "marey/track/roster_target.h"
 
@@ -52,6 +53,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       judge_newcomers();
       start_unclaimed(seen);
     }
+    learn_companions();
     return report();
   }
 
@@ -77,10 +79,37 @@ class RosterTracker final : public Tracker<F::dimension> {
     now_ = now;
     for (Target& target : targets_) {
       // A lost target drifts on for a while; then it is waited for where that led, not flown out of the picture.
-      if (target.unseen < kCoast) target.filter.predict(dt_);
+      if (target.unseen < kCoast || target.guided > 0) target.filter.predict(dt_);
       target.unseen += dt_;
       target.observation = target.covered_by = kNone;
       target.crowded = false;
+    }
+  }
+
+  /// A target that this frame does not see is where its companions went.
+  void guide(Target& target) {
+    target.guided = 0;
+    if constexpr (D == 3) {
+      if (!target.member || target.observation != kNone) return;
+      const auto place = companions_.place_of(*target.member);
+      if (!place) return;
+      target.filter.correct(place->position, Matrix<D>::Identity() * place->variance);
+      target.guided = place->variance;
+    }
+  }
+
+  /// Those who are established and seen teach how markers move together.
+  void learn_companions() {
+    if constexpr (D == 3) {
+      if (!options_.companions) return;
+      companions_.begin_frame();
+      for (Target& target : targets_) {
+        if (target.standing != Standing::established || target.observation == kNone) continue;
+        if (!target.member) target.member = companions_.enrol();
+        if (target.member) companions_.see(*target.member, target.last_place);
+      }
+      companions_.end_frame();
+      for (Target& target : targets_) guide(target);
     }
   }
 
@@ -292,6 +321,7 @@ class RosterTracker final : public Tracker<F::dimension> {
     track.position = filter.position();
     track.velocity = filter.velocity();
     track.covariance = filter.covariance();
+    track.covariance.diagonal().array() += target.guided;
     track.state = state;
     if (state == Track<D>::State::observed) track.observation = target.observation;
     track.confirmed = target.on_roster();
@@ -319,6 +349,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   int next_id_ = 1;
   RosterSight<F> sight_;
   RosterAdoption<F> adoption_;
+  Companions companions_;
   std::vector<Target> targets_;  // in the order of their ids
   std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.

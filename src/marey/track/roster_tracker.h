@@ -16,6 +16,7 @@ struct RosterTrackerOptions {
   double max_speed = 6000;          ///< no marker moves faster, px/s
   double marker_width = 8;          ///< of an observation without a box, px
   double place_noise = 0.05;        ///< standard deviation added to that of each observation, px: what no detector knows of itself
+  bool companions = false;          ///< in space: a hidden marker is expected where those that move with it say
   double confirm = 10;              ///< log-likelihood ratio against clutter that proves a newcomer
 };
 

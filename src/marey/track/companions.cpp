@@ -1,0 +1,114 @@
+#include "marey/track/companions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace marey {
+namespace {
+
+constexpr std::size_t kMostMembers = 600;  // 180,000 pairs
+constexpr std::size_t kShare = 4;          // frames in which every pair is learned from once
+constexpr int kMemory = 1000;              // samples that a mean is taken over
+constexpr int kEnough = 8;                 // samples from which a spread is believed
+constexpr double kOpening = 0.02;          // m, of spread that a distance may yet show, fading with the samples
+constexpr double kLeastSpread = 0.001;     // m
+constexpr double kSteady = 0.05;           // m; markers whose distance varies by more say nothing of each other
+constexpr int kFewest = 3;                 // companions
+
+}  // namespace
+
+std::optional<int> Companions::enrol() {
+  if (members_.size() >= kMostMembers) return std::nullopt;
+  members_.emplace_back();
+  last_positions_.resize(members_.size());
+  last_seen_.resize(members_.size(), 0);
+  distances_.resize(members_.size() * (members_.size() - 1) / 2);
+  return static_cast<int>(members_.size()) - 1;
+}
+
+void Companions::begin_frame() {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Member& member = members_[i];
+    last_positions_[i] = member.position;
+    last_seen_[i] = member.seen;
+    member.was_seen = member.seen;
+    member.seen = false;
+  }
+}
+
+void Companions::see(int number, const Vector<3>& position) {
+  members_[static_cast<std::size_t>(number)].position = position;
+  members_[static_cast<std::size_t>(number)].seen = true;
+}
+
+void Companions::end_frame() {
+  ++frames_;
+  for (Member& member : members_) {
+    if (member.was_seen && !member.seen) keep_places(member);
+  }
+  for (std::size_t row = frames_ % kShare; row < members_.size(); row += kShare) learn(static_cast<int>(row));
+}
+
+void Companions::learn(int row) {
+  const Member& one = members_[static_cast<std::size_t>(row)];
+  if (!one.seen) return;
+  for (int i = 0; i < row; ++i) {
+    const Member& other = members_[static_cast<std::size_t>(i)];
+    if (!other.seen) continue;
+    Distance& distance = between(row, i);
+    const double here = (one.position - other.position).norm();
+    const double off = here - distance.mean;
+    distance.count = std::min(distance.count + 1, kMemory);
+    const double share = 1.0 / distance.count;
+    distance.mean += static_cast<float>(share * off);
+    distance.variance = static_cast<float>((1 - share) * (distance.variance + share * off * off));
+  }
+}
+
+/// The frame before this one was the last that saw it.
+void Companions::keep_places(Member& member) const {
+  member.places = last_positions_;
+  member.known = last_seen_;
+}
+
+std::optional<Companions::Place> Companions::place_of(int number) const {
+  const Member& hidden = members_[static_cast<std::size_t>(number)];
+  if (hidden.places.empty()) return std::nullopt;
+  Vector<3> from = Vector<3>::Zero(), to = Vector<3>::Zero();
+  Matrix<3> moment = Matrix<3>::Zero();
+  double total = 0, spread = 0;
+  int companions = 0;
+  // Sums about the first companion's places, so that no digits are lost.
+  Vector<3> from_origin = Vector<3>::Zero(), to_origin = Vector<3>::Zero();
+  for (int i = 0; i < static_cast<int>(hidden.places.size()); ++i) {
+    const Member& other = members_[static_cast<std::size_t>(i)];
+    if (i == number || !other.seen || !hidden.known[static_cast<std::size_t>(i)]) continue;
+    const Distance& distance = between(number, i);
+    if (distance.count < kEnough) continue;
+    const double variance = distance.variance + kLeastSpread * kLeastSpread + kOpening * kOpening / distance.count;
+    if (variance > kSteady * kSteady) continue;
+    if (companions++ == 0) from_origin = hidden.places[static_cast<std::size_t>(i)], to_origin = other.position;
+    const double weight = 1e-12 / (variance * variance);
+    const Vector<3> p = hidden.places[static_cast<std::size_t>(i)] - from_origin, q = other.position - to_origin;
+    from += weight * p;
+    to += weight * q;
+    moment += weight * q * p.transpose();
+    total += weight;
+    spread += weight * variance;
+  }
+  if (companions < kFewest) return std::nullopt;
+  from /= total;
+  to /= total;
+  moment -= total * to * from.transpose();
+  const Eigen::JacobiSVD<Matrix<3>> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix<3> flip = Matrix<3>::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix<3> rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+  const Vector<3> last = hidden.places[static_cast<std::size_t>(number)] - from_origin;
+  return Place{rotation * (last - from) + to + to_origin, spread / total};
+}
+
+}  // namespace marey
