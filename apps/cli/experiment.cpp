@@ -86,6 +86,7 @@ void add_experiment(CLI::App& app) {
   trackers->add_flag("--json", options->json, "print JSON instead of tables");
   trackers->add_flag("-q,--quiet", options->quiet, "no progress");
   trackers->callback([options] { run(*options); });
+  add_experiment_outlines(*experiment);
 }
 
 }  // namespace marey::cli

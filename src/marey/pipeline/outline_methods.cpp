@@ -1,0 +1,229 @@
+#include "marey/pipeline/outline_methods.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/detect/people.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/box_filter.h"
+#include "marey/track/tracker.h"
+
+namespace marey {
+namespace {
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point begin_;
+};
+
+std::vector<Observation<2>> observations_of(std::span<const Detection> detections) {
+  std::vector<Observation<2>> result;
+  for (const Detection& detection : detections) {
+    result.push_back({.value = detection.box.centre(),
+                      .covariance = detection.covariance,
+                      .score = detection.score,
+                      .box = detection.box,
+                      .shared = detection.group.has_value()});
+  }
+  return result;
+}
+
+std::vector<Vector<2>> corners(const Box& box) {
+  const double left = box.left - 0.5, top = box.top - 0.5;
+  return {{left, top}, {left + box.width, top}, {left + box.width, top + box.height}, {left, top + box.height}};
+}
+
+/// Marey's detector and tracker, with or without OutlineFollower.
+class TrackedMethod final : public OutlineMethod {
+ public:
+  explicit TrackedMethod(const std::optional<OutlineOptions>& options) : detector_(make_background()) {
+    TrackerOptions tracker;
+    tracker.steady_camera = true;
+    tracker_ = make_tracker<2>(tracker);
+    if (options) outlines_.emplace(*options);
+  }
+
+  void prime(std::span<const Frame> samples) override { detector_.prime(samples); }
+
+  std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> /*detections*/,
+                                  std::span<const TrueFigure> /*truth*/) override {
+    std::vector<Expected> expected;
+    for (const Track<2>& track : tracker_->expected(frame.time)) {
+      if (track.box) expected.push_back({*track.box});
+    }
+    Detections seen = detector_.detect(frame, expected);
+    std::vector<Observation<2>> observations = observations_of(seen.detections);
+    if (outlines_) {
+      const Stopwatch watch(seconds_);
+      const auto hints = outlines_->look(frame, seen.foreground, seen.detections);
+      observations.insert(observations.end(), hints.begin(), hints.end());
+    }
+    std::span<const Track<2>> tracks = tracker_->step(frame.time, observations);
+    if (outlines_) {
+      const Stopwatch watch(seconds_);
+      tracks = outlines_->attach(tracks, seen.detections);
+    }
+    detections_ = std::move(seen.detections);
+    std::vector<FollowedShape> shapes;
+    for (const Track<2>& track : tracks) {
+      if (auto shape = track.confirmed ? shape_of(track) : std::nullopt) shapes.push_back(std::move(*shape));
+    }
+    return shapes;
+  }
+
+  std::span<const Detection> detections() const override { return detections_; }
+
+ private:
+  std::optional<FollowedShape> shape_of(const Track<2>& track) {
+    const std::string name = std::to_string(number(track.id));
+    if (track.outline) {
+      ++targets_;
+      const Outline& outline = *track.outline;
+      return FollowedShape{name, outline.centre, ClosedSpline(outline.order, outline.control_points).polygon()};
+    }
+    const bool detected = track.observation && *track.observation < std::ssize(detections_);
+    if (detected && !detections_[static_cast<std::size_t>(*track.observation)].outline.empty()) {
+      const auto& polygon = detections_[static_cast<std::size_t>(*track.observation)].outline;
+      return FollowedShape{name, polygon_centroid(polygon).value_or(track.position), polygon};
+    }
+    if (!track.box) return std::nullopt;
+    return FollowedShape{name, track.box->centre(), corners(*track.box)};
+  }
+
+  PeopleDetector detector_;
+  std::unique_ptr<Tracker<2>> tracker_;
+  std::optional<OutlineFollower> outlines_;
+  std::vector<Detection> detections_;
+};
+
+/// The detection on a person who can be seen wholly, where there is one.
+const Detection* detection_of(const TrueFigure& person, std::span<const Detection> detections) {
+  if (person.visible_share < 0.9) return nullptr;
+  const Box box = person.visible.box();
+  for (const Detection& detection : detections) {
+    if (!detection.group && iou(box, detection.box) > 0.5 && detection.outline.size() > 3) return &detection;
+  }
+  return nullptr;
+}
+
+/// One filter a person, begun with the first two detections in a row that are on him.
+template <typename Filter>
+class LoneFilters : public OutlineMethod {
+ public:
+  std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
+                                  std::span<const TrueFigure> truth) override {
+    {
+      const Stopwatch watch(seconds_);
+      for (auto& [id, filter] : filters_) advance(filter, frame, detections);
+    }
+    targets_ += std::ssize(filters_);
+    std::map<int, Detection> seen;
+    for (const TrueFigure& person : truth) {
+      if (filters_.contains(person.id)) continue;
+      const Detection* now = detection_of(person, detections);
+      if (now == nullptr) continue;
+      if (const auto before = before_.find(person.id); before != before_.end()) begin(person.id, before->second, *now);
+      seen.emplace(person.id, *now);
+    }
+    before_ = std::move(seen);
+    std::vector<FollowedShape> shapes;
+    for (const auto& [id, filter] : filters_) {
+      FollowedShape shape = shape_of(filter);
+      shape.name = std::to_string(id);
+      const auto sane = [](const Vector<2>& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < 1e6; };
+      if (std::all_of(shape.polygon.begin(), shape.polygon.end(), sane)) shapes.push_back(std::move(shape));
+    }
+    return shapes;
+  }
+
+ protected:
+  virtual void advance(Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
+  virtual Filter make(const Detection& before, const Detection& now) const = 0;
+  virtual FollowedShape shape_of(const Filter& filter) const = 0;
+
+ private:
+  void begin(int id, const Detection& before, const Detection& now) {
+    try {
+      filters_.emplace(id, make(before, now));
+    } catch (const Error&) {
+      // No curve fits these silhouettes: the next two may do.
+    }
+  }
+
+  std::map<int, Filter> filters_;
+  std::map<int, Detection> before_;
+};
+
+class PublishedMethod final : public LoneFilters<PublishedOutline> {
+ public:
+  explicit PublishedMethod(const PublishedOptions& options) : options_(options) {}
+
+ private:
+  void advance(PublishedOutline& filter, const Frame& frame, std::span<const Detection> /*detections*/) override {
+    filter.step(frame);
+  }
+  PublishedOutline make(const Detection& before, const Detection& now) const override {
+    return {options_, before.outline, now.outline};
+  }
+  FollowedShape shape_of(const PublishedOutline& filter) const override {
+    const Outline& outline = filter.outline();
+    return {"", outline.centre, ClosedSpline(outline.order, outline.control_points).polygon()};
+  }
+
+  PublishedOptions options_;
+};
+
+class BoxMethod final : public LoneFilters<BoxFilter> {
+ private:
+  /// The nearest detection within a box's height of the filter's centre.
+  void advance(BoxFilter& filter, const Frame& /*frame*/, std::span<const Detection> detections) override {
+    const Detection* nearest = nullptr;
+    double reach = filter.box().height;
+    for (const Detection& detection : detections) {
+      const double distance = (detection.centre - filter.centre() - filter.velocity()).norm();
+      if (distance > reach) continue;
+      reach = distance;
+      nearest = &detection;
+    }
+    if (nearest != nullptr) {
+      filter.step(nearest->box, nearest->centre);
+    } else {
+      filter.step(std::nullopt, std::nullopt);
+    }
+  }
+  BoxFilter make(const Detection& /*before*/, const Detection& now) const override { return {{}, now.box, now.centre}; }
+  FollowedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box())}; }
+};
+
+}  // namespace
+
+std::unique_ptr<OutlineMethod> silhouette_method() {
+  return std::make_unique<TrackedMethod>(std::nullopt);
+}
+
+std::unique_ptr<OutlineMethod> marey_method(const OutlineOptions& options) {
+  return std::make_unique<TrackedMethod>(options);
+}
+
+std::unique_ptr<OutlineMethod> published_method(const PublishedOptions& options) {
+  return std::make_unique<PublishedMethod>(options);
+}
+
+std::unique_ptr<OutlineMethod> box_method() {
+  return std::make_unique<BoxMethod>();
+}
+
+}  // namespace marey
