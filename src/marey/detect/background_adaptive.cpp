@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "marey/core/picture.h"
+#include "marey/detect/background_fringe.h"
 #include "marey/detect/background_kernels.h"
 #include "marey/detect/background_light.h"
 #include "marey/detect/background_plane.h"
@@ -91,10 +92,10 @@ class AdaptiveBackground final : public Background {
     regions_.choose(marked_, size_.height);
     regions_.compare_borders(planes.luma, luma_);
     draw_mask(planes);
-    if (start_anew_if_lost(planes)) return {mask_};
+    if (start_anew_if_lost(planes)) return {mask_, covered_};
     learn(planes, held);
     ++frames_;
-    return {mask_};
+    return {mask_, covered_};
   }
 
  private:
@@ -124,6 +125,7 @@ class AdaptiveBackground final : public Background {
     size_ = size;
     colour_ = colour;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
+    covered_ = cv::Mat::zeros(size, CV_8UC1);
     second_.begin(size);
     shadows_.begin(size);
     drawn_.clear();
@@ -206,8 +208,10 @@ class AdaptiveBackground final : public Background {
   // ---- clean -------------------------------------------------------------------------------------------------------------
 
   void draw_mask(const FramePlanes& planes) {
-    for (const PixelRun& run : drawn_)
-      std::fill_n(mask_.ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{0});
+    for (const PixelRun& run : drawn_) {
+      for (cv::Mat* mask : {&mask_, &covered_})
+        std::fill_n(mask->ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{0});
+    }
     if (options_.suppress_shadows) shadows_.judge(regions_.runs(), planes, {luma_, cb_, cr_, black_});
     for (const PixelRun& run : regions_.runs()) {
       const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
@@ -215,11 +219,20 @@ class AdaptiveBackground final : public Background {
       auto* mask = mask_.ptr<std::uint8_t>(run.row);
       for (int x = run.begin; x < run.end; ++x) {
         const int scene = ((means[x] + 64) >> 7) - black_;
-        const bool shadow = options_.suppress_shadows && shadows_.is_shadow(run.row, x, pixels[x] - black_, scene);
+        const bool shadow = options_.suppress_shadows && (shadows_.is_shadow(run.row, x, pixels[x] - black_, scene) ||
+                                                          has_shadowed_colour(planes, run.row, x, pixels[x] - black_, scene));
         mask[x] = shadow || second_.knows(run.row, x, pixels[x]) ? 0 : 255;
       }
     }
+    trim_fringe(mask_, regions_.runs(), planes, {luma_, cb_, cr_, black_}, covered_);
     drawn_ = regions_.runs();
+  }
+
+  bool has_shadowed_colour(const FramePlanes& planes, int row, int column, int level, int scene) const {
+    if (planes.cb.empty()) return false;
+    const int y = row / 2, x = column / 2;
+    return ShadowFinder::is_coloured_shadow(level, scene, planes.cb.at<std::uint8_t>(y, x) - 128,
+                                            planes.cr.at<std::uint8_t>(y, x) - 128, cb_.level(y, x) - 128, cr_.level(y, x) - 128);
   }
 
   /// After most of the picture did not fit the scene for a while.
@@ -317,7 +330,7 @@ class AdaptiveBackground final : public Background {
   ForegroundRegions regions_;
   std::vector<PixelRun> drawn_;  ///< into the mask, for the frame before
   std::vector<int> taken_;
-  cv::Mat mask_;
+  cv::Mat mask_, covered_;
 
   int scaled(int threshold) const { return std::clamp(static_cast<int>(std::lround(threshold / options_.sensitivity)), 1, 64); }
 };

@@ -24,6 +24,8 @@ constexpr double kCorrelation = 0.8;     // squared: how much of a textured cell
 constexpr int kFewest = 8;               // pixels of a cell to judge it by
 constexpr int kEdge = 100;               // 1/1024 of the light: how much deeper than its neighbour a shadow's pixel may be
 constexpr double kColour = 6;            // levels of chroma
+constexpr double kColourful = 8;         // levels of chroma left in a shadow, from which on a pixel is judged by them alone
+constexpr double kPixelColour = 4;       // levels of chroma, of one pixel
 
 }  // namespace
 
@@ -135,6 +137,17 @@ bool ShadowFinder::is_within_body(std::size_t index) const {
   std::size_t down = index;
   while (labels_[down] == Label::shadow) down += stride_;
   return labels_[down] == Label::thing;
+}
+
+/// Chroma has half the resolution, so that at the shadow's edge it may be anything between the shadow's and the lit ground's.
+bool ShadowFinder::is_coloured_shadow(int frame, int scene, int frame_cb, int frame_cr, int scene_cb, int scene_cr) {
+  if (frame >= kShallowest * scene || frame <= kDeepest * scene) return false;
+  const double ratio = static_cast<double>(frame) / scene;
+  const double strength = std::hypot(scene_cb, scene_cr);
+  if (ratio * strength < kColourful) return false;
+  const double along = (frame_cb * scene_cb + frame_cr * scene_cr) / strength;
+  const double across = (frame_cr * scene_cb - frame_cb * scene_cr) / strength;
+  return std::abs(across) < kPixelColour && along > ratio * strength - kPixelColour && along < strength + kPixelColour;
 }
 
 void ShadowFinder::judge(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene) {

@@ -39,6 +39,10 @@ class ShadowFinder {
     return 1024 * frame >= scene * lightest_[cell_at(row, column)] && frame < scene;
   }
 
+  /// The same by the pixel's own colour, where the ground has enough of it: a shadow leaves it in proportion to the light. `cb` and
+  /// `cr` are frame and scene, less grey, in levels.
+  static bool is_coloured_shadow(int frame, int scene, int frame_cb, int frame_cr, int scene_cb, int scene_cr);
+
   static constexpr int kCell = 4;
 
  private:

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "marey/detect/runs.h"
+
 namespace marey {
 namespace {
 
@@ -72,7 +74,23 @@ std::vector<PixelRun> runs_within(std::span<const PixelRun> runs, const Box& box
   return result;
 }
 
-Detection detection_of(const Box& box, std::span<const PixelRun> runs, double score, cv::Size image) {
+/// The largest part of the pixels in `runs` that the person covers, as the foreground says.
+std::vector<Vector<2>> outline_within(std::span<const PixelRun> runs, const Foreground& foreground) {
+  if (foreground.covered.empty()) return outline_of(largest_part(runs));
+  std::vector<PixelRun> covered;
+  for (const PixelRun& run : runs) {
+    const std::size_t before = covered.size();
+    append_runs(foreground.covered.ptr<std::uint8_t>(run.row) + run.begin, run.row, run.end - run.begin, covered);
+    for (std::size_t i = before; i < covered.size(); ++i) {
+      covered[i].begin += run.begin;
+      covered[i].end += run.begin;
+    }
+  }
+  return outline_of(largest_part(covered));
+}
+
+Detection detection_of(const Box& box, std::span<const PixelRun> runs, double score, const Foreground& foreground) {
+  const cv::Size image = foreground.mask.size();
   Detection detection;
   detection.box = clipped(box, image);
   const double across = 1 + 0.08 * box.width, down = 1 + 0.04 * box.height;
@@ -87,7 +105,7 @@ Detection detection_of(const Box& box, std::span<const PixelRun> runs, double sc
     sum += length * Vector<2>((run.begin + run.end - 1) / 2.0, run.row);
   }
   detection.centre = detection.area > 0 ? Vector<2>(sum / detection.area) : detection.box.centre();
-  detection.outline = outline_of(part);
+  detection.outline = outline_within(part, foreground);
   return detection;
 }
 
@@ -120,10 +138,10 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   const auto clusters = clusters_of(find_regions(result.foreground.mask, {.min_area = options_.min_area}), expected);
   for (const Cluster& cluster : clusters) {
     if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
-      result.detections.push_back(whole(cluster, image));
+      result.detections.push_back(whole(cluster, result.foreground));
       if (sizes_.known()) hidden_.note(cluster.body, result.foreground.mask);
     } else {
-      explain(cluster, expected, result.foreground.mask, result.detections);
+      explain(cluster, expected, result.foreground, result.detections);
     }
   }
   learn(clusters, image);
@@ -213,20 +231,23 @@ bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double 
          box.width > kNarrowest * size->width && box.width < widest * size->width && cluster.area > kLeastFilled * box.area();
 }
 
-Detection PeopleDetector::whole(const Cluster& cluster, cv::Size image) const {
+Detection PeopleDetector::whole(const Cluster& cluster, const Foreground& foreground) const {
   const auto foot = cluster.body.foot();
   const auto size = sizes_.at(foot.x(), foot.y());
   const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
-  if (!size) return detection_of(cluster.body, cluster.runs, 0.5 * filled, image);
+  if (!size) return detection_of(cluster.body, cluster.runs, 0.5 * filled, foreground);
   const double off = (cluster.body.height / size->height - 1) / 0.3;
   Box box = cluster.body;
   box.width = (box.width + size->width) / 2;
   box.left += (cluster.body.width - box.width) / 2;
-  return detection_of(box, cluster.runs, filled * (1 - 0.3 * off * off), image);
+  Detection detection = detection_of(box, cluster.runs, filled * (1 - 0.3 * off * off), foreground);
+  detection.outline = outline_within(cluster.runs, foreground);  // with the arms and legs that stick out of the box
+  return detection;
 }
 
-void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, const cv::Mat& mask,
+void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground,
                              std::vector<Detection>& found) {
+  const cv::Mat& mask = foreground.mask;
   const cv::Size image = mask.size();
   std::vector<Box> known;
   known.reserve(cluster.expected.size());
@@ -238,7 +259,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
     if (one.seen > kBelieved) hidden_.note(one.box, mask);
   }
   if (placed.size() == 1 && looks_whole(cluster, image, kWidest) && iou(placed[0].box, cluster.body) > kSameBody) {
-    found.push_back(whole(cluster, image));
+    found.push_back(whole(cluster, foreground));
     return;
   }
   if (placed.empty()) ++counts_.misfits;
@@ -248,7 +269,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
     counts_.shared += static_cast<std::int64_t>(placed.size());
   }
   for (const Placed& one : placed) {
-    Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.1, 1.0), image);
+    Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.1, 1.0), foreground);
     if (placed.size() > 1) detection.group = groups_ - 1;
     found.push_back(std::move(detection));
   }

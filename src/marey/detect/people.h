@@ -53,8 +53,9 @@ class PeopleDetector final : public Detector {
   std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
   void learn(const std::vector<Cluster>& clusters, cv::Size image);
   bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
-  Detection whole(const Cluster& cluster, cv::Size image) const;
-  void explain(const Cluster& cluster, std::span<const Expected> expected, const cv::Mat& mask, std::vector<Detection>& found);
+  Detection whole(const Cluster& cluster, const Foreground& foreground) const;
+  void explain(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground,
+               std::vector<Detection>& found);
 
   std::unique_ptr<Background> background_;
   PeopleOptions options_;

@@ -160,6 +160,19 @@ std::vector<Region> find_regions(const cv::Mat& mask, const RegionOptions& optio
   return regions;
 }
 
+std::vector<PixelRun> largest_part(std::span<const PixelRun> runs) {
+  Forest forest(runs.size());
+  join_neighbours(runs, 1, forest);
+  std::vector<int> area(runs.size(), 0);
+  for (std::size_t i = 0; i < runs.size(); ++i) area[forest.root(static_cast<int>(i))] += runs[i].end - runs[i].begin;
+  const auto largest = std::max_element(area.begin(), area.end()) - area.begin();
+  std::vector<PixelRun> part;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (forest.root(static_cast<int>(i)) == largest) part.push_back(runs[i]);
+  }
+  return part;
+}
+
 std::vector<Vector<2>> outline_of(std::span<const PixelRun> runs) {
   if (runs.empty()) return {};
   struct Step {

@@ -40,6 +40,10 @@ std::vector<Region> find_regions(const cv::Mat& mask, const RegionOptions& optio
 /// A region of the pixels in `runs`, which are in order and may come from several regions that were joined.
 Region region_of(std::vector<PixelRun> runs);
 
+/// Of the pixels in `runs`, which are in order, the part with the largest area whose pixels touch one another, by an edge or a
+/// corner; the first of several. Empty where `runs` is.
+std::vector<PixelRun> largest_part(std::span<const PixelRun> runs);
+
 /// The closed polygon round the pixels of a region, along their edges: corners lie half a pixel off the integers, each once,
 /// clockwise as seen on the screen, no three in a line. Of a region in several parts, the part that holds the first run.
 /// Without holes, its area by the shoelace formula is the number of its pixels.

@@ -277,9 +277,9 @@ class OutlineFollower::Implementation {
 
   /// The tracker says that `seen` is this target: where the outline is somewhere else, it begins anew there.
   void put_right(FollowedTarget& target, const Detection& seen) {
-    if (iou(target.shape.spline().box(), seen.box) >= kSameBox && target.state != Outline::State::held) return;
     const auto spline = fit_spline(seen.outline, fit_options(options_));
     if (!spline || iou(spline->box(), seen.box) < kSameBox) return;
+    if (!(iou(target.shape.spline().box(), seen.box) >= kSameBox && target.state != Outline::State::held)) 
     target.motion = MotionFilter(spline->centroid(), target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
     target.shape = ShapeFilter(*spline, kSilhouetteNoise);
     target.state = Outline::State::seen;
