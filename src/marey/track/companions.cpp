@@ -1,6 +1,7 @@
 #include "marey/track/companions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -13,10 +14,14 @@ constexpr std::size_t kMostMembers = 600;  // 180,000 pairs
 constexpr std::size_t kShare = 4;          // frames in which every pair is learned from once
 constexpr int kMemory = 1000;              // samples that a mean is taken over
 constexpr int kEnough = 8;                 // samples from which a spread is believed
+constexpr int kEnoughToName = 30;          // samples from which it is told who somebody is
 constexpr double kOpening = 0.02;          // m, of spread that a distance may yet show, fading with the samples
 constexpr double kLeastSpread = 0.001;     // m
 constexpr double kSteady = 0.05;           // m; markers whose distance varies by more say nothing of each other
-constexpr int kFewest = 3;                 // companions
+constexpr std::size_t kFewest = 3;         // companions
+constexpr std::size_t kRanked = 14;        // companions that are asked who somebody is; those that are seen count
+constexpr std::size_t kAsked = 9;
+constexpr double kDoubt = 0.004;  // m, added to every spread: poses that were not seen yet
 
 }  // namespace
 
@@ -50,6 +55,47 @@ void Companions::end_frame() {
     if (member.was_seen && !member.seen) keep_places(member);
   }
   for (std::size_t row = frames_ % kShare; row < members_.size(); row += kShare) learn(static_cast<int>(row));
+  if (!members_.empty()) rank(static_cast<int>(frames_ % members_.size()));
+}
+
+void Companions::rank(int number) {
+  std::vector<int>& list = members_[static_cast<std::size_t>(number)].steadiest;
+  list.clear();
+  for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
+    if (i == number) continue;
+    const Distance& distance = between(number, i);
+    if (distance.count >= kEnoughToName && distance.variance < kSteady * kSteady) list.push_back(i);
+  }
+  const std::size_t kept = std::min(kRanked, list.size());
+  std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(kept), list.end(), [&](int a, int b) {
+    const float p = between(number, a).variance, q = between(number, b).variance;
+    return p != q ? p < q : a < b;
+  });
+  list.resize(kept);
+}
+
+std::optional<double> Companions::misfit(int number, const Vector<3>& place) const {
+  std::array<double, kAsked> off;
+  std::size_t asked = 0;
+  for (const int i : members_[static_cast<std::size_t>(number)].steadiest) {
+    const Member& other = members_[static_cast<std::size_t>(i)];
+    if (!other.seen) continue;
+    const Distance& distance = between(number, i);
+    const double change = (place - other.position).norm() - distance.mean;
+    off[asked++] = change * change / (distance.variance + kDoubt * kDoubt);
+    if (asked == kAsked) break;
+  }
+  if (asked < kFewest) return std::nullopt;
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(asked / 2);
+  std::nth_element(off.begin(), middle, off.begin() + static_cast<std::ptrdiff_t>(asked));
+  return *middle;
+}
+
+void Companions::disown(int number) {
+  Member& member = members_[static_cast<std::size_t>(number)];
+  member.seen = member.was_seen = false;
+  member.places.clear();
+  member.known.clear();
 }
 
 void Companions::learn(int row) {
@@ -80,7 +126,7 @@ std::optional<Companions::Place> Companions::place_of(int number) const {
   Vector<3> from = Vector<3>::Zero(), to = Vector<3>::Zero();
   Matrix<3> moment = Matrix<3>::Zero();
   double total = 0, spread = 0;
-  int companions = 0;
+  std::size_t companions = 0;
   // Sums about the first companion's places, so that no digits are lost.
   Vector<3> from_origin = Vector<3>::Zero(), to_origin = Vector<3>::Zero();
   for (int i = 0; i < static_cast<int>(hidden.places.size()); ++i) {

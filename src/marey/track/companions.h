@@ -5,6 +5,8 @@
 // the rigid motion that takes those places to where they are now, each weighted by the fourth power of how steady its distance to
 // the hidden one has been, moves the hidden one too. A marker on the same bone thus outweighs the rest of the body, which only
 // settles what its own bone leaves open. Good for as long as the bone stays seen; after seconds of coasting no motion model is.
+// The same distances tell who somebody is: a place whose distances to a marker's steadiest companions are not what they always were
+// is not that marker's. The median over the companions decides, so that one of them who is mistaken himself does no harm.
 // Cost: a share of the pairs a frame for learning, and 50 operations a companion and one 3 × 3 decomposition for each hidden
 // marker. Reference: Arun, Huang, Blostein, "Least-squares fitting of two 3-D point sets", PAMI 1987.
 #pragma once
@@ -35,6 +37,13 @@ class Companions {
   /// it or of those that move with it.
   std::optional<Place> place_of(int number) const;
 
+  /// How badly a place in the frame at hand fits a marker: the median over its steadiest companions that are seen of the squared
+  /// change of distance, in variances; below 1 for the marker itself. Nothing where too few are seen or known well enough.
+  std::optional<double> misfit(int number, const Vector<3>& place) const;
+
+  /// What was thought to be this marker is not: the places kept of it are worth nothing.
+  void disown(int number);
+
  private:
   struct Distance {
     float mean = 0, variance = 0;  // m, m²
@@ -43,6 +52,7 @@ class Companions {
   struct Member {
     Vector<3> position = Vector<3>::Zero();
     bool seen = false, was_seen = false;
+    std::vector<int> steadiest;     // its companions, the steadiest distance first
     std::vector<Vector<3>> places;  // of all when it was last seen
     std::vector<char> known;        // which of them were seen then
   };
@@ -52,6 +62,7 @@ class Companions {
   }
   const Distance& between(int a, int b) const { return const_cast<Companions*>(this)->between(a, b); }
   void learn(int row);
+  void rank(int number);
   void keep_places(Member& member) const;
 
   std::vector<Member> members_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
+#include "marey/track/companions.h"
 #include "marey/track/roster_target.h"
 
 namespace marey {
@@ -22,8 +23,8 @@ class RosterAdoption {
       : options_(options), filter_options_(filter_options) {}
 
   /// Gives targets that are missed what they are thought to be seen as, and marks it in `claimed`, one entry a point.
-  void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
-                 RosterSight<F>& sight) {
+  void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed, RosterSight<F>& sight,
+                 const Companions& companions) {
     lost_.clear();
     free_.clear();
     for (int i = 0; i < std::ssize(targets); ++i) {
@@ -36,8 +37,8 @@ class RosterAdoption {
     }
     sight.count_unexplained(std::max<double>(0, static_cast<double>(free_.size()) - static_cast<double>(lost_.size())));
     if (lost_.empty()) return;
-    adopt_points(targets, seen, claimed, sight);
-    adopt_newcomers(targets);
+    adopt_points(targets, seen, claimed, sight, companions);
+    adopt_newcomers(targets, companions);
   }
 
  private:
@@ -47,23 +48,26 @@ class RosterAdoption {
     return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
   }
 
-  /// Whether a target that was lost can be at a place. Where companions tell of it, they are believed for a while.
-  bool may_be_at(const Target& target, const Vector<D>& place) const {
-    if (target.guided > 0 && target.unseen < kBelieved) {
-      return (place - target.filter.position()).norm() <= kGuidedReach * std::sqrt(target.guided) + target.width;
+  /// Whether a target that was lost can be at a place. Where enough of those that move with it are seen, their word counts.
+  bool may_be_at(const Target& target, const Vector<D>& place, const Companions& companions) const {
+    if constexpr (D == 3) {
+      if (target.member) {
+        if (const auto misfit = companions.misfit(*target.member, place)) return *misfit < kMostMisfit;
+      }
     }
+    if (target.guided > 0) return false;  // the search area has been looked through
     return (place - target.last_place).norm() <= options_.max_speed * target.unseen + target.width;
   }
 
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
-                    const RosterSight<F>& sight) {
+                    const RosterSight<F>& sight, const Companions& companions) {
     if (free_.empty() || std::ssize(lost_) * std::ssize(free_) > kMostLostPairs) return;
     pairs_.clear();
     for (int row = 0; row < std::ssize(lost_); ++row) {
       const Target& target = targets[lost_[row]];
       for (int column = 0; column < std::ssize(free_); ++column) {
         const Vector<D>& place = seen[free_[column]].value;
-        if (target.guided > 0 || !may_be_at(target, place) || !sight.alike(target, seen[free_[column]])) continue;
+        if (!may_be_at(target, place, companions) || !sight.alike(target, seen[free_[column]])) continue;
         const double way = way_to(target, place);
         if (!sight.believes_jump(way + target.width)) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way, kFar)});
@@ -90,7 +94,7 @@ class RosterAdoption {
   }
 
   /// A newcomer that has stayed is one of those who are missed.
-  void adopt_newcomers(std::span<Target> targets) {
+  void adopt_newcomers(std::span<Target> targets, const Companions& companions) {
     pairs_.clear();
     proven_.clear();
     for (int i = 0; i < std::ssize(targets); ++i) {
@@ -103,7 +107,7 @@ class RosterAdoption {
       if (target.observation != Target::kNone) continue;
       for (const int column : proven_) {
         const Target& newcomer = targets[column];
-        if (!may_be_at(target, newcomer.last_place)) continue;
+        if (!may_be_at(target, newcomer.last_place, companions)) continue;
         pairs_.push_back({row, column, 2 * kFar - std::min(way_to(target, newcomer.last_place), kFar)});
       }
     }
@@ -120,8 +124,7 @@ class RosterAdoption {
   }
 
   static constexpr double kGentleJump = 1;           // gates
-  static constexpr double kGuidedReach = 6;          // standard deviations of what companions say
-  static constexpr double kBelieved = 2;             // s
+  static constexpr double kMostMisfit = 4;           // variances
   static constexpr double kFar = 1e6;                // px
   static constexpr long kMostLostPairs = 1'000'000;  // glare: nobody is looked for in it
 

@@ -28,10 +28,12 @@ struct RosterTarget {
   double width;                     ///< of its marker
   Vector<F::dimension> last_place;  ///< where it was last seen
   double unseen = 0;                ///< s, since then
+  double seen = 0;                  ///< s, in which it was
   int observation = kNone;          ///< in this frame
   int covered_by = kNone;           ///< the observation that it is taken to be behind
   std::optional<int> member = {};   ///< its number among companions
   double guided = 0;                ///< while it is unseen: variance of where its companions say that it is; 0 where they do not
+  int doubts = 0;                   ///< frames on end in which companions said that what is followed is somebody else
   bool crowded = false;             ///< another target is within a marker's width
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established

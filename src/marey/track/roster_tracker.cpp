@@ -46,9 +46,16 @@ class RosterTracker final : public Tracker<F::dimension> {
     if (targets_.empty()) {
       start_roster(seen);
     } else {
-      claim(seen);
+      claimed_.assign(seen.size(), 0);
+      if (knows_companions()) {
+        claim(seen, [&](const Target& target) { return target.unseen < 1.5 * dt_; });
+        tell_companions(seen);
+        claim(seen, [&](const Target& target) { return target.observation == kNone; });
+      } else {
+        claim(seen, [](const Target&) { return true; });
+      }
       meet(seen);
-      adoption_.find_lost(targets_, seen, claimed_, sight_);
+      adoption_.find_lost(targets_, seen, claimed_, sight_, companions_);
       correct(seen);
       judge_newcomers();
       start_unclaimed(seen);
@@ -102,10 +109,9 @@ class RosterTracker final : public Tracker<F::dimension> {
   void learn_companions() {
     if constexpr (D == 3) {
       if (!options_.companions) return;
-      companions_.begin_frame();
       for (Target& target : targets_) {
         if (target.standing != Standing::established || target.observation == kNone) continue;
-        if (!target.member) target.member = companions_.enrol();
+        if (!target.member && target.seen > kProof) target.member = companions_.enrol();
         if (target.member) companions_.see(*target.member, target.last_place);
       }
       companions_.end_frame();
@@ -141,7 +147,43 @@ class RosterTracker final : public Tracker<F::dimension> {
                         .standing = standing});
   }
 
-  void claim(std::span<const Observation<D>> seen) {
+  bool knows_companions() const { return D == 3 && options_.companions; }
+
+  /// Who is followed without a break is known to the others of this frame; unless they find, frame after frame, that it is somebody
+  /// else: then it is lost, and who it is will be asked anew.
+  void tell_companions(std::span<const Observation<D>> seen) {
+    if constexpr (D == 3) {
+      companions_.begin_frame();
+      for (const Target& target : targets_) {
+        if (target.member && target.observation != kNone) companions_.see(*target.member, seen[target.observation].value);
+      }
+      for (Target& target : targets_) {
+        if (!target.member || target.observation == kNone) continue;
+        const auto misfit = companions_.misfit(*target.member, seen[target.observation].value);
+        target.doubts = misfit && *misfit > kForeign ? target.doubts + 1 : 0;
+        if (target.doubts < kMostDoubts) continue;
+        target.doubts = 0;
+        claimed_[target.observation] = 0;
+        target.observation = kNone;
+        target.guided = 0;
+        companions_.disown(*target.member);
+      }
+    }
+  }
+
+  /// Whether companions have nothing against it that a target that was lost is at a place.
+  bool companions_agree(const Target& target, const Vector<D>& place) const {
+    if constexpr (D == 3) {
+      if (!target.member || target.unseen < 1.5 * dt_) return true;
+      const auto misfit = companions_.misfit(*target.member, place);
+      return !misfit || *misfit < kForeign;
+    }
+    return true;
+  }
+
+  /// Gives the points that nobody has claimed to those of the targets that are `wanted`.
+  template <typename Wanted>
+  void claim(std::span<const Observation<D>> seen, Wanted&& wanted) {
     points_.clear();
     for (const Observation<D>& point : seen) points_.push_back(point.value);
     const bool few = targets_.size() * seen.size() <= kFewPairs;
@@ -149,11 +191,13 @@ class RosterTracker final : public Tracker<F::dimension> {
     pairs_.clear();
     const Spread spread = spread_of(seen);
     for (int row = 0; row < std::ssize(targets_); ++row) {
+      if (!wanted(targets_[row])) continue;
       const double reach = reach_of(targets_[row], spread);
       const auto consider = [&](int column) {
         if ((points_[column] - targets_[row].filter.position()).squaredNorm() > reach * reach) return;
+        if (claimed_[column]) return;
         const double worth = gain(targets_[row], seen[column]);
-        if (worth > 0) pairs_.push_back({row, column, worth});
+        if (worth > 0 && companions_agree(targets_[row], points_[column])) pairs_.push_back({row, column, worth});
       };
       if (few) {
         for (int column = 0; column < std::ssize(seen); ++column) consider(column);
@@ -161,7 +205,6 @@ class RosterTracker final : public Tracker<F::dimension> {
         grid_.for_each_near(targets_[row].filter.position(), search_radius(targets_[row]), consider);
       }
     }
-    claimed_.assign(seen.size(), 0);
     const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
     for (int row = 0; row < std::ssize(targets_); ++row) {
       if (columns[row] == GatedAssigner::nobody) continue;
@@ -272,6 +315,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (!target.crowded) target.width += kWidthMemory * (sight_.width_of(point) - target.width);
       target.last_place = point.value;
       target.unseen = 0;
+      target.seen += dt_;
       sight_.widen_scene(point.value);
     }
     for (Target& target : targets_) {
@@ -290,10 +334,12 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (target.standing == Standing::established) continue;
       if (target.observation == kNone && target.covered_by == kNone) target.score -= kMissPenalty;
       const bool proven = target.score >= options_.confirm;
-      if (proven && (target.standing == Standing::provisional || all_there)) target.standing = Standing::established;
+      const bool stayed = knows_companions() && target.seen > kProof;  // and nobody who is missed can be it
+      if (proven && (target.standing == Standing::provisional || all_there || stayed)) target.standing = Standing::established;
     }
-    std::erase_if(targets_, [](const Target& target) {
+    std::erase_if(targets_, [&](const Target& target) {
       const bool missed = target.observation == kNone && target.covered_by == kNone;
+      if (knows_companions() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
       return (target.standing == Standing::newcomer && missed) ||
              (target.standing == Standing::provisional && target.score < -3 * kMissPenalty);
     });
@@ -332,6 +378,9 @@ class RosterTracker final : public Tracker<F::dimension> {
   static double square(double value) { return value * value; }
 
   static constexpr double kCoast = 0.5;           // s that a lost target drifts on
+  static constexpr double kProof = 1;             // s: who was seen for less and is gone was never there
+  static constexpr double kForeign = 9;           // variances of its distances from which companions find a target changed
+  static constexpr int kMostDoubts = 8;           // frames that they do
   static constexpr double kRoom = 24;             // twice the log-likelihood that a pair may cost
   static constexpr double kWidestGate = 5;        // standard deviations
   static constexpr double kCrowded = 1.4;         // marker widths between two that disturb each other's centres
