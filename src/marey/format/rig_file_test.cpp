@@ -129,6 +129,14 @@ TEST(RigFile, TellsAllProblemsAtOnceEachWithItsLine) {
       "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px");
 }
 
+TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {
+  const Rig rig =
+      parse_rig("[[camera]]\nname = \"a\"\nfocal = [900, 900]\nprincipal = [320, 240]\n[[camera]]\nname = \"b\"\n", "rig.toml");
+  EXPECT_TRUE(rig.cameras[0].lens);
+  EXPECT_FALSE(rig.cameras[0].size);
+  EXPECT_FALSE(rig.cameras[1].lens);
+}
+
 TEST(RigFile, RefusesWhatIsWrong) {
   const auto told = [](const std::string& from, const std::string& to, const std::string& expected) {
     const std::string problems = problems_of(replaced(kExample, from, to));
@@ -137,7 +145,6 @@ TEST(RigFile, RefusesWhatIsWrong) {
   told("[640, 480]", "[640, 0]", ":16: camera \"far\": size is [640, 0]; both must be positive whole numbers of px");
   told("[640, 480]", "[640.5, 480]", "positive whole numbers");
   told("[640, 480]", "[640]", "size must be [width, height] in px");
-  told("size = [640, 480]", "", ":14: camera \"far\": its size is missing");
   told("[0, 0.001, 1]", "[0, 0, 0]", "ground_from_image is singular");
   told("[0, 0.001, 1]", "[0, 1]", "three rows of three");
   told("[0, 0.001, 1]", "[0, nan, 1]", "finite");
