@@ -1,0 +1,175 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/calibrate/wand.h"
+#include "marey/core/error.h"
+#include "marey/format/observations.h"
+#include "marey/format/rig_file.h"
+#include "marey/pipeline/camera_blobs.h"
+
+#include "calibrate_commands.h"
+#include "progress_bar.h"
+#include "rig_inputs.h"
+
+namespace marey::cli {
+namespace {
+
+struct CalibrateWand {
+  RigInputs inputs;
+  std::string wand, distance, out;
+  std::string lens = "auto";
+  MarkerOptions markers;
+  WandOptions options;
+  bool in_step = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+WandShape wand_of(const std::string& text) {
+  WandShape wand;
+  if (text == "led") return wand;
+  wand.distances = numbers_in(text, "--wand", "the markers' distances from the first in m, as 0,0.12,0.30, or led");
+  if (wand.distances.size() >= 2) return wand;
+  throw Error("--wand {}: a wand has two or three markers; a single light is \"led\"", text);
+}
+
+std::optional<KnownDistance> distance_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto comma = text.find(','), equal = text.find('=');
+  if (comma == std::string::npos || equal == std::string::npos || equal < comma) {
+    throw Error("--distance {}: write CAM1,CAM2=METRES, two cameras' names and how far they stand apart", text);
+  }
+  const double metres = numbers_in(text.substr(equal + 1), "--distance", "CAM1,CAM2=METRES").front();
+  return KnownDistance{text.substr(0, comma), text.substr(comma + 1, equal - comma - 1), metres};
+}
+
+nlohmann::json as_json(const FitQuality& fit) {
+  return {{"mean_px", fit.mean_px}, {"rms_px", fit.rms_px}, {"inliers", fit.inliers}, {"observations", fit.observations}};
+}
+
+nlohmann::json as_json(const WandResult& result) {
+  const RigReport& report = result.report;
+  nlohmann::json json = {{"all", as_json(report.all)}, {"cameras", nlohmann::json::object()}};
+  json["all"]["noise_px"] = report.noise_px;
+  for (std::size_t c = 0; c < report.cameras.size(); ++c) {
+    const CameraReport& camera = report.cameras[c];
+    nlohmann::json& entry = json["cameras"][camera.name] = as_json(camera.fit);
+    entry["coverage"] = camera.coverage;
+    entry["world_error_mm"] = camera.world_error_mm;
+    entry["offset_s"] = result.rig.cameras[c].offset_s;
+    entry["deviation"] = {{"centre_mm", 1000 * camera.deviation.centre.norm()},
+                          {"rotation_rad", camera.deviation.rotation.norm()},
+                          {"focal", camera.deviation.focal}};
+  }
+  json["volume"] = {{"median_mm", report.volume.median_mm},
+                    {"worst_tenth_mm", report.volume.worst_tenth_mm},
+                    {"seen_by_two", report.volume.seen_by_two},
+                    {"seen_by_three", report.volume.seen_by_three}};
+  if (report.held_out) {
+    json["held_out"] = as_json(report.held_out->fit);
+    json["held_out"]["frames"] = report.held_out->frames;
+    json["held_out"]["noise_px"] = report.held_out->noise_px;
+    json["held_out"]["length_mean_mm"] = report.held_out->length_mean_mm;
+    json["held_out"]["length_rms_mm"] = report.held_out->length_rms_mm;
+  }
+  json["grade"] = report.grade;
+  json["meaning"] = report.meaning;
+  json["notes"] = result.notes;
+  return json;
+}
+
+void print_table(const WandResult& result) {
+  const RigReport& report = result.report;
+  fmt::print("{:<16} {:>8} {:>8} {:>9} {:>9} {:>9} {:>10} {:>10}\n", "camera", "mean px", "rms px", "inliers", "of", "coverage",
+             "error mm", "offset ms");
+  const auto row = [](const std::string& name, const FitQuality& fit) {
+    fmt::print("{:<16} {:>8.3f} {:>8.3f} {:>9} {:>9}", name, fit.mean_px, fit.rms_px, fit.inliers, fit.observations);
+  };
+  for (std::size_t c = 0; c < report.cameras.size(); ++c) {
+    const CameraReport& camera = report.cameras[c];
+    row(camera.name, camera.fit);
+    fmt::print(" {:>7.0f} % {:>10.3f} {:>10.3f}\n", 100 * camera.coverage, camera.world_error_mm,
+               1000 * result.rig.cameras[c].offset_s);
+  }
+  row("all", report.all);
+  fmt::print("\n");
+  if (report.held_out) {
+    fmt::print("held out: {} places of the wand, {:.3f} px rms; its length {:+.2f} mm in the mean, {:.2f} mm rms\n",
+               report.held_out->frames, report.held_out->fit.rms_px, report.held_out->length_mean_mm,
+               report.held_out->length_rms_mm);
+  }
+  fmt::print("volume: a marker's place is known to {:.2f} mm (median), {:.2f} mm (worst tenth); three cameras see {:.0f} % of it\n",
+             report.volume.median_mm, report.volume.worst_tenth_mm, 100 * report.volume.seen_by_three);
+  fmt::print("grade: {} ({})\n", report.grade, report.meaning);
+  for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
+}
+
+WandInput read(const CalibrateWand& command, bool& timed, ProgressBar& bar) {
+  WandInput input;
+  input.wand = wand_of(command.wand);
+  input.rig = rig_of(command.inputs);
+  CameraBlobs blobs;
+  if (!command.inputs.observations.empty()) {
+    blobs = read_blobs(command.inputs.observations, input.rig);
+  } else {
+    blobs = find_blobs(input.rig, command.markers, [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
+  }
+  for (const std::string& sentence : blobs.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  timed = blobs.timed;
+  input.seen = std::move(blobs.seen);
+  return input;
+}
+
+void run(const CalibrateWand& command) {
+  WandOptions options = command.options;
+  options.distance = distance_of(command.distance);
+  options.lens = command.lens == "fixed" ? LensUse::fixed : command.lens == "refined" ? LensUse::refined : LensUse::automatic;
+  WandResult result;
+  {
+    ProgressBar bar(command.quiet);
+    bool timed = true;
+    const WandInput input = read(command, timed, bar);
+    options.find_offsets = timed && !command.in_step;
+    std::int64_t step = 0;
+    options.step = [&](std::string_view what) { bar.show(what, step++, std::nullopt); };
+    result = calibrate_wand(input, options);
+  }
+  write_rig(result.rig, command.out);
+  if (command.json) {
+    fmt::print("{}\n", as_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else if (!command.quiet) {
+    print_table(result);
+    fmt::print("rig: {}\n", command.out);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_wand(CLI::App& calibrate) {
+  auto options = std::make_shared<CalibrateWand>();
+  CLI::App* command = calibrate.add_subcommand("wand", "Where the cameras stand, from a wand or a light waved before them");
+  add_rig_inputs(*command, options->inputs);
+  command->add_option("--wand", options->wand, "the markers' distances from the first, m, as 0,0.12,0.30; or led: a single light")
+      ->required();
+  command->add_option("--distance", options->distance,
+                      "CAM1,CAM2=METRES: how far two cameras stand apart, for a single light's scale");
+  command->add_option("-o,--out", options->out, "the rig file that is written")->required();
+  command->add_option("--lens", options->lens, "auto: refined where that explains more, estimated where not given; fixed; refined")
+      ->check(CLI::IsMember({"auto", "fixed", "refined"}))
+      ->capture_default_str();
+  command->add_flag("--in-step", options->in_step, "the cameras' clocks are right: look for no time offsets");
+  command->add_option("--seed", options->options.seed, "of the random draws")->capture_default_str();
+  command->add_flag("--json", options->json, "print JSON instead of a table");
+  command->add_flag("-q,--quiet", options->quiet, "no progress and no table");
+  command->add_option("--threshold", options->markers.threshold,
+                      "grey level that a marker's pixels pass (default: from the picture's noise)");
+  command->add_flag("--dark", options->markers.dark, "markers are darker than what is around them");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace marey::cli

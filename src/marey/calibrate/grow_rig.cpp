@@ -1,0 +1,289 @@
+#include "marey/calibrate/grow_rig.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/ranges.h>
+
+#include "marey/calibrate/resection.h"
+#include "marey/calibrate/two_views.h"
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+constexpr std::size_t kLeastShared = 12;  // instants that two cameras have to share to begin
+constexpr std::size_t kMostPairs = 12;    // looked at before one is chosen
+constexpr double kGoodParallax = 0.15;    // rad, from which on more does not count
+constexpr double kLeastParallax = 0.01;   // rad
+constexpr double kProportionOff = 0.05;   // by which the middle marker's share of the length may differ from the wand's
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+class Grower {
+ public:
+  Grower(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed)
+      : at_(cameras, wand, table), markers_(wand.markers()), seed_(seed) {}
+
+  Growth run() {
+    begin();
+    while (standing() < at_.cameras()) add_next();
+    Growth growth;
+    growth.fit = adjust_all(growth.bundle, 3);
+    return growth;
+  }
+
+ private:
+  struct Start {
+    std::size_t a = 0, b = 0;
+    std::vector<std::size_t> instants;
+    TwoViews views = {};
+    double score = 0;
+  };
+
+  std::size_t standing() const {
+    return static_cast<std::size_t>(
+        std::count_if(at_.poses.begin(), at_.poses.end(), [](const auto& pose) { return pose.has_value(); }));
+  }
+
+  std::optional<Start> choose();
+  bool relate_pair(Start& pair);
+  void begin();
+  double metres_per_baseline(const Start& start);
+  void require_proportions(const std::vector<double>& shares) const;
+  void add_next();
+  bool set_camera(std::size_t c);
+  BundleResult adjust_all(Bundle& bundle, int rounds);
+  std::vector<int> fill(Bundle& bundle) const;
+
+  void blame(std::string cause) {
+    if (cause_.empty()) cause_ = std::move(cause);
+  }
+
+  WandPlacement at_;
+  std::size_t markers_;
+  std::uint64_t seed_;
+  std::string cause_;  // why the first of the pairs that failed did
+};
+
+std::optional<Grower::Start> Grower::choose() {
+  std::vector<Start> pairs;
+  for (std::size_t a = 0; a < at_.cameras(); ++a) {
+    for (std::size_t b = a + 1; b < at_.cameras(); ++b) {
+      Start pair{a, b, {}};
+      for (std::size_t i = 0; i < at_.instants(); ++i) {
+        if (at_.sees(i, a) && at_.sees(i, b)) pair.instants.push_back(i);
+      }
+      if (pair.instants.size() >= kLeastShared) pairs.push_back(std::move(pair));
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Start& x, const Start& y) { return x.instants.size() > y.instants.size(); });
+  if (pairs.size() > kMostPairs) pairs.resize(kMostPairs);
+  std::optional<Start> best;
+  for (Start& pair : pairs) {
+    if (relate_pair(pair) && (!best || pair.score > best->score)) best = std::move(pair);
+  }
+  return best;
+}
+
+bool Grower::relate_pair(Start& pair) {
+  std::vector<WandPair> sights;
+  for (const std::size_t i : pair.instants) sights.push_back({at_.bearings(i, pair.a), at_.bearings(i, pair.b)});
+  const auto views = relate(sights, {markers_, at_.wand().reversible(), at_.sigma(pair.a), at_.sigma(pair.b), seed_});
+  const std::string &a = at_.camera(pair.a).name, &b = at_.camera(pair.b).name;
+  if (!views || views->share < 0.5) {
+    blame(
+        fmt::format("what cameras \"{}\" and \"{}\" see at the same time does not fit together{}: are their lenses right, and were "
+                    "they started together?",
+                    a, b, views ? fmt::format(" (only {:.0f} % of {} views do)", 100 * views->share, sights.size()) : ""));
+    return false;
+  }
+  if (views->one_place || views->parallax < kLeastParallax) {
+    blame(
+        fmt::format("cameras \"{}\" and \"{}\" stand in one place (or are the same recording): they see everything under the same "
+                    "directions, and no depth follows; move them apart",
+                    a, b));
+    return false;
+  }
+  if (views->plane) {
+    blame(
+        fmt::format("the wand was moved in a plane as cameras \"{}\" and \"{}\" saw it: move it through the whole volume, up and "
+                    "down, near and far, and turn it",
+                    a, b));
+    return false;
+  }
+  pair.views = *views;
+  pair.score = views->share * static_cast<double>(pair.instants.size()) * std::min(1.0, views->parallax / kGoodParallax);
+  return true;
+}
+
+void Grower::begin() {
+  const auto start = choose();
+  if (!start)
+    throw Error("{}", cause_.empty() ? "no two cameras see the wand together often enough to begin: wave it longer" : cause_);
+  at_.poses[start->a] = Rigid3{};
+  at_.poses[start->b] = start->views.b_from_a;
+  if (markers_ > 1) at_.poses[start->b]->translation *= metres_per_baseline(*start);
+  for (std::size_t k = 0; k < start->instants.size(); ++k) {
+    if (start->views.inlier[k]) at_.place(start->instants[k]);
+  }
+  Bundle bundle;
+  adjust_all(bundle, 2);
+}
+
+double Grower::metres_per_baseline(const Start& start) {
+  std::vector<double> lengths, shares;
+  for (std::size_t k = 0; k < start.instants.size(); ++k) {
+    const std::size_t i = start.instants[k];
+    const auto places = start.views.inlier[k] ? at_.markers(i) : std::nullopt;
+    if (!places) continue;
+    lengths.push_back(((*places)[markers_ - 1] - (*places)[0]).norm());
+    if (markers_ == 3) shares.push_back(((*places)[1] - (*places)[0]).norm() / lengths.back());
+  }
+  if (lengths.size() < kLeastShared / 2) {
+    throw Error("{}", "too few views of the wand fit together: wave it longer, where the cameras see it");
+  }
+  require_proportions(shares);
+  return at_.wand().length() / median(lengths);
+}
+
+void Grower::require_proportions(const std::vector<double>& shares) const {
+  if (shares.empty() || at_.wand().reversible()) return;
+  const double seen = median(shares), said = at_.wand().distances[1] / at_.wand().distances[2];
+  if (std::abs(seen - said) <= kProportionOff) return;
+  throw Error(
+      "the wand's middle marker lies at {:.0f} % of its length by what the cameras see, and at {:.0f} % by --wand: give the "
+      "markers' distances as they are on this wand",
+      100 * seen, 100 * said);
+}
+
+/// The camera not yet standing that sees most of what is placed, set by it.
+void Grower::add_next() {
+  std::vector<std::pair<std::size_t, std::size_t>> candidates;  // how many, camera
+  for (std::size_t c = 0; c < at_.cameras(); ++c) {
+    if (at_.poses[c]) continue;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < at_.instants(); ++i) count += at_.bodies[i] && at_.sees(i, c) ? 1 : 0;
+    candidates.emplace_back(count, c);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [count, c] : candidates) {
+    if (!set_camera(c)) continue;
+    at_.place_all();
+    Bundle bundle;
+    adjust_all(bundle, 1);
+    return;
+  }
+  const auto& [count, c] = candidates.front();
+  throw Error(
+      "camera \"{}\" cannot be set beside the others: {} of the wand's places that the others fix are seen by it{}; wave the "
+      "wand where it and another camera both see it, and check its lens and that it was started with the others",
+      at_.camera(c).name, count, count < kLeastShared ? "" : ", and they do not fit together");
+}
+
+bool Grower::set_camera(std::size_t c) {
+  std::vector<SeenWand> wands;
+  std::vector<std::size_t> instants;
+  for (std::size_t i = 0; i < at_.instants(); ++i) {
+    if (!at_.bodies[i] || !at_.sees(i, c)) continue;
+    SeenWand wand{{}, at_.bearings(i, c)};
+    for (std::size_t m = 0; m < markers_; ++m) wand.world[m] = at_.marker_at(*at_.bodies[i], m);
+    wands.push_back(wand);
+    instants.push_back(i);
+  }
+  const auto found = resect(wands, {markers_, at_.wand().reversible(), at_.sigma(c), seed_});
+  if (!found || 2 * found->inliers < wands.size() || found->inliers < kLeastShared / 2) return false;
+  at_.poses[c] = found->camera_from_world;
+  for (std::size_t k = 0; k < instants.size(); ++k) at_.turned[instants[k]][c] = found->turned[k];
+  return true;
+}
+
+/// What stands and is placed, as a bundle; gives each camera's place in it, -1 for none.
+std::vector<int> Grower::fill(Bundle& bundle) const {
+  std::vector<int> place_in_bundle(at_.cameras(), -1);
+  const bool lens_shows = markers_ > 1 || standing() > 2;
+  bundle.wand = at_.wand().distances;
+  for (std::size_t c = 0; c < at_.cameras(); ++c) {
+    if (!at_.poses[c]) continue;
+    place_in_bundle[c] = static_cast<int>(bundle.cameras.size());
+    BundleCamera camera{at_.camera(c).lens, *at_.poses[c], 0, lens_shows ? at_.camera(c).freedom : LensFreedom{}};
+    camera.refine_pose = !bundle.cameras.empty();
+    bundle.cameras.push_back(camera);
+  }
+  for (std::size_t i = 0; i < at_.instants(); ++i) {
+    bundle.bodies.push_back(at_.bodies[i].value_or(Body(Vector<3>(Vector<3>::Zero()))));
+    for (std::size_t c = 0; at_.bodies[i] && c < at_.cameras(); ++c) {
+      for (std::size_t m = 0; at_.poses[c] && at_.sees(i, c) && m < markers_; ++m) {
+        bundle.observations.push_back({place_in_bundle[c], static_cast<int>(i), static_cast<int>(m), at_.pixel(i, c, m)});
+      }
+    }
+  }
+  return place_in_bundle;
+}
+
+/// Adjusts the cameras that stand and what is placed, and takes both over.
+BundleResult Grower::adjust_all(Bundle& bundle, int rounds) {
+  const std::vector<int> place_in_bundle = fill(bundle);
+  BundleOptions options;
+  options.noise_px = 0;
+  for (std::size_t c = 0; c < at_.cameras(); ++c) options.noise_px = std::max(options.noise_px, at_.camera(c).sigma_px / 2);
+  options.rounds = rounds;
+  options.tolerance = 1e-6;
+  options.deviations = false;
+  const BundleResult result = adjust(bundle, options);
+  for (std::size_t c = 0; c < at_.cameras(); ++c) {
+    if (place_in_bundle[c] < 0) continue;
+    const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(place_in_bundle[c])];
+    at_.poses[c] = camera.camera_from_world;
+    at_.set_lens(c, camera.lens);
+  }
+  for (std::size_t i = 0; i < at_.instants(); ++i) {
+    if (at_.bodies[i]) at_.bodies[i] = bundle.bodies[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+Growth grow_rig(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed) {
+  return Grower(cameras, wand, table, seed).run();
+}
+
+std::vector<std::vector<int>> shared_views(const WandTable& table, std::size_t cameras) {
+  std::vector<std::vector<int>> shared(cameras, std::vector<int>(cameras, 0));
+  for (const auto& row : table) {
+    for (std::size_t a = 0; a < cameras; ++a) {
+      for (std::size_t b = 0; b < cameras; ++b) shared[a][b] += row[a] && row[b] ? 1 : 0;
+    }
+  }
+  return shared;
+}
+
+void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int least) {
+  std::vector<char> reached(names.size(), 0);
+  std::vector<std::size_t> open = {0};
+  reached[0] = 1;
+  while (!open.empty()) {
+    const std::size_t a = open.back();
+    open.pop_back();
+    for (std::size_t b = 0; b < names.size(); ++b) {
+      if (reached[b] || shared[a][b] < least) continue;
+      reached[b] = 1;
+      open.push_back(b);
+    }
+  }
+  std::vector<std::string> here, there;
+  for (std::size_t c = 0; c < names.size(); ++c) (reached[c] ? here : there).push_back(names[c]);
+  if (there.empty()) return;
+  throw Error(
+      "cameras {} share no view with {} (fewer than {} moments at which both see the wand): wave it where cameras of both "
+      "groups see it, or calibrate the groups apart",
+      fmt::join(here, ", "), fmt::join(there, ", "), least);
+}
+
+}  // namespace marey

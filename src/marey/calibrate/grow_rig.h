@@ -1,0 +1,34 @@
+// From views of a wand to cameras that stand roughly right.
+//
+// Begins with the two cameras whose common views fix their relation best (many, and from different directions), and places what
+// they saw; then always the camera that sees most of what is placed is set by it, so that cameras without a common view are chained
+// by the others. The wand's length gives the scale. After each camera all is adjusted together.
+// Cost: a pair's RANSAC for the most promising pairs, then one resection and one small bundle a camera.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "marey/calibrate/bundle.h"
+#include "marey/calibrate/wand_placement.h"
+
+namespace marey {
+
+struct Growth {
+  Bundle bundle;  ///< body i is instant i; those not placed have no observations
+  BundleResult fit;
+};
+
+/// In the frame of the bundle's first camera; a single light's scale is arbitrary. `table` has all of the wand's markers, or
+/// nothing. Throws Error, with the cause and what to do, where cameras cannot be related: one place, a plane, a wand of other
+/// proportions.
+Growth grow_rig(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed);
+
+/// At how many instants two cameras both see the wand, by camera and camera.
+std::vector<std::vector<int>> shared_views(const WandTable& table, std::size_t cameras);
+
+/// Refuses cameras that share too few instants, one way or another, to become one rig.
+void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int least);
+
+}  // namespace marey

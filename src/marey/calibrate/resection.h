@@ -1,0 +1,38 @@
+// Where a camera stands that sees wands whose places are known: three points give up to four poses (P3P), drawn at random; the one
+// that explains most is kept (RANSAC). Reference: Gao, Hou, Tang & Cheng, "Complete solution classification for the
+// perspective-three-point problem", 2003 (OpenCV's solveP3P); Fischler & Bolles, "Random sample consensus", 1981.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/calibrate/wand_marks.h"
+#include "marey/geometry/rigid.h"
+
+namespace marey {
+
+/// A wand whose markers' places are known, and the bearings at which the camera sees them.
+struct SeenWand {
+  std::array<Vector<3>, WandShape::most> world, bearing;
+};
+
+struct ResectionOptions {
+  std::size_t markers = 1;
+  bool reversible = false;  ///< the order of the bearings is not known
+  double sigma = 1e-3;      ///< rad: noise of a bearing
+  std::uint64_t seed = 1;
+};
+
+struct Resection {
+  Rigid3 camera_from_world;
+  std::vector<char> inlier, turned;  ///< for each wand
+  std::size_t inliers = 0;
+};
+
+/// Nothing where fewer than four wands or points are given, or no pose explains so many.
+std::optional<Resection> resect(std::span<const SeenWand> wands, const ResectionOptions& options);
+
+}  // namespace marey

@@ -1,0 +1,214 @@
+#include "marey/calibrate/rig_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <fmt/core.h>
+
+#include "marey/calibrate/rays.h"
+
+namespace marey {
+namespace {
+
+constexpr int kColumns = 10, kRows = 8;  // parts of a picture whose coverage is counted
+constexpr double kMm = 1000;
+
+std::vector<Camera> cameras_of(const Bundle& bundle, const std::vector<cv::Size>& sizes) {
+  std::vector<Camera> cameras;
+  for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
+    cameras.emplace_back(bundle.cameras[c].lens, bundle.cameras[c].camera_from_world, sizes[c]);
+  }
+  return cameras;
+}
+
+/// Sums of 2-D distances.
+struct Sum {
+  double distance = 0, square = 0;
+  int inliers = 0, observations = 0;
+
+  void add(double error, bool inlier) {
+    ++observations;
+    if (!inlier) return;
+    ++inliers;
+    distance += error;
+    square += error * error;
+  }
+
+  FitQuality quality() const {
+    const double n = std::max(1, inliers);
+    return {distance / n, std::sqrt(square / n), inliers, observations};
+  }
+};
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Standard deviation of a point's place over all axes, m; nothing where fewer than two cameras see it.
+std::optional<double> point_deviation(const std::vector<Camera>& cameras, const Vector<3>& point, double noise_px, int& seeing) {
+  Matrix<3> information = Matrix<3>::Zero();
+  seeing = 0;
+  for (const Camera& camera : cameras) {
+    const auto seen = camera.project_with_jacobian(point);
+    if (!seen || !camera.in_picture(seen->pixel)) continue;
+    ++seeing;
+    information += seen->by_world.transpose() * seen->by_world;
+  }
+  if (seeing < 2) return std::nullopt;
+  return noise_px * std::sqrt(information.inverse().trace());
+}
+
+VolumeReport volume_of(const std::vector<Camera>& cameras, const std::vector<Vector<3>>& points, double noise_px) {
+  VolumeReport volume;
+  if (points.empty()) return volume;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const auto& point : points) values.push_back(point[axis]);
+    volume.low[axis] = quantile(values, 0.05);
+    volume.high[axis] = quantile(values, 0.95);
+  }
+  constexpr int steps = 9;
+  std::vector<double> deviations;
+  int two = 0, three = 0;
+  for (int x = 0; x < steps; ++x) {
+    for (int y = 0; y < steps; ++y) {
+      for (int z = 0; z < steps; ++z) {
+        const Vector<3> at = (Vector<3>(x, y, z) + Vector<3>::Constant(0.5)) / steps;
+        int seeing = 0;
+        const auto deviation = point_deviation(cameras, volume.low + at.cwiseProduct(volume.high - volume.low), noise_px, seeing);
+        if (deviation) deviations.push_back(*deviation * kMm);
+        two += seeing >= 2 ? 1 : 0;
+        three += seeing >= 3 ? 1 : 0;
+      }
+    }
+  }
+  constexpr double all = steps * steps * steps;
+  volume.median_mm = quantile(deviations, 0.5);
+  volume.worst_tenth_mm = quantile(deviations, 0.9);
+  volume.seen_by_two = two / all;
+  volume.seen_by_three = three / all;
+  return volume;
+}
+
+int part_of(const Vector<2>& pixel, cv::Size size) {
+  const int column = std::clamp(static_cast<int>((pixel.x() + 0.5) / size.width * kColumns), 0, kColumns - 1);
+  const int row = std::clamp(static_cast<int>((pixel.y() + 0.5) / size.height * kRows), 0, kRows - 1);
+  return row * kColumns + column;
+}
+
+/// Gauss-Newton on the reprojection of one point.
+std::optional<Vector<3>> refined_point(const std::vector<const Camera*>& cameras, const std::vector<Vector<2>>& pixels,
+                                       Vector<3> point) {
+  for (int i = 0; i < 5; ++i) {
+    Matrix<3> normal = Matrix<3>::Zero();
+    Vector<3> right = Vector<3>::Zero();
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      const auto seen = cameras[k]->project_with_jacobian(point);
+      if (!seen) return std::nullopt;
+      normal += seen->by_world.transpose() * seen->by_world;
+      right += seen->by_world.transpose() * (pixels[k] - seen->pixel);
+    }
+    point += normal.ldlt().solve(right);
+  }
+  return point;
+}
+
+}  // namespace
+
+RigReport report_on(const Bundle& bundle, const BundleResult& fit, const std::vector<std::string>& names,
+                    const std::vector<cv::Size>& sizes) {
+  const auto errors = errors_of(bundle);
+  std::vector<Sum> sums(bundle.cameras.size());
+  std::vector<double> world(bundle.cameras.size(), 0);
+  std::vector<std::set<int>> parts(bundle.cameras.size());
+  std::vector<Vector<3>> points;
+  Sum all;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const BundleObservation& seen = bundle.observations[i];
+    const auto c = static_cast<std::size_t>(seen.camera);
+    const double error = errors[i] ? errors[i]->norm() : 0;
+    sums[c].add(error, fit.inlier[i]);
+    all.add(error, fit.inlier[i]);
+    if (!fit.inlier[i]) continue;
+    const Vector<3> point = marker_position(bundle, seen);
+    points.push_back(point);
+    parts[c].insert(part_of(seen.pixel, sizes[c]));
+    world[c] += error * (bundle.cameras[c].camera_from_world * point).norm() / focal_of(bundle.cameras[c].lens).x();
+  }
+  RigReport report;
+  report.all = all.quality();
+  report.noise_px = fit.noise_px;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    CameraReport camera{names[c], sums[c].quality()};
+    camera.coverage = static_cast<double>(parts[c].size()) / (kColumns * kRows);
+    camera.world_error_mm = kMm * world[c] / std::max(1, camera.fit.inliers);
+    if (c < fit.deviations.size()) camera.deviation = fit.deviations[c];
+    report.cameras.push_back(camera);
+  }
+  report.volume = volume_of(cameras_of(bundle, sizes), points, fit.noise_px);
+  return report;
+}
+
+HeldOutReport judge_held_out(const Bundle& bundle, const std::vector<cv::Size>& sizes) {
+  const auto cameras = cameras_of(bundle, sizes);
+  std::map<std::pair<int, int>, std::vector<const BundleObservation*>> markers;  // by body and marker
+  for (const BundleObservation& seen : bundle.observations) markers[{seen.body, seen.marker}].push_back(&seen);
+  std::map<int, std::map<int, Vector<3>>> places;  // by body, marker
+  HeldOutReport report;
+  Sum sum;
+  int unknowns = 0;
+  for (const auto& [key, seen] : markers) {
+    std::vector<SightLine> lines;
+    std::vector<const Camera*> seeing;
+    std::vector<Vector<2>> pixels;
+    for (const BundleObservation* one : seen) {
+      const Camera& camera = cameras[static_cast<std::size_t>(one->camera)];
+      const Vector<2> pixel = one->pixel - one->velocity * bundle.cameras[static_cast<std::size_t>(one->camera)].offset_s;
+      const auto ray = camera.ray(pixel);
+      if (!ray) continue;
+      lines.push_back({*ray, 1 / focal_of(camera.lens()).x()});
+      seeing.push_back(&camera);
+      pixels.push_back(pixel);
+    }
+    const auto start = agreed_point(lines, 5);
+    if (!start) continue;
+    for (std::size_t k = lines.size(); k-- > 0;) {
+      if (angle_off(lines[k], *start) <= 5) continue;
+      seeing.erase(seeing.begin() + static_cast<std::ptrdiff_t>(k));
+      pixels.erase(pixels.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    const auto point = refined_point(seeing, pixels, *start);
+    if (!point) continue;
+    unknowns += 3;
+    places[key.first][key.second] = *point;
+    for (std::size_t k = 0; k < seeing.size(); ++k) {
+      const auto again = seeing[k]->project(*point);
+      if (again) sum.add((*again - pixels[k]).norm(), true);
+    }
+  }
+  report.frames = static_cast<int>(places.size());
+  report.fit = sum.quality();
+  report.noise_px = std::sqrt(sum.square / std::max(1, 2 * sum.inliers - unknowns));
+  double mean = 0, square = 0;
+  int lengths = 0;
+  const int last = static_cast<int>(bundle.wand.size()) - 1;
+  for (const auto& [body, at] : places) {
+    if (last < 1 || !at.contains(0) || !at.contains(last)) continue;
+    const double off = kMm * ((at.at(last) - at.at(0)).norm() - bundle.wand.back());
+    mean += off;
+    square += off * off;
+    ++lengths;
+  }
+  report.length_mean_mm = mean / std::max(1, lengths);
+  report.length_rms_mm = std::sqrt(square / std::max(1, lengths));
+  return report;
+}
+
+}  // namespace marey

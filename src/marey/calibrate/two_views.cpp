@@ -1,0 +1,256 @@
+#include "marey/calibrate/two_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+namespace marey {
+namespace {
+
+using Ray = Vector<3>;
+
+struct Match {
+  Ray a, b;
+};
+
+/// Uniform integers below `end`, the same on every machine.
+std::size_t draw(std::mt19937_64& engine, std::size_t end) {
+  return static_cast<std::size_t>(static_cast<double>(engine() >> 11) * 0x1.0p-53 * static_cast<double>(end));
+}
+
+/// A linear map that makes the bearings' second moments equal in all directions.
+Matrix<3> whitening(std::span<const Match> matches, Ray Match::* side) {
+  Matrix<3> moments = Matrix<3>::Zero();
+  for (const Match& match : matches) moments += (match.*side) * (match.*side).transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix<3>> eigen(moments / static_cast<double>(matches.size()));
+  const Vector<3> scale = eigen.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  return eigen.eigenvectors() * scale.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+/// The 3 × 3 matrix whose rows of constraints are the given ones in the least-squares sense: smallest singular vector.
+Matrix<3> null_matrix(const Eigen::Matrix<double, 9, 9>& normal) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(normal);
+  const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data());
+}
+
+/// bᵀ E a = 0 for all matches, E with singular values 1, 1, 0.
+Matrix<3> essential_of(std::span<const Match> matches) {
+  const Matrix<3> A = whitening(matches, &Match::a), B = whitening(matches, &Match::b);
+  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const Match& match : matches) {
+    const Vector<3> a = A * match.a, b = B * match.b;
+    Eigen::Matrix<double, 9, 1> row;
+    row << b.x() * a, b.y() * a, b.z() * a;
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+  }
+  const Matrix<3> E = B.transpose() * null_matrix(normal.selfadjointView<Eigen::Lower>()) * A;
+  const Eigen::JacobiSVD<Matrix<3>> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * Vector<3>(1, 1, 0).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// b ~ H a for all matches.
+Matrix<3> homography_of(std::span<const Match> matches) {
+  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const Match& match : matches) {
+    Matrix<3> cross;
+    cross << 0, -match.b.z(), match.b.y(), match.b.z(), 0, -match.b.x(), -match.b.y(), match.b.x(), 0;
+    for (int i = 0; i < 3; ++i) {
+      Eigen::Matrix<double, 9, 1> row;
+      row << cross(i, 0) * match.a, cross(i, 1) * match.a, cross(i, 2) * match.a;
+      normal += row * row.transpose();
+    }
+  }
+  return null_matrix(normal);
+}
+
+Matrix<3> rotation_of(std::span<const Match> matches) {
+  Matrix<3> moments = Matrix<3>::Zero();
+  for (const Match& match : matches) moments += match.b * match.a.transpose();
+  const Eigen::JacobiSVD<Matrix<3>> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+constexpr double kGate = 3;  // standard deviations within which a match is one
+
+class Relation {
+ public:
+  Relation(std::span<const WandPair> pairs, const TwoViewOptions& options) : pairs_(pairs), options_(options) {}
+
+  Match match(std::size_t pair, std::size_t marker, bool turned) const {
+    return {pairs_[pair].a[marker], pairs_[pair].b[turned ? options_.markers - 1 - marker : marker]};
+  }
+
+  /// Squared Sampson error of one match in units of the noise.
+  double error(const Matrix<3>& E, const Match& match) const {
+    const Vector<3> to_b = E * match.a, to_a = E.transpose() * match.b;
+    const double off = match.b.dot(to_b);
+    const double spread = (to_b.squaredNorm() - off * off) * options_.sigma_b * options_.sigma_b +
+                          (to_a.squaredNorm() - off * off) * options_.sigma_a * options_.sigma_a;
+    return off * off / std::max(spread, 1e-300);
+  }
+
+  /// Mean squared error of a wand, the better way round.
+  double error(const Matrix<3>& E, std::size_t pair, bool& turned) const {
+    double best = 0;
+    turned = false;
+    for (const bool turn : {false, true}) {
+      if (turn && !options_.reversible) break;
+      double sum = 0;
+      for (std::size_t m = 0; m < options_.markers; ++m) sum += error(E, match(pair, m, turn));
+      if (!turn || sum < best) best = sum, turned = turn;
+    }
+    return best / static_cast<double>(options_.markers);
+  }
+
+  double cost(const Matrix<3>& E, std::span<const std::size_t> sample) const {
+    double sum = 0;
+    bool turned = false;
+    for (const std::size_t pair : sample) sum += std::min(error(E, pair, turned), kGate * kGate);
+    return sum;
+  }
+
+  std::vector<Match> inliers(const Matrix<3>& E, std::span<const std::size_t> among, double gate) const {
+    std::vector<Match> matches;
+    for (const std::size_t pair : among) {
+      bool turned = false;
+      if (error(E, pair, turned) > gate * gate) continue;
+      for (std::size_t m = 0; m < options_.markers; ++m) matches.push_back(match(pair, m, turned));
+    }
+    return matches;
+  }
+
+  std::optional<Matrix<3>> search() const;
+  TwoViews describe(const Matrix<3>& E) const;
+
+ private:
+  std::span<const WandPair> pairs_;
+  const TwoViewOptions& options_;
+};
+
+/// RANSAC over whole wands, each best model refitted to its inliers.
+std::optional<Matrix<3>> Relation::search() const {
+  constexpr std::size_t judges = 300;
+  constexpr int most_draws = 3000;
+  std::vector<std::size_t> sample;
+  const std::size_t step = std::max<std::size_t>(1, pairs_.size() / judges);
+  for (std::size_t i = 0; i < pairs_.size(); i += step) sample.push_back(i);
+  const std::size_t wands = (8 + options_.markers - 1) / options_.markers;
+  if (pairs_.size() < wands) return std::nullopt;
+
+  std::mt19937_64 engine(options_.seed);
+  std::optional<Matrix<3>> best;
+  double best_cost = std::numeric_limits<double>::infinity();
+  int needed = most_draws;
+  for (int i = 0; i < std::min(needed, most_draws); ++i) {
+    std::vector<Match> drawn;
+    for (std::size_t w = 0; w < wands; ++w) {
+      const std::size_t pair = draw(engine, pairs_.size());
+      const bool turned = options_.reversible && draw(engine, 2) == 1;
+      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
+    }
+    Matrix<3> E = essential_of(drawn);
+    double cost_here = cost(E, sample);
+    if (cost_here >= best_cost) continue;
+    for (const double gate : {2 * kGate, kGate, kGate}) {
+      const auto matches = inliers(E, sample, gate);
+      if (matches.size() < 16) break;
+      const Matrix<3> refitted = essential_of(matches);
+      const double refitted_cost = cost(refitted, sample);
+      if (refitted_cost < cost_here) E = refitted, cost_here = refitted_cost;
+    }
+    best = E, best_cost = cost_here;
+    const double good =
+        static_cast<double>(inliers(E, sample, kGate).size()) / static_cast<double>(sample.size() * options_.markers);
+    const double ways = options_.reversible ? std::pow(0.5, static_cast<double>(wands) - 1) : 1;
+    const double hit = std::pow(good, static_cast<double>(wands)) * ways;
+    if (hit > 0) needed = std::max(60, static_cast<int>(std::log(1e-4) / std::log1p(-std::min(hit, 0.999999))));
+  }
+  return best;
+}
+
+/// Depths along both rays where they are nearest, baseline `t` from a's frame turned into b's.
+Vector<2> depths(const Rigid3& b_from_a, const Match& match) {
+  const Vector<3> a = b_from_a.rotation * match.a;
+  const double c = a.dot(match.b), ta = a.dot(b_from_a.translation), tb = match.b.dot(b_from_a.translation);
+  const double d = std::max(1e-12, 1 - c * c);
+  return {(c * tb - ta) / d, (tb - c * ta) / d};
+}
+
+Rigid3 pose_of(const Matrix<3>& E, std::span<const Match> matches) {
+  const Eigen::JacobiSVD<Matrix<3>> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix<3> W;
+  W << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  Rigid3 best;
+  int most = -1;
+  for (const Matrix<3>& turn : {W, Matrix<3>(W.transpose())}) {
+    for (const double sign : {1.0, -1.0}) {
+      Rigid3 pose{svd.matrixU() * turn * svd.matrixV().transpose(), sign * svd.matrixU().col(2)};
+      if (pose.rotation.determinant() < 0) pose.rotation = -pose.rotation;
+      int ahead = 0;
+      for (const Match& match : matches) ahead += (depths(pose, match).array() > 0).all() ? 1 : 0;
+      if (ahead > most) most = ahead, best = pose;
+    }
+  }
+  return best;
+}
+
+double angle_between(const Vector<3>& a, const Vector<3>& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Share of matches that `map` carries from a to b within the noise.
+double explained(std::span<const Match> matches, const Matrix<3>& map, double sigma) {
+  std::size_t count = 0;
+  for (const Match& match : matches) {
+    const double off = angle_between(map * match.a, match.b);
+    count += std::min(off, std::acos(-1.0) - off) < kGate * sigma ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(matches.size());
+}
+
+TwoViews Relation::describe(const Matrix<3>& E) const {
+  TwoViews views;
+  std::vector<std::size_t> all(pairs_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::size_t count = 0;
+  for (const std::size_t pair : all) {
+    bool turned = false;
+    views.inlier.push_back(error(E, pair, turned) <= kGate * kGate);
+    views.turned.push_back(turned);
+    count += static_cast<std::size_t>(views.inlier.back());
+  }
+  views.share = static_cast<double>(count) / static_cast<double>(pairs_.size());
+  const auto matches = inliers(E, all, kGate);
+  views.b_from_a = pose_of(E, matches);
+  std::vector<double> angles;
+  for (const Match& match : matches) angles.push_back(angle_between(views.b_from_a.rotation * match.a, match.b));
+  if (!angles.empty()) {
+    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+    std::nth_element(angles.begin(), middle, angles.end());
+    views.parallax = *middle;
+  }
+  if (matches.empty()) return views;
+  const double sigma = std::hypot(options_.sigma_a, options_.sigma_b);
+  views.plane = explained(matches, homography_of(matches), sigma) > 0.95;
+  views.one_place = explained(matches, rotation_of(matches), sigma) > 0.95;
+  return views;
+}
+
+}  // namespace
+
+std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options) {
+  const Relation relation(pairs, options);
+  const auto E = relation.search();
+  if (!E) return std::nullopt;
+  TwoViews views = relation.describe(*E);
+  if (views.share < 0.25) return std::nullopt;
+  return views;
+}
+
+}  // namespace marey

@@ -1,0 +1,27 @@
+#include "marey/calibrate/wand_lens.h"
+
+#include <algorithm>
+
+namespace marey {
+
+Lens starting_lens(const RigCamera& camera, double guess) {
+  if (camera.lens) return *camera.lens;
+  BrownLens lens;
+  lens.focal.setConstant(guess * std::max(camera.size->width, camera.size->height));
+  lens.principal = {(camera.size->width - 1) / 2.0, (camera.size->height - 1) / 2.0};
+  return lens;
+}
+
+LensFreedom growing_lens(cv::Size) {
+  return {0.3, 0, 0, {0.1}};
+}
+
+LensFreedom estimated_lens(cv::Size size) {
+  return {LensFreedom::free, 0.005, 0.04 * size.width, {0.5, 0.3, 0.001, 0.001, 0, 0, 0, 0}};
+}
+
+LensFreedom refined_lens(cv::Size size) {
+  return {LensFreedom::free, 0.01, 0.04 * size.width, {0.1, 0.1, 0.002, 0.002, 0, 0, 0, 0}};
+}
+
+}  // namespace marey

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "marey/calibrate/wand_marks.h"
+#include "marey/core/rig.h"
+#include "marey/detect/marker_detector.h"
+
+namespace marey {
+
+/// What all cameras of a rig saw, by camera and frame, each by its own clock.
+struct CameraBlobs {
+  std::vector<std::vector<BlobFrame>> seen;
+  bool timed = true;  ///< false: the rate is not known, frame numbers stand for seconds and cameras run in step
+  std::vector<std::string> warnings;
+};
+
+/// Told how many frames are done, of all cameras together; called from any thread, one call at a time.
+using BlobProgress = std::function<void(std::int64_t done)>;
+
+/// Reads what another program found (see ObservationReader). Frame f of a camera was at f / rate, its `rate_hz` or `rate_hz` of any
+/// other.
+CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
+
+/// Finds markers in the cameras' sources, cameras in parallel. Sets the sizes that the rig lacks. Throws Error where a source
+/// cannot be read, or its picture does not have the camera's size.
+CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgress& progress);
+
+}  // namespace marey
