@@ -132,14 +132,10 @@ CameraDeviation deviation_of(const BundleCamera& camera, const FreeNumbers& free
   if (camera.refine_pose) {
     const Rigid3& pose = camera.camera_from_world;
     const Eigen::Matrix<double, 6, 6> by_numbers = own.topLeftCorner<6, 6>();
-    const Matrix<3> J = left_jacobian(angle_axis_of(pose.rotation)), Rt = pose.rotation.transpose();
+    const Matrix<3> J = left_jacobian(angle_axis_of(pose.rotation));
     deviation.rotation = (J * by_numbers.topLeftCorner<3, 3>() * J.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
-    Matrix<3> cross;
-    cross << 0, -pose.translation.z(), pose.translation.y(), pose.translation.z(), 0, -pose.translation.x(), -pose.translation.y(),
-        pose.translation.x(), 0;
-    Eigen::Matrix<double, 3, 6> centre_by_pose;
-    centre_by_pose << -Rt * cross * J, -Rt;
-    deviation.centre = (centre_by_pose * by_numbers * centre_by_pose.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+    const Eigen::Matrix<double, 3, 6> by_pose = centre_by_pose(pose);
+    deviation.centre = (by_pose * by_numbers * by_pose.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
   }
   return deviation;
 }
@@ -151,6 +147,16 @@ std::vector<double> lens_sigmas(const Lens& start, const LensFreedom& freedom) {
   std::vector<double> sigmas = {freedom.focal * numbers[0], freedom.aspect * numbers[1], freedom.principal, freedom.principal};
   for (std::size_t i = kLensBase; i < numbers.size(); ++i) sigmas.push_back(freedom.distortion[i - kLensBase]);
   return sigmas;
+}
+
+Eigen::Matrix<double, 3, 6> centre_by_pose(const Rigid3& pose) {
+  const Vector<3>& t = pose.translation;
+  Matrix<3> cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  const Matrix<3> back = pose.rotation.transpose();
+  Eigen::Matrix<double, 3, 6> derivatives;
+  derivatives << -back * cross * left_jacobian(angle_axis_of(pose.rotation)), -back;
+  return derivatives;
 }
 
 int free_numbers(const Bundle& bundle, const std::vector<char>& inlier) {

@@ -9,6 +9,9 @@ namespace marey::bundle {
 /// Standard deviation known beforehand of each of a lens's numbers, in the order and the units of `numbers_of(lens)`; 0: held.
 std::vector<double> lens_sigmas(const Lens& start, const LensFreedom& freedom);
 
+/// Derivatives of a camera's centre in the world by the numbers of its pose (angle-axis and translation of camera_from_world).
+Eigen::Matrix<double, 3, 6> centre_by_pose(const Rigid3& camera_from_world);
+
 /// How many numbers the inliers decide.
 int free_numbers(const Bundle& bundle, const std::vector<char>& inlier);
 

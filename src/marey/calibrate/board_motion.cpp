@@ -1,0 +1,380 @@
+// Minimises the squared distances, px, between corners seen and predicted over the cameras' poses, offsets and shutters, as much of
+// their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was exposed: the board is
+// placed at the exposures of the top and of the bottom row, and a corner lies between the two places in proportion to its row. Second
+// differences of neighbouring control poses are held to what a hand can do, so that the path stays defined where few corners
+// are seen. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
+#include "marey/calibrate/board_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <ceres/ceres.h>
+
+#include "marey/calibrate/bundle_deviations.h"
+#include "marey/calibrate/bundle_residual.h"
+#include "marey/calibrate/pose_spline.h"
+
+namespace marey {
+namespace {
+
+using Control = std::array<double, 7>;
+
+struct SeenCorner {
+  int id = 0;
+  Vector<3> place = Vector<3>::Zero();  // on the board, m
+  Vector<2> pixel = Vector<2>::Zero();
+  double row = 0;  // share of the picture's height from its middle: -0.5 at the top, 0.5 at the bottom
+  bool inlier = true;
+};
+
+struct View {
+  std::size_t camera = 0;
+  double time_s = 0;  // by the camera's clock
+  std::vector<SeenCorner> corners;
+};
+
+/// A view's errors, predicted minus seen. Blocks: four control poses, the camera's pose, its lens, its offset and readout.
+template <typename Model>
+struct ViewError {
+  std::vector<SeenCorner> corners;
+  double time_s = 0;     // by the camera's clock, less the segment's begin
+  double knot_s = 0;
+
+  template <typename T>
+  bool operator()(const T* a, const T* b, const T* c, const T* d, const T* pose, const T* lens, const T* timing, T* errors) const {
+    const T middle = (T(time_s) + timing[0]) / T(knot_s), half = timing[1] / T(2 * knot_s);
+    const SplinePose<T> top = spline_pose(a, b, c, d, T(middle - half));
+    const SplinePose<T> bottom = spline_pose(a, b, c, d, T(middle + half));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const SeenCorner& corner = corners[i];
+      const Eigen::Matrix<T, 3, 1> place = corner.place.template cast<T>();
+      const T share(0.5 + corner.row);
+      const Eigen::Matrix<T, 3, 1> world = (T(1) - share) * (top * place) + share * (bottom * place);
+      Eigen::Matrix<T, 3, 1> in_camera;
+      ceres::AngleAxisRotatePoint(pose, world.data(), in_camera.data());
+      for (int k = 0; k < 3; ++k) in_camera[k] += pose[3 + k];
+      if (!(in_camera.z() > T(1e-6))) return false;
+      const Eigen::Matrix<T, 2, 1> at = Model::distort(in_camera, lens + bundle::kLensBase);
+      errors[2 * i] = lens[2] + lens[0] * at.x() - T(corner.pixel.x());
+      errors[2 * i + 1] = lens[3] + lens[0] * lens[1] * at.y() - T(corner.pixel.y());
+    }
+    return true;
+  }
+};
+
+/// Second differences of three neighbouring control poses, in what a hand does in that time.
+struct Smoothness {
+  double metres = 1, radians = 1;
+
+  template <typename T>
+  bool operator()(const T* a, const T* b, const T* c, T* errors) const {
+    const std::array<T, 3> before = rotation_between(a, b), after = rotation_between(b, c);
+    for (int k = 0; k < 3; ++k) {
+      errors[k] = (after[static_cast<std::size_t>(k)] - before[static_cast<std::size_t>(k)]) / T(radians);
+      errors[3 + k] = (a[4 + k] - T(2) * b[4 + k] + c[4 + k]) / T(metres);
+    }
+    return true;
+  }
+};
+
+std::vector<View> views_of(const Board& board, std::span<const BoardRigCamera> cameras) {
+  std::vector<View> views;
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    for (const TimedView& seen : cameras[c].views) {
+      View view{c, seen.time_s, {}};
+      for (const BoardCorner& corner : seen.view.corners) {
+        const double row = (corner.pixel.y() + 0.5) / cameras[c].size.height - 0.5;
+        view.corners.push_back({corner.id, board.corner(corner.id), corner.pixel, row, true});
+      }
+      views.push_back(std::move(view));
+    }
+  }
+  return views;
+}
+
+/// The board's path as its views alone have it: for the start of the control poses.
+class RoughPath {
+ public:
+  RoughPath(const std::vector<std::vector<PosedView>>& poses, const std::vector<BoardRigPose>& cameras) {
+    for (std::size_t c = 0; c < poses.size(); ++c) {
+      const Rigid3 world_from_camera = cameras[c].camera_from_world.inverse();
+      for (const PosedView& view : poses[c]) path_.emplace(view.time_s + cameras[c].offset_s, world_from_camera * view.camera_from_board);
+    }
+  }
+
+  double begin() const { return path_.begin()->first; }
+
+  Rigid3 at(double time_s) const {
+    const auto after = path_.lower_bound(time_s);
+    if (after == path_.end()) return path_.rbegin()->second;
+    if (after == path_.begin()) return after->second;
+    const auto before = std::prev(after);
+    const double share = (time_s - before->first) / (after->first - before->first);
+    const Eigen::Quaterniond from(before->second.rotation), to(after->second.rotation);
+    return {from.slerp(share, to).toRotationMatrix(), (1 - share) * before->second.translation + share * after->second.translation};
+  }
+
+ private:
+  std::map<double, Rigid3> path_;
+};
+
+class Motion {
+ public:
+  Motion(const Board& board, std::span<const BoardRigCamera> cameras, const std::vector<std::vector<PosedView>>& poses,
+         const std::vector<BoardRigPose>& start, const BoardMotionOptions& options)
+      : inputs_(cameras), options_(options), views_(views_of(board, cameras)) {
+    for (const BoardRigPose& camera : start) {
+      lens_models_.push_back(camera.lens);
+      poses_.push_back(bundle::numbers_of(camera.camera_from_world));
+      lenses_.push_back(bundle::numbers_of(camera.lens));
+      timings_.push_back({camera.offset_s, camera.readout_s});
+    }
+    const RoughPath path(poses, start);
+    begin_ = path.begin() - 2 * options.knot_s;
+    for (const View& view : views_) {
+      const int first = segment_of(view) - 2;  // with room for an offset that moves
+      for (int k = first; k < first + 8; ++k) {
+        if (controls_.contains(k)) continue;
+        const Rigid3 pose = path.at(begin_ + (k - 1) * options.knot_s);
+        const Eigen::Quaterniond q(pose.rotation);
+        controls_[k] = {q.w(), q.x(), q.y(), q.z(), pose.translation.x(), pose.translation.y(), pose.translation.z()};
+      }
+    }
+  }
+
+  void solve(double loss_px) {
+    build(loss_px);
+    ceres::Solver::Options how;
+    how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    how.max_num_iterations = 30;
+    how.function_tolerance = 1e-9;
+    how.num_threads = 1;  // sums in one order: the same bits from run to run
+    how.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(how, problem_.get(), &summary);
+  }
+
+  /// Judges every corner anew by the noise of the others.
+  void judge() {
+    std::vector<double> distances;
+    for (const View& view : views_) {
+      for (const auto& error : errors_of(view)) {
+        if (error) distances.push_back(error->norm());
+      }
+    }
+    if (distances.empty()) return;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    const double limit = std::max(kAlwaysGood, kOutlierSigmas * *middle / 1.1774);
+    for (View& view : views_) {
+      const auto errors = errors_of(view);
+      for (std::size_t i = 0; i < errors.size(); ++i) view.corners[i].inlier = errors[i] && errors[i]->norm() <= limit;
+    }
+  }
+
+  BoardRig report(bool deviations);
+
+ private:
+  static constexpr double kAlwaysGood = 0.5;  // px
+  static constexpr double kOutlierSigmas = 6;
+
+  int segment_of(const View& view) const {
+    return static_cast<int>(std::floor((view.time_s + timings_[view.camera][0] - begin_) / options_.knot_s));
+  }
+  bool controlled(int segment) const;
+  std::vector<std::optional<Vector<2>>> errors_of(const View& view) const;
+  ceres::CostFunction* error_of(const View& view, int segment, bool inliers_only) const;
+  void build(double loss_px);
+  void hold(std::size_t camera);
+  void smooth();
+  void deviate(BoardRig& rig);
+
+  std::span<const BoardRigCamera> inputs_;
+  BoardMotionOptions options_;
+  std::vector<View> views_;
+  std::vector<Lens> lens_models_;
+  std::vector<std::vector<double>> poses_, lenses_;
+  std::vector<std::array<double, 2>> timings_;
+  std::map<int, Control> controls_;
+  double begin_ = 0;
+  std::unique_ptr<ceres::Problem> problem_;
+  int equations_ = 0, unknowns_ = 0;
+};
+
+/// Whether all four control poses of a segment are there: an offset may have moved a view beyond them.
+bool Motion::controlled(int segment) const {
+  for (int k = segment; k < segment + 4; ++k) {
+    if (!controls_.contains(k)) return false;
+  }
+  return true;
+}
+
+ceres::CostFunction* Motion::error_of(const View& view, int segment, bool inliers_only) const {
+  std::vector<SeenCorner> corners;
+  std::ranges::copy_if(view.corners, std::back_inserter(corners), [&](const SeenCorner& c) { return c.inlier || !inliers_only; });
+  if (corners.empty()) return nullptr;
+  const double from_begin = view.time_s - (begin_ + segment * options_.knot_s);
+  return std::visit(
+      [&](const auto& model) -> ceres::CostFunction* {
+        using Model = std::decay_t<decltype(model)>;
+        constexpr int lens = bundle::kLensBase + Model::coefficients;
+        const int count = 2 * static_cast<int>(corners.size());
+        return new ceres::AutoDiffCostFunction<ViewError<Model>, ceres::DYNAMIC, 7, 7, 7, 7, bundle::kPose, lens, 2>(
+            new ViewError<Model>{std::move(corners), from_begin, options_.knot_s}, count);
+      },
+      lens_models_[view.camera]);
+}
+
+std::vector<std::optional<Vector<2>>> Motion::errors_of(const View& view) const {
+  const int segment = segment_of(view);
+  std::vector<std::optional<Vector<2>>> errors(view.corners.size());
+  if (!controlled(segment)) return errors;
+  const std::unique_ptr<ceres::CostFunction> cost(error_of(view, segment, false));
+  std::array<const double*, 7> blocks{};
+  for (std::size_t i = 0; i < 4; ++i) blocks[i] = controls_.at(segment + static_cast<int>(i)).data();
+  blocks[4] = poses_[view.camera].data();
+  blocks[5] = lenses_[view.camera].data();
+  blocks[6] = timings_[view.camera].data();
+  std::vector<double> numbers(2 * view.corners.size());
+  if (!cost->Evaluate(blocks.data(), numbers.data(), nullptr)) return errors;
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = -Vector<2>(numbers[2 * i], numbers[2 * i + 1]);
+  return errors;
+}
+
+void Motion::build(double loss_px) {
+  problem_ = std::make_unique<ceres::Problem>();
+  equations_ = 0;
+  for (const View& view : views_) {
+    const int segment = segment_of(view);
+    ceres::CostFunction* cost = controlled(segment) ? error_of(view, segment, true) : nullptr;
+    if (!cost) continue;
+    equations_ += cost->num_residuals();
+    ceres::LossFunction* loss = loss_px > 0 ? new ceres::HuberLoss(loss_px * std::sqrt(cost->num_residuals())) : nullptr;
+    problem_->AddResidualBlock(cost, loss, controls_[segment].data(), controls_[segment + 1].data(), controls_[segment + 2].data(),
+                               controls_[segment + 3].data(), poses_[view.camera].data(), lenses_[view.camera].data(),
+                               timings_[view.camera].data());
+  }
+  smooth();
+  for (std::size_t c = 0; c < inputs_.size(); ++c) hold(c);
+  std::vector<double*> blocks;
+  problem_->GetParameterBlocks(&blocks);
+  unknowns_ = 0;
+  for (const double* block : blocks) unknowns_ += problem_->IsParameterBlockConstant(block) ? 0 : problem_->ParameterBlockTangentSize(block);
+}
+
+void Motion::smooth() {
+  const double square = options_.knot_s * options_.knot_s;
+  for (auto& [k, control] : controls_) {
+    if (!problem_->HasParameterBlock(control.data())) continue;
+    problem_->SetManifold(control.data(), new ceres::ProductManifold<ceres::QuaternionManifold, ceres::EuclideanManifold<3>>());
+    const auto next = controls_.find(k + 1), after = controls_.find(k + 2);
+    if (next == controls_.end() || after == controls_.end()) continue;
+    if (!problem_->HasParameterBlock(next->second.data()) || !problem_->HasParameterBlock(after->second.data())) continue;
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Smoothness, 6, 7, 7, 7>(
+                                   new Smoothness{options_.acceleration * square, options_.turning * square}),
+                               nullptr, control.data(), next->second.data(), after->second.data());
+    equations_ += 6;
+  }
+}
+
+void Motion::hold(std::size_t camera) {
+  double* pose = poses_[camera].data();
+  double* lens = lenses_[camera].data();
+  double* timing = timings_[camera].data();
+  if (!problem_->HasParameterBlock(pose)) return;
+  if (camera == 0) problem_->SetParameterBlockConstant(pose);
+  std::vector<int> held;
+  if (camera == 0 || !options_.refine_offsets) held.push_back(0);
+  if (!options_.refine_readout) held.push_back(1);
+  if (held.size() == 2) problem_->SetParameterBlockConstant(timing);
+  if (held.size() == 1) problem_->SetManifold(timing, new ceres::SubsetManifold(2, held));
+  held.clear();
+  const auto count = static_cast<int>(lenses_[camera].size());
+  for (int i = bundle::kLensBase; i < count; ++i) {
+    if (lens[i] == 0) held.push_back(i);  // what the calibration of the lens left out
+  }
+  if (!options_.refine_lenses) {
+    problem_->SetParameterBlockConstant(lens);
+  } else if (!held.empty()) {
+    problem_->SetManifold(lens, new ceres::SubsetManifold(count, held));
+  }
+}
+
+BoardRig Motion::report(bool deviations) {
+  BoardRig rig;
+  double square = 0, sum = 0;
+  for (std::size_t c = 0; c < inputs_.size(); ++c) {
+    BoardRigPose camera;
+    camera.lens = lens_models_[c];
+    bundle::set_numbers(camera.lens, lenses_[c].data());
+    camera.camera_from_world = bundle::pose_from(poses_[c].data());
+    camera.offset_s = timings_[c][0];
+    camera.readout_s = timings_[c][1];
+    double own_square = 0, own_sum = 0;
+    for (const View& view : views_) {
+      if (view.camera != c) continue;
+      const auto errors = errors_of(view);
+      camera.observations += static_cast<int>(errors.size());
+      for (std::size_t i = 0; i < errors.size(); ++i) {
+        if (!view.corners[i].inlier || !errors[i]) continue;
+        ++camera.inliers;
+        own_square += errors[i]->squaredNorm();
+        own_sum += errors[i]->norm();
+      }
+    }
+    camera.rms_px = std::sqrt(own_square / std::max(1, camera.inliers));
+    camera.mean_px = own_sum / std::max(1, camera.inliers);
+    rig.inliers += camera.inliers;
+    rig.observations += camera.observations;
+    square += own_square;
+    sum += own_sum;
+    rig.cameras.push_back(std::move(camera));
+  }
+  rig.rms_px = std::sqrt(square / std::max(1, rig.inliers));
+  rig.mean_px = sum / std::max(1, rig.inliers);
+  rig.noise_px = std::sqrt(square / std::max(1, equations_ - unknowns_));
+  if (deviations) deviate(rig);
+  return rig;
+}
+
+void Motion::deviate(BoardRig& rig) {
+  std::vector<std::pair<const double*, const double*>> wanted;
+  for (std::size_t c = 1; c < inputs_.size(); ++c) {
+    if (!problem_->HasParameterBlock(poses_[c].data())) continue;
+    wanted.emplace_back(poses_[c].data(), poses_[c].data());
+    wanted.emplace_back(timings_[c].data(), timings_[c].data());
+  }
+  ceres::Covariance::Options how;
+  how.algorithm_type = ceres::SPARSE_QR;
+  how.num_threads = 1;
+  ceres::Covariance covariance(how);
+  if (wanted.empty() || !covariance.Compute(wanted, problem_.get())) return;
+  for (std::size_t c = 1; c < inputs_.size(); ++c) {
+    if (!problem_->HasParameterBlock(poses_[c].data())) continue;
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> pose;
+    Eigen::Matrix<double, 2, 2, Eigen::RowMajor> timing;
+    covariance.GetCovarianceBlock(poses_[c].data(), poses_[c].data(), pose.data());
+    covariance.GetCovarianceBlock(timings_[c].data(), timings_[c].data(), timing.data());
+    rig.cameras[c].offset_deviation_s = rig.noise_px * std::sqrt(std::max(0.0, timing(0, 0)));
+    const Eigen::Matrix<double, 3, 6> centre = bundle::centre_by_pose(rig.cameras[c].camera_from_world);
+    rig.cameras[c].centre_deviation = rig.noise_px * (centre * pose * centre.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+  }
+}
+
+}  // namespace
+
+BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> cameras, const std::vector<std::vector<PosedView>>& poses,
+                          const std::vector<BoardRigPose>& start, const BoardMotionOptions& options, bool deviations) {
+  Motion motion(board, cameras, poses, start, options);
+  motion.solve(2);
+  for (int round = 0; round < 3; ++round) {
+    motion.judge();
+    motion.solve(0);
+  }
+  return motion.report(deviations);
+}
+
+}  // namespace marey
