@@ -15,9 +15,9 @@ namespace marey {
 namespace {
 
 constexpr int kLeastCommon = 3;
-constexpr double kLeastShare = 0.3;    // of the most views that any offset brings together
-constexpr double kLongestGap = 2.5;    // frames between two views that are still interpolated between
-constexpr double kLimitOfSpread = 0.2; // a pair whose views disagree more tells nothing
+constexpr double kLeastShare = 0.3;     // of the most views that any offset brings together
+constexpr double kLongestGap = 2.5;     // frames between two views that are still interpolated between
+constexpr double kLimitOfSpread = 0.2;  // a pair whose views disagree more tells nothing
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -163,9 +163,11 @@ std::vector<BoardPlacement> place_cameras(const std::vector<std::vector<PosedVie
     if (!placed[i]) lost.push_back(fmt::format("\"{}\"", cameras[i].name));
   }
   if (!lost.empty())
-    throw Error("camera {} never sees the board together with camera \"{}\" or any camera tied to it, in {} pictures at least that agree; carry the board "
-                "through what they see in common",
-                fmt::join(lost, ", "), cameras[0].name, kLeastCommon);
+    throw Error(
+        "camera {} never sees the board together with camera \"{}\" or any camera tied to it, in {} pictures at least that agree; "
+        "carry the board "
+        "through what they see in common",
+        fmt::join(lost, ", "), cameras[0].name, kLeastCommon);
   std::vector<BoardPlacement> result;
   for (const auto& placement : placed) result.push_back(*placement);
   return result;

@@ -23,8 +23,8 @@ struct BoardPair {
 };
 
 /// Compares two cameras' views. Where `most_offset_s` is above 0 every offset up to that is tried, around `offset_s`, in steps of
-/// half a frame, and the one at which the views agree best is taken; the board must have moved then. Otherwise `offset_s` holds. Nothing where fewer than
-/// three views are common.
+/// half a frame, and the one at which the views agree best is taken; the board must have moved then. Otherwise `offset_s` holds.
+/// Nothing where fewer than three views are common.
 std::optional<BoardPair> compare_views(std::span<const PosedView> first, std::span<const PosedView> second, double offset_s,
                                        double most_offset_s);
 

@@ -1,8 +1,8 @@
 // Minimises the squared distances, px, between corners seen and predicted over the cameras' poses, offsets and shutters, as much of
-// their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was exposed: the board is
-// placed at the exposures of the top and of the bottom row, and a corner lies between the two places in proportion to its row. Second
-// differences of neighbouring control poses are held to what a hand can do, so that the path stays defined where few corners
-// are seen. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
+// their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was exposed:
+// the board is placed at the exposures of the top and of the bottom row, and a corner lies between the two places in proportion to
+// its row. Second differences of neighbouring control poses are held to what a hand can do, so that the path stays defined where
+// few corners are seen. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
 #include "marey/calibrate/board_motion.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct View {
 template <typename Model>
 struct ViewError {
   std::vector<SeenCorner> corners;
-  double time_s = 0;     // by the camera's clock, less the segment's begin
+  double time_s = 0;  // by the camera's clock, less the segment's begin
   double knot_s = 0;
 
   template <typename T>
@@ -101,7 +101,8 @@ class RoughPath {
   RoughPath(const std::vector<std::vector<PosedView>>& poses, const std::vector<BoardRigPose>& cameras) {
     for (std::size_t c = 0; c < poses.size(); ++c) {
       const Rigid3 world_from_camera = cameras[c].camera_from_world.inverse();
-      for (const PosedView& view : poses[c]) path_.emplace(view.time_s + cameras[c].offset_s, world_from_camera * view.camera_from_board);
+      for (const PosedView& view : poses[c])
+        path_.emplace(view.time_s + cameras[c].offset_s, world_from_camera * view.camera_from_board);
     }
   }
 
@@ -262,7 +263,8 @@ void Motion::build(double loss_px) {
   std::vector<double*> blocks;
   problem_->GetParameterBlocks(&blocks);
   unknowns_ = 0;
-  for (const double* block : blocks) unknowns_ += problem_->IsParameterBlockConstant(block) ? 0 : problem_->ParameterBlockTangentSize(block);
+  for (const double* block : blocks)
+    unknowns_ += problem_->IsParameterBlockConstant(block) ? 0 : problem_->ParameterBlockTangentSize(block);
 }
 
 void Motion::smooth() {
@@ -366,8 +368,9 @@ void Motion::deviate(BoardRig& rig) {
 
 }  // namespace
 
-BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> cameras, const std::vector<std::vector<PosedView>>& poses,
-                          const std::vector<BoardRigPose>& start, const BoardMotionOptions& options, bool deviations) {
+BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> cameras,
+                          const std::vector<std::vector<PosedView>>& poses, const std::vector<BoardRigPose>& start,
+                          const BoardMotionOptions& options, bool deviations) {
   Motion motion(board, cameras, poses, start, options);
   motion.solve(2);
   for (int round = 0; round < 3; ++round) {

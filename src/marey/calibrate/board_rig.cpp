@@ -29,7 +29,8 @@ std::vector<std::vector<PosedView>> pose_views(const Board& board, std::vector<B
       if (pose) posed.push_back({stills ? static_cast<double>(seen.instant) : seen.time_s, *pose});
       return !pose;
     });
-    if (camera.views.empty()) throw Error("camera \"{}\": the board {} is not seen; is it the board that was shown?", camera.name, to_string(board));
+    if (camera.views.empty())
+      throw Error("camera \"{}\": the board {} is not seen; is it the board that was shown?", camera.name, to_string(board));
     all.push_back(std::move(posed));
   }
   return all;
@@ -41,7 +42,8 @@ LensFreedom freedom_of(const Lens& lens) {
   freedom.focal = freedom.aspect = freedom.principal = LensFreedom::free;
   std::visit(
       [&](const auto& model) {
-        for (std::size_t i = 0; i < model.distortion.size(); ++i) freedom.distortion[i] = model.distortion[i] != 0 ? LensFreedom::free : 0;
+        for (std::size_t i = 0; i < model.distortion.size(); ++i)
+          freedom.distortion[i] = model.distortion[i] != 0 ? LensFreedom::free : 0;
       },
       lens);
   return freedom;

@@ -1,11 +1,12 @@
 // Where several cameras stand, from a board carried before them.
 //
-// Each camera tells the board's pose in its own frame, so any two that see the board at one time tell how they stand to each other. These
-// pairs are a graph; its tree of the strongest edges places every camera (board_graph). Then all is refined together: cameras, and the
-// board's pose at each instant (stills), or, where the board moves and the cameras are out of step, the board's path as a smooth curve
-// that each camera samples at its own times (board_motion). So the offset between cameras that were not started together comes out to
-// a fraction of a frame, and so does the time that a rolling shutter takes from the top of the picture to its bottom.
-// Reference: Furgale, Rehder & Siegwart, "Unified temporal and spatial calibration for multi-sensor systems", IROS 2013.
+// Each camera tells the board's pose in its own frame, so any two that see the board at one time tell how they stand to each other.
+// These pairs are a graph; its tree of the strongest edges places every camera (board_graph). Then all is refined together:
+// cameras, and the board's pose at each instant (stills), or, where the board moves and the cameras are out of step, the board's
+// path as a smooth curve that each camera samples at its own times (board_motion). So the offset between cameras that were not
+// started together comes out to a fraction of a frame, and so does the time that a rolling shutter takes from the top of the
+// picture to its bottom. Reference: Furgale, Rehder & Siegwart, "Unified temporal and spatial calibration for multi-sensor
+// systems", IROS 2013.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct BoardRigCamera {
   std::string name;  ///< what messages call it
   cv::Size size;     ///< px
   Lens lens;
-  double offset_s = 0;           ///< films: what is known of its offset; where the search begins, and what stays where offsets are held
+  double offset_s = 0;  ///< films: what is known of its offset; where the search begins, and what stays where offsets are held
   std::vector<TimedView> views;  ///< in the order of time
 };
 
@@ -56,7 +57,7 @@ struct BoardRigPose {
   double offset_s = 0;       ///< added to its times gives the first camera's
   double readout_s = 0;      ///< from the exposure of the top row to that of the bottom row; 0 where it does not show
 
-  double offset_deviation_s = 0;  ///< standard deviation, by the noise seen; 0 where the offset was not sought
+  double offset_deviation_s = 0;                   ///< standard deviation, by the noise seen; 0 where the offset was not sought
   Vector<3> centre_deviation = Vector<3>::Zero();  ///< m
   double rms_px = 0, mean_px = 0;
   int inliers = 0, observations = 0;

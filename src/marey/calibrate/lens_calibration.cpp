@@ -16,6 +16,7 @@ namespace marey {
 namespace {
 
 constexpr int kLeastViews = 3;
+constexpr int kRounds = 6;
 constexpr double kLeastSpread = 5 * std::numbers::pi / 180;  // between the directions that boards face
 constexpr double kWorseThanOthers = 4;                       // times the median error: then a view is put out whole
 constexpr double kAlwaysGood = 0.5;                          // px: but never one as good as this
@@ -37,7 +38,7 @@ LensFreedom freedom_of(const LensOptions& options, int step) {
 class Solver {
  public:
   Solver(const Board& board, std::span<const LensView> views, const LensOptions& options, const Lens& start)
-      : views_(views), options_(options), used_(views.size(), true) {
+      : board_(board), views_(views), options_(options), used_(views.size(), true) {
     for (int id = 0; id < board.corner_count(); ++id) bundle_.board.push_back(board.corner(id));
     bundle_.cameras.push_back({start, {}, 0, {}, false, false});
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -59,24 +60,20 @@ class Solver {
     }
   }
 
-  /// Puts out views that fit far worse than the others, until none does.
+  /// Puts out views that fit far worse than most, and takes back those that, by the lens without them, do not.
   void refuse_bad_views() {
-    for (bool changed = true; changed;) {
-      changed = false;
+    for (int round = 0; round < kRounds; ++round) {
       const std::vector<double> rms = view_rms();
-      std::vector<double> sorted;
-      for (std::size_t i = 0; i < rms.size(); ++i) {
-        if (used_[i]) sorted.push_back(rms[i]);
-      }
-      if (sorted.size() <= kLeastViews) return;
+      std::vector<double> sorted = rms;
       std::ranges::sort(sorted);
-      const double limit = std::max(kAlwaysGood, kWorseThanOthers * sorted[sorted.size() / 2]);
-      for (std::size_t i = 0; i < rms.size(); ++i) {
-        if (!used_[i] || rms[i] <= limit) continue;
-        used_[i] = false;
-        changed = true;
+      const double limit = std::max(kAlwaysGood, kWorseThanOthers * sorted[(sorted.size() - 1) / 2]);
+      std::vector<bool> verdict;
+      for (const double here : rms) verdict.push_back(here <= limit);
+      if (verdict == used_ || std::ranges::count(verdict, true) < kLeastViews) return;
+      for (std::size_t i = 0; i < verdict.size(); ++i) {
+        if (verdict[i] && !used_[i]) bundle_.bodies[i] = *board_pose(board_, views_[i].board, bundle_.cameras[0].lens);
       }
-      if (!changed) return;
+      used_ = verdict;
       BundleOptions how;
       how.rounds = 0;
       how.deviations = false;
@@ -87,6 +84,8 @@ class Solver {
   BundleResult finish() {
     BundleOptions how;
     how.noise_px = std::max(0.02, last_.noise_px);
+    how.least_outlier_px = 0.5;
+    how.outlier_sigmas = 6;
     last_ = solve(2, how);
     return last_;
   }
@@ -108,18 +107,19 @@ class Solver {
     return last_;
   }
 
+  /// Of every view, used or not, px; 1e6 where the lens as it is gives no pose.
   std::vector<double> view_rms() const {
-    std::vector<double> square(views_.size(), 0), count(views_.size(), 0);
-    const auto errors = errors_of(bundle_);
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      const auto view = static_cast<std::size_t>(bundle_.observations[i].body);
-      square[view] += errors[i] ? errors[i]->squaredNorm() : 1e12;
-      count[view] += 1;
+    const Lens& lens = bundle_.cameras[0].lens;
+    std::vector<double> all;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const BoardView& view = views_[i].board;
+      const auto pose = used_[i] ? std::optional(std::get<Rigid3>(bundle_.bodies[i])) : board_pose(board_, view, lens);
+      all.push_back(pose ? board_rms(board_, view, lens, *pose).value_or(1e6) : 1e6);
     }
-    for (std::size_t i = 0; i < square.size(); ++i) square[i] = std::sqrt(square[i] / std::max(1.0, count[i]));
-    return square;
+    return all;
   }
 
+  const Board& board_;
   std::span<const LensView> views_;
   const LensOptions& options_;
   std::vector<bool> used_;

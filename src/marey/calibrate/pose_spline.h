@@ -1,8 +1,8 @@
 // A rigid body's path as a uniform cubic B-spline: continuous in acceleration, and each moment rests on four poses alone.
 //
-// Translation is the usual sum over basis functions; rotation is the cumulative form on the group, q(u) = q0 · exp(B1 log(q0⁻¹ q1)) ·
-// exp(B2 log(q1⁻¹ q2)) · exp(B3 log(q2⁻¹ q3)). Reference: Kim, Kim & Shin, "A general construction scheme for unit quaternion curves
-// with simple high order derivatives", SIGGRAPH 1995. Templates on the scalar, so that a solver can differentiate them.
+// Translation is the usual sum over basis functions; rotation is the cumulative form on the group, q(u) = q0 · exp(B1 log(q0⁻¹ q1))
+// · exp(B2 log(q1⁻¹ q2)) · exp(B3 log(q2⁻¹ q3)). Reference: Kim, Kim & Shin, "A general construction scheme for unit quaternion
+// curves with simple high order derivatives", SIGGRAPH 1995. Templates on the scalar, so that a solver can differentiate them.
 #pragma once
 
 #include <array>
@@ -41,7 +41,8 @@ std::array<T, 3> rotation_between(const T* a, const T* b) {
 template <typename T>
 SplinePose<T> spline_pose(const T* a, const T* b, const T* c, const T* d, const T& u) {
   const T u2 = u * u, u3 = u2 * u;
-  const std::array<T, 3> cumulative{(T(5) + T(3) * u - T(3) * u2 + u3) / T(6), (T(1) + T(3) * u + T(3) * u2 - T(2) * u3) / T(6), u3 / T(6)};
+  const std::array<T, 3> cumulative{(T(5) + T(3) * u - T(3) * u2 + u3) / T(6), (T(1) + T(3) * u + T(3) * u2 - T(2) * u3) / T(6),
+                                    u3 / T(6)};
   const std::array<const T*, 4> controls{a, b, c, d};
   SplinePose<T> pose;
   std::copy_n(a, 4, pose.rotation.begin());

@@ -1,0 +1,118 @@
+#include "marey/pipeline/calibrate_board.h"
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/calibrate/choose_views.h"
+#include "marey/calibrate/lens_calibration.h"
+#include "marey/core/error.h"
+#include "marey/format/rig_sources.h"
+#include "marey/pipeline/find_boards.h"
+#include "marey/pipeline/read_ahead.h"
+#include "marey/source/open_source.h"
+#include "marey/source/picture_files.h"
+
+namespace marey {
+namespace {
+
+constexpr std::size_t kViewsOfLens = 60;
+
+bool is_pictures(const std::string& source) {
+  std::error_code error;
+  if (std::filesystem::is_directory(source, error)) return true;
+  return is_picture_name(source) || (!std::filesystem::exists(source, error) && is_picture_pattern(source));
+}
+
+/// Whether the sources are pictures, each of an instant of its own, and no films.
+bool are_stills(const Rig& rig) {
+  std::set<bool> kinds;
+  for (const RigCamera& camera : rig.cameras) {
+    if (camera.source.empty())
+      throw Error(
+          "camera \"{}\": there is no film or folder of pictures to look for the board in; name it in the rig or as {}=FILE",
+          camera.name, camera.name);
+    kinds.insert(is_pictures(camera.source));
+  }
+  if (kinds.size() > 1)
+    throw Error("some cameras have films and others pictures; they cannot be matched in time, so take one kind for all");
+  return kinds.contains(true);
+}
+
+Lens lens_by_board(const RigCamera& camera, const Board& board, const BoardSightings& seen) {
+  std::vector<ViewCandidate> candidates;
+  for (const BoardSighting& sighting : seen.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
+  std::vector<LensView> views;
+  for (const std::size_t i : choose_views(candidates, seen.size, kViewsOfLens))
+    views.push_back({fmt::format("frame {}", seen.sightings[i].frame), seen.sightings[i].view});
+  try {
+    return calibrate_lens(board, seen.size, views).lens;
+  } catch (const Error& error) {
+    throw Error("camera \"{}\" has no lens in the rig, and these pictures do not tell it: {}", camera.name, error.what());
+  }
+}
+
+BoardRigCamera look(RigCamera& camera, const BoardDetector& detector, const BoardRunOptions& options) {
+  const auto source = read_ahead(open_source(camera.source, camera.rate_hz));
+  FindBoardsOptions how;
+  how.region = camera.region;
+  if (options.progress) {
+    how.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { options.progress(camera.name, done, all); };
+  }
+  const BoardSightings seen = find_boards(*source, detector, how);
+  if (seen.sightings.empty()) {
+    throw Error("camera \"{}\": the board {} is in none of its {} pictures; are its kind, its numbers and its colours as given?",
+                camera.name, to_string(detector.board()), seen.frames);
+  }
+  fit_to_size(camera, seen.size);
+  if (!camera.lens) camera.lens = lens_by_board(camera, detector.board(), seen);
+  BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s, {}};
+  for (const BoardSighting& sighting : seen.sightings)
+    input.views.push_back({sighting.frame, seconds(sighting.time), sighting.view});
+  return input;
+}
+
+/// The pose of the first camera where the rig has none: upright at the origin, looking along y.
+Rigid3 first_pose() {
+  Rigid3 camera_from_world;
+  camera_from_world.rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return camera_from_world;
+}
+
+void enter(Rig& rig, const BoardRig& found) {
+  const Rigid3 first_from_world = rig.cameras[0].camera_from_world.value_or(first_pose());
+  const double first_offset = rig.cameras[0].offset_s;
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    RigCamera& camera = rig.cameras[i];
+    camera.lens = found.cameras[i].lens;
+    camera.camera_from_world = found.cameras[i].camera_from_world * first_from_world;
+    camera.offset_s = found.cameras[i].offset_s + first_offset;
+    camera.rms_px = found.cameras[i].rms_px;
+    camera.ground_from_image.reset();
+  }
+  rig.calibration = Rig::Calibration{"board", found.mean_px, found.rms_px, found.inliers, found.observations, std::nullopt};
+}
+
+}  // namespace
+
+BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRunOptions& options) {
+  if (rig.cameras.size() < 2) throw Error("a rig is calibrated from two cameras at least, and this one has {}", rig.cameras.size());
+  using Timing = BoardRigOptions::Timing;
+  BoardRigOptions how;
+  how.timing = are_stills(rig) ? Timing::stills : options.synced ? Timing::synced : Timing::films;
+  how.refine_lenses = options.refine;
+  how.most_offset_s = options.most_offset_s;
+  BoardRun run{rig, {}};
+  const BoardDetector detector(board);
+  std::vector<BoardRigCamera> cameras;
+  for (RigCamera& camera : run.rig.cameras) cameras.push_back(look(camera, detector, options));
+  for (BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s;
+  run.found = calibrate_board_rig(board, cameras, how);
+  enter(run.rig, run.found);
+  return run;
+}
+
+}  // namespace marey

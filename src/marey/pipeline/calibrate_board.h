@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "marey/calibrate/board_rig.h"
+#include "marey/core/rig.h"
+
+namespace marey {
+
+struct BoardRunOptions {
+  bool synced = false;        ///< films of cameras in step: their offsets are held as the rig has them
+  bool refine = false;        ///< the lenses too
+  double most_offset_s = 30;  ///< how far cameras are out of step at most
+  std::function<void(const std::string&, std::int64_t, std::optional<std::int64_t>)>
+      progress;  ///< camera, frames done and in all; may be empty
+};
+
+struct BoardRun {
+  Rig rig;         ///< as given, with sizes, lenses, poses and offsets as found
+  BoardRig found;  ///< for the rig's cameras, in their order
+};
+
+/// Places the rig's cameras by a board that all their sources show: films, or pictures whose n-th belong together. A camera without
+/// a lens gets one from the same pictures first. The world is the one in which the first camera has its pose in the rig; where it
+/// has none, the first camera stands at the origin and looks along y, z up. Throws Error where a source cannot be read or
+/// calibrate_board_rig refuses.
+BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRunOptions& options);
+
+}  // namespace marey
