@@ -95,6 +95,56 @@ bool meets(const Silhouette& silhouette, cv::Size picture) {
   return !silhouette.empty() && !(silhouette.pixels() & cv::Rect({0, 0}, picture)).empty();
 }
 
+/// The blocks of 2 × 2 pixels that a rectangle touches.
+cv::Rect half_of(const cv::Rect& pixels) {
+  const cv::Point first(pixels.x / 2, pixels.y / 2);
+  return {first, cv::Point((pixels.br().x + 1) / 2, (pixels.br().y + 1) / 2)};
+}
+
+/// How many points of each pixel lie in a shadow: the most of all shadows counted.
+void count_points(const Silhouette& shadow, const cv::Rect& where, cv::Mat& share) {
+  for (int y = where.y; y < where.br().y; ++y) {
+    for (int x = where.x; x < where.br().x; ++x) {
+      int points = 0;
+      for (int row = 0; row < shadow.samples; ++row) {
+        const auto* point =
+            shadow.mask.ptr<std::uint8_t>(y * shadow.samples + row - shadow.lattice.y) + x * shadow.samples - shadow.lattice.x;
+        for (int column = 0; column < shadow.samples; ++column) points += point[column] != 0 ? 1 : 0;
+      }
+      auto& cell = share.at<std::uint8_t>(y, x);
+      cell = std::max(cell, static_cast<std::uint8_t>(points));
+    }
+  }
+}
+
+/// The same of the blocks of 2 × 2 pixels that `where` touches.
+void add_up_blocks(const cv::Mat& share, const cv::Rect& where, cv::Mat& chroma_share) {
+  const cv::Rect blocks = half_of(where);
+  for (int y = blocks.y; y < blocks.br().y; ++y) {
+    for (int x = blocks.x; x < blocks.br().x; ++x) {
+      const cv::Rect block = cv::Rect(2 * x, 2 * y, 2, 2) & cv::Rect({0, 0}, share.size());
+      int points = 0;
+      for (int row = block.y; row < block.br().y; ++row) {
+        for (int column = block.x; column < block.br().x; ++column) points += share.at<std::uint8_t>(row, column);
+      }
+      chroma_share.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(points * 4 / block.area());
+    }
+  }
+}
+
+/// Brings levels nearer to `zero` by `dark` for each point, which are used up: what lies in two shadows is darkened once.
+void scale_levels(cv::Mat& plane, double zero, double dark, const cv::Rect& where, cv::Mat& share) {
+  for (int y = where.y; y < where.br().y; ++y) {
+    for (int x = where.x; x < where.br().x; ++x) {
+      auto& points = share.at<std::uint8_t>(y, x);
+      if (points == 0) continue;
+      auto& level = plane.at<std::uint8_t>(y, x);
+      level = clamp_level(static_cast<float>(zero + (1 - dark * points) * (level - zero)));
+      points = 0;
+    }
+  }
+}
+
 /// Convex outlines as one silhouette within the picture.
 std::optional<Silhouette> union_of(const std::vector<std::vector<Vector<2>>>& outlines, cv::Size picture) {
   Box box;
@@ -269,41 +319,19 @@ PeopleRenderer::Planes PeopleRenderer::ground(const FrameConditions& conditions)
 }
 
 void PeopleRenderer::darken(Planes& planes, std::span<const Silhouette> shadows) const {
-  cv::Mat share = cv::Mat::zeros(planes.luma.size(), CV_8UC1);  // points in shadow, of kShadowSamples²
+  // Points in shadow: of kShadowSamples² a pixel, and of four times as many for each pixel of chroma.
+  cv::Mat share = cv::Mat::zeros(planes.luma.size(), CV_8UC1), cb_share = cv::Mat::zeros(planes.cb.size(), CV_8UC1);
+  const cv::Rect picture({0, 0}, share.size());
+  for (const Silhouette& shadow : shadows) count_points(shadow, shadow.pixels() & picture, share);
+  for (const Silhouette& shadow : shadows) add_up_blocks(share, shadow.pixels() & picture, cb_share);
+  cv::Mat cr_share = cb_share.clone();
+  constexpr double kPoints = kShadowSamples * kShadowSamples;
+  const double dark = 1 - options_.shadow_level;
   for (const Silhouette& shadow : shadows) {
-    const cv::Rect where = shadow.pixels() & cv::Rect({0, 0}, share.size());
-    for (int y = where.y; y < where.br().y; ++y) {
-      for (int x = where.x; x < where.br().x; ++x) {
-        int points = 0;
-        for (int row = 0; row < kShadowSamples; ++row) {
-          const auto* point =
-              shadow.mask.ptr<std::uint8_t>(y * kShadowSamples + row - shadow.lattice.y) + x * kShadowSamples - shadow.lattice.x;
-          for (int column = 0; column < kShadowSamples; ++column) points += point[column] != 0 ? 1 : 0;
-        }
-        auto& cell = share.at<std::uint8_t>(y, x);
-        cell = std::max(cell, static_cast<std::uint8_t>(points));
-      }
-    }
-  }
-  const double dark = (1 - options_.shadow_level) / (kShadowSamples * kShadowSamples);
-  const auto towards = [](std::uint8_t level, double zero, double factor) {
-    return clamp_level(static_cast<float>(zero + factor * (level - zero)));
-  };
-  for (const Silhouette& shadow : shadows) {
-    const cv::Rect where = shadow.pixels() & cv::Rect({0, 0}, share.size());
-    for (int y = where.y; y < where.br().y; ++y) {
-      for (int x = where.x; x < where.br().x; ++x) {
-        auto& points = share.at<std::uint8_t>(y, x);
-        if (points == 0) continue;
-        auto& luma = planes.luma.at<std::uint8_t>(y, x);
-        luma = towards(luma, 16, 1 - dark * points);
-        for (cv::Mat* chroma : {&planes.cb, &planes.cr}) {
-          auto& level = chroma->at<std::uint8_t>(y / 2, x / 2);
-          if (x % 2 == 0 && y % 2 == 0) level = towards(level, 128, 1 - dark * points);
-        }
-        points = 0;  // darkened: another shadow here shall not do it again
-      }
-    }
+    const cv::Rect where = shadow.pixels() & picture;
+    scale_levels(planes.luma, 16, dark / kPoints, where, share);
+    scale_levels(planes.cb, 128, dark / (4 * kPoints), half_of(where), cb_share);
+    scale_levels(planes.cr, 128, dark / (4 * kPoints), half_of(where), cr_share);
   }
 }
 
