@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "marey/core/error.h"
@@ -42,6 +43,7 @@ constexpr double kSeen = 0.6, kPartly = 0.25;         // shares of the lines fou
 constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
 constexpr double kShareMemory = 0.05;
 constexpr double kSameBox = 0.5;      // IoU of outline and silhouette below which the outline has left its target
+constexpr double kNear = 0.2;         // heights: a silhouette that near corrects the motion; one farther off begins it anew
 constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
 constexpr double kHintScore = 0.3;    // continues a track, begins none
 constexpr double kVelocityDoubt = 2;  // heights/s, of a velocity from two silhouettes
@@ -70,6 +72,20 @@ SplineFitOptions fit_options(const OutlineOptions& options) {
   return {options.order, std::max(needed, kFewestControlPoints), std::max(needed, kChosenAtMost), options.tolerance};
 }
 
+/// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
+bool is_knotted(const ClosedSpline& spline) {
+  constexpr int kPlaces = 4;  // a span
+  const int count = kPlaces * spline.count();
+  double turned = 0;
+  Vector<2> before = spline.derivative(-1.0 / kPlaces);
+  for (int i = 0; i < count; ++i) {
+    const Vector<2> now = spline.derivative(static_cast<double>(i) / kPlaces);
+    turned += std::atan2(before.x() * now.y() - before.y() * now.x(), before.dot(now));
+    before = now;
+  }
+  return std::abs(turned - 2 * std::numbers::pi) > 1;
+}
+
 struct Silhouette {
   ClosedSpline spline;
   Timestamp time;
@@ -87,6 +103,7 @@ struct FollowedTarget {
   Footprint footprint = {};
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  // a reader may still hold one
+  bool knotted = false;                                // what the lines made of it was no outline
   int hint = -1;                                       // index of what `look` said of it
 };
 
@@ -125,6 +142,7 @@ class OutlineFollower::Implementation {
           std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == track.id; });
       if (target != targets_.end()) {
         if (seen != nullptr) put_right(*target, *seen);
+        if (track.box) bring_back(*target, track);
         track.outline = report(*target);
       } else if (seen != nullptr) {
         track.outline = begin(track.id, *seen);
@@ -186,6 +204,7 @@ class OutlineFollower::Implementation {
       return;
     }
     const double predicted_area = target.shape.spline().area();
+    const ShapeFilter predicted = target.shape;
     int believed = 0;
     for (std::size_t i = 0; i < target.lines.size(); ++i) {
       MeasurementLine& line = target.lines[i];
@@ -197,9 +216,15 @@ class OutlineFollower::Implementation {
         line.finding = Finding::outlier;
       }
     }
-    target.state = believed >= kSeen * askable && !hidden ? Outline::State::seen
-                   : believed >= kPartly * askable        ? Outline::State::partly
-                                                          : Outline::State::held;
+    target.knotted = is_knotted(target.shape.spline());
+    if (target.knotted) {  // no outline: the lines are believed as to where the target is, not as to its shape
+      const Vector<2> shift = target.shape.spline().centroid() - predicted.spline().centroid();
+      target.shape = predicted;
+      target.shape.predict(shift, 0, target.shape.spline().centroid(), {});
+    }
+    target.state = believed >= kSeen * askable && !hidden && !target.knotted ? Outline::State::seen
+                   : believed >= kPartly * askable                           ? Outline::State::partly
+                                                                             : Outline::State::held;
     if (target.state == Outline::State::held) return;
     const bool clear = target.state == Outline::State::seen;
     const Matrix<2> P = target.shape.centroid_covariance();
@@ -279,10 +304,30 @@ class OutlineFollower::Implementation {
   void put_right(FollowedTarget& target, const Detection& seen) {
     const auto spline = fit_spline(seen.outline, fit_options(options_));
     if (!spline || iou(spline->box(), seen.box) < kSameBox) return;
-    if (!(iou(target.shape.spline().box(), seen.box) >= kSameBox && target.state != Outline::State::held)) 
-    target.motion = MotionFilter(spline->centroid(), target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
+    const bool strayed = iou(target.shape.spline().box(), seen.box) < kSameBox || target.state == Outline::State::held;
+    const Vector<2> centre = spline->centroid();
+    if ((centre - target.motion.centre()).norm() > kNear * target.height) {
+      target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
+    } else if (strayed || target.knotted) {
+      target.motion.correct_centre(centre, target.height * Vector<2>(kGaitAcross, kGaitDown));
+    }
     target.shape = ShapeFilter(*spline, kSilhouetteNoise);
     target.state = Outline::State::seen;
+    target.knotted = false;
+    target.lines.clear();
+  }
+
+  /// The tracker holds that the target is somewhere else: the outline is moved there with its shape held.
+  static void bring_back(FollowedTarget& target, const Track<2>& track) {
+    const Vector<2> centre = target.motion.centre();
+    const Box& box = *track.box;
+    if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
+    std::vector<Vector<2>> points = target.shape.spline().control_points();
+    const Vector<2> shift = box.centre() - target.shape.spline().centroid();
+    for (Vector<2>& point : points) point += shift;
+    target.shape = ShapeFilter(ClosedSpline(target.shape.spline().order(), std::move(points)), kBend * target.height);
+    target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthDoubt);
+    target.state = Outline::State::held;
     target.lines.clear();
   }
 
