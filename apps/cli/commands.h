@@ -14,5 +14,7 @@ void add_simulate_room(CLI::App& simulate);    ///< below `simulate`
 void add_experiment(CLI::App& app);
 void add_experiment_outlines(CLI::App& experiment);  ///< below `experiment`
 void add_calibrate(CLI::App& app);
+void add_convert(CLI::App& app);
+void add_info(CLI::App& app);
 
 }  // namespace marey::cli

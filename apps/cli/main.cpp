@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
   marey::cli::add_evaluate(app);
   marey::cli::add_simulate(app);
   marey::cli::add_calibrate(app);
+  marey::cli::add_convert(app);
+  marey::cli::add_info(app);
   marey::cli::add_experiment(app);
   try {
     app.parse(argc, argv);

@@ -89,4 +89,20 @@ struct Take {
   std::vector<TakeEdit> edits;    ///< in the order they were made
 };
 
+/// What a take holds, counted. A take file brings it, so that its frames need not be read for it.
+struct TakeSummary {
+  /// One marker over the whole take.
+  struct TrackCount {
+    TakeTrack track;
+    std::int64_t first_frame = 0, last_frame = 0;  ///< where it has its first and last point
+    std::int64_t measured = 0, filled = 0, predicted = 0;
+  };
+
+  std::int64_t frames = 0, observations = 0, points = 0;
+  std::optional<std::int64_t> first_frame, last_frame;  ///< indices; nothing where there is no frame
+  std::optional<Timestamp> first_time, last_time;
+  std::vector<TrackCount> tracks;  ///< by id
+  bool complete = false;           ///< false while it is being written, and where writing was cut off
+};
+
 }  // namespace marey

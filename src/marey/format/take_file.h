@@ -11,22 +11,6 @@
 
 namespace marey {
 
-/// What a take holds, counted while it was written: to be had without reading its frames.
-struct TakeSummary {
-  /// One marker over the whole take.
-  struct TrackCount {
-    TakeTrack track;
-    std::int64_t first_frame = 0, last_frame = 0;  ///< where it has its first and last point
-    std::int64_t measured = 0, filled = 0, predicted = 0;
-  };
-
-  std::int64_t frames = 0, observations = 0, points = 0;
-  std::optional<std::int64_t> first_frame, last_frame;  ///< indices; nothing where there is no frame
-  std::optional<Timestamp> first_time, last_time;
-  std::vector<TrackCount> tracks;  ///< by id
-  bool complete = false;           ///< false while it is being written, and where writing was cut off
-};
-
 /// Writes a take while it is recorded, into one SQLite file under its own name (docs/take.md has the schema). What was written
 /// reaches the file within half a second of the next `write`, so that a killed program loses less than a second; memory does not
 /// grow with the take. Others may read the file meanwhile.

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "marey/core/error.h"
+#include "marey/format/motion.h"
+
+#include "commands.h"
+#include "known.h"
+#include "progress_bar.h"
+
+namespace marey::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  std::string from, to;
+  std::string format;
+  std::string up, from_up;
+  bool labelled = false;
+  bool quiet = false;
+};
+
+UpAxis axis_of(const std::string& name) {
+  return name == "y" ? UpAxis::y : UpAxis::z;
+}
+
+/// `--up` is the axis of B; where B is a take, whose z is up always, it is that of A.
+std::pair<UpAxis, UpAxis> axes(const ConvertOptions& options, MotionFormat from, MotionFormat to) {
+  const UpAxis up = axis_of(options.up);
+  if (!options.from_up.empty()) {
+    if (from == MotionFormat::take) throw Error("a take's z is up always; --from-up is for other files");
+    return {axis_of(options.from_up), up};
+  }
+  if (to == MotionFormat::take) return {up, UpAxis::z};
+  return {UpAxis::z, up};
+}
+
+MotionFormat format_to_write(const ConvertOptions& options) {
+  if (!options.format.empty()) return parse_motion_format(options.format);
+  const auto format = motion_format_of_name(options.to);
+  if (!format) throw Error("{}: its ending is of no format; name one with --format: {}", options.to, motion_format_names());
+  return *format;
+}
+
+MotionFormat format_to_read(const ConvertOptions& options) {
+  const auto format = motion_format_of_content(options.from);
+  if (!format) throw Error("{}: is none of the files that Marey reads: {}", options.from, motion_format_names());
+  return *format;
+}
+
+/// `tracks` by id.
+void leave_out_others(TakeFrame& frame, const std::vector<TakeTrack>& tracks) {
+  std::erase_if(frame.points, [&](const TakePoint& point) {
+    const auto by_id = [](const TakeTrack& track, TrackId id) { return track.id < id; };
+    const auto found = std::lower_bound(tracks.begin(), tracks.end(), point.track, by_id);
+    return found == tracks.end() || found->id != point.track;
+  });
+}
+
+void convert(const ConvertOptions& options) {
+  const MotionFormat from = format_to_read(options), to = format_to_write(options);
+  std::error_code error;
+  if (fs::equivalent(options.from, options.to, error))
+    throw Error("{}: cannot be converted into itself; name another file", options.to);
+  const auto [from_up, to_up] = axes(options, from, to);
+  // Read twice: most formats begin with what is known only at the end.
+  const auto first = open_motion(options.from, from, from_up);
+  MotionPlan plan = plan_of(*first, options.from);
+  for (const std::string& sentence : first->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  // A file that says so itself is still believed only where the user says it too: many say it by mistake.
+  if (plan.info.up == UpAxis::y && from_up == UpAxis::z) {
+    fmt::print(stderr, "marey: warning: {}: says that y is up; {} turns it so that z is\n", options.from,
+               to == MotionFormat::take ? "--up y" : "--from-up y");
+  }
+  if (options.labelled) std::erase_if(plan.info.tracks, [](const TakeTrack& track) { return track.label.empty(); });
+  const auto reader = open_motion(options.from, from, from_up);
+  const auto writer = create_motion(options.to, to, plan, to_up);
+  ProgressBar progress(options.quiet);
+  std::int64_t done = 0;
+  while (auto frame = reader->next()) {
+    if (options.labelled) leave_out_others(*frame, plan.info.tracks);
+    writer->write(*frame);
+    progress.show("converting", ++done, plan.info.frame_count);
+  }
+  writer->finish();
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = app.add_subcommand("convert", "Write a recording of points in another format");
+  command->add_option("A", options->from, "take, C3D, TRC or CSV (tidy, Motive's, Nexus's); known by its content")->required();
+  command->add_option("B", options->to, "what to write; its ending tells the format: .marey, .c3d, .trc, .csv")->required();
+  command->add_option("--format", options->format, "B's format in place of its ending: " + motion_format_names())
+      ->check(CLI::IsMember({"take", "c3d", "trc", "csv", "motive"}));
+  command->add_option("--up", options->up, "the axis that is up in B (in A, where B is a take); coordinates are turned accordingly")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->default_str("z");
+  command->add_option("--from-up", options->from_up, "the axis that is up in A")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->default_str("z");
+  command->add_flag("--labelled", options->labelled, "leave out tracks that have no label");
+  command->add_flag("-q,--quiet", options->quiet, "show no progress");
+  command->callback([options] { convert(*options); });
+}
+
+}  // namespace marey::cli

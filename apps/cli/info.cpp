@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/motion.h"
+#include "marey/format/rig_file.h"
+#include "marey/format/take_file.h"
+
+#include "commands.h"
+
+namespace marey::cli {
+namespace {
+
+struct InfoOptions {
+  std::string file;
+  bool json = false;
+};
+
+std::string_view words_of(MotionFormat format) {
+  switch (format) {
+    case MotionFormat::take:
+      return "a take";
+    case MotionFormat::c3d:
+      return "a C3D file";
+    case MotionFormat::trc:
+      return "a TRC file";
+    case MotionFormat::csv:
+      return "a CSV file of points, one row each";
+    case MotionFormat::motive:
+      return "a CSV file of Motive's";
+    case MotionFormat::nexus:
+      return "a CSV file of Nexus's";
+  }
+  return {};
+}
+
+/// 1,234,567
+std::string counted(std::int64_t value) {
+  std::string digits = fmt::format("{}", value);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), 1, ',');
+  return digits;
+}
+
+std::string duration_words(double duration_s) {
+  if (duration_s < 60) return fmt::format("{:.2f} s", duration_s);
+  const auto minutes = static_cast<std::int64_t>(duration_s / 60);
+  if (minutes < 60) return fmt::format("{} min {:.1f} s", minutes, duration_s - 60.0 * static_cast<double>(minutes));
+  return fmt::format("{} h {} min {:.0f} s", minutes / 60, minutes % 60, duration_s - 60.0 * static_cast<double>(minutes));
+}
+
+std::string percent(std::int64_t part, std::int64_t whole) {
+  return whole == 0 ? std::string("-") : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+/// All frames between the first and the last, those that are left out too.
+std::int64_t span_of(const TakeSummary& summary) {
+  return summary.first_frame ? *summary.last_frame - *summary.first_frame + 1 : 0;
+}
+
+void row(const char* name, const std::string& value) {
+  if (!value.empty()) fmt::print("  {:<13} {}\n", name, value);
+}
+
+std::string camera_words(const RigCamera& camera) {
+  std::string words = camera.size ? fmt::format("{}x{}", camera.size->width, camera.size->height) : std::string("size unknown");
+  words += camera.camera()            ? ", calibrated"
+           : camera.ground_from_image ? ", ground known"
+           : camera.lens              ? ", lens known"
+                                      : ", not calibrated";
+  if (camera.rms_px) words += fmt::format(", {:.2f} px RMS", *camera.rms_px);
+  if (camera.offset_s != 0) words += fmt::format(", offset {:+.4f} s", camera.offset_s);
+  const std::string& source = camera.source.empty() ? camera.detections : camera.source;
+  return source.empty() ? words : words + ", " + source;
+}
+
+void print_cameras(const Rig& rig) {
+  std::size_t width = 6;
+  for (const RigCamera& camera : rig.cameras) width = std::max(width, camera.name.size());
+  for (const RigCamera& camera : rig.cameras) fmt::print("  {:<{}}  {}\n", camera.name, width, camera_words(camera));
+}
+
+void print_calibration(const Rig& rig) {
+  if (!rig.calibration) return;
+  std::string words = rig.calibration->method;
+  if (rig.calibration->rms_px) words += fmt::format(", {:.3f} px RMS", *rig.calibration->rms_px);
+  if (rig.calibration->grade) words += ", " + *rig.calibration->grade;
+  row("calibration", words);
+}
+
+void print_tracks(const TakeSummary& summary) {
+  if (summary.tracks.empty()) return;
+  const std::int64_t frames = span_of(summary);
+  std::size_t width = 5;
+  for (const auto& count : summary.tracks) width = std::max(width, std::min<std::size_t>(count.track.label.size(), 32));
+  fmt::print("\n  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", "id", "label", width, "present", "filled", "predicted",
+             "first", "last");
+  for (const auto& count : summary.tracks) {
+    const std::int64_t present = count.measured + count.filled + count.predicted;
+    const std::string first = present > 0 ? fmt::format("{}", count.first_frame) : "-";
+    const std::string last = present > 0 ? fmt::format("{}", count.last_frame) : "-";
+    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.track.id), count.track.label.substr(0, 32),
+               width, percent(present, frames), percent(count.filled, frames), percent(count.predicted, frames), first, last);
+  }
+}
+
+void print_motion(const std::string& path, MotionFormat format, const MotionInfo& info, const TakeSummary& summary) {
+  fmt::print("{}: {}{}\n", path, words_of(format),
+             summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
+  row("name", info.header.name);
+  row("made by", info.header.made_by);
+  row("recorded", info.header.recorded_at);
+  const std::int64_t frames = span_of(summary);
+  const double length_s = summary.first_time ? seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz : 0;
+  row("length", fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
+                            summary.frames < frames ? fmt::format(", {} of them left out", counted(frames - summary.frames)) : ""));
+  if (summary.first_frame) row("frames", fmt::format("{} to {}, counted from 0", *summary.first_frame, *summary.last_frame));
+  const auto labelled =
+      std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.track.label.empty(); });
+  row("tracks", fmt::format("{}, {} with a label", summary.tracks.size(), labelled));
+  std::int64_t filled = 0, predicted = 0;
+  for (const auto& count : summary.tracks) {
+    filled += count.filled;
+    predicted += count.predicted;
+  }
+  row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.points),
+                            percent(summary.points - filled - predicted, summary.points), percent(filled, summary.points),
+                            percent(predicted, summary.points)));
+  if (format == MotionFormat::take) row("observations", counted(summary.observations));
+  if (info.up) row("up", *info.up == UpAxis::y ? "y" : "z");
+  for (const TakeEdit& edit : info.edits) row("edit", edit.time.empty() ? edit.what : edit.time + ": " + edit.what);
+  if (info.header.rig) {
+    row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
+    print_calibration(*info.header.rig);
+    fmt::print("\n");
+    print_cameras(*info.header.rig);
+  }
+  print_tracks(summary);
+}
+
+nlohmann::json as_json(const Rig& rig) {
+  nlohmann::json cameras = nlohmann::json::array();
+  for (const RigCamera& camera : rig.cameras) {
+    nlohmann::json entry{{"name", camera.name},
+                         {"source", camera.source},
+                         {"offset_s", camera.offset_s},
+                         {"calibrated", camera.camera().has_value()}};
+    if (camera.size) entry["size"] = {camera.size->width, camera.size->height};
+    if (camera.rms_px) entry["rms_px"] = *camera.rms_px;
+    cameras.push_back(std::move(entry));
+  }
+  return cameras;
+}
+
+nlohmann::json as_json(MotionFormat format, const MotionInfo& info, const TakeSummary& summary) {
+  nlohmann::json tracks = nlohmann::json::array();
+  for (const auto& count : summary.tracks) {
+    nlohmann::json entry{{"id", number(count.track.id)},
+                         {"label", count.track.label},
+                         {"measured", count.measured},
+                         {"filled", count.filled},
+                         {"predicted", count.predicted}};
+    if (count.measured + count.filled + count.predicted > 0) {
+      entry["first_frame"] = count.first_frame;
+      entry["last_frame"] = count.last_frame;
+    }
+    tracks.push_back(std::move(entry));
+  }
+  nlohmann::json result{{"format", motion_format_name(format)},
+                        {"complete", summary.complete},
+                        {"name", info.header.name},
+                        {"made_by", info.header.made_by},
+                        {"rate_hz", info.header.rate_hz},
+                        {"frames", summary.frames},
+                        {"points", summary.points},
+                        {"observations", summary.observations},
+                        {"tracks", std::move(tracks)}};
+  if (summary.first_frame) {
+    result["first_frame"] = *summary.first_frame;
+    result["last_frame"] = *summary.last_frame;
+    result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
+  }
+  if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
+  if (info.up) result["up"] = *info.up == UpAxis::y ? "y" : "z";
+  if (info.header.rig) result["cameras"] = as_json(*info.header.rig);
+  nlohmann::json edits = nlohmann::json::array();
+  for (const TakeEdit& edit : info.edits) edits.push_back({{"time", edit.time}, {"what", edit.what}});
+  if (!edits.empty()) result["edits"] = std::move(edits);
+  return result;
+}
+
+void print(const nlohmann::json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void tell_motion(const InfoOptions& options, MotionFormat format) {
+  const auto reader = open_motion(options.file, format);
+  const TakeSummary summary = format == MotionFormat::take ? TakeReader(options.file).summary() : summary_of(*reader);
+  for (const std::string& sentence : reader->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (options.json) {
+    print(as_json(format, reader->info(), summary));
+  } else {
+    print_motion(options.file, format, reader->info(), summary);
+  }
+}
+
+void tell_rig(const InfoOptions& options) {
+  const Rig rig = read_rig(options.file);
+  if (options.json) return print({{"format", "rig"}, {"cameras", as_json(rig)}});
+  fmt::print("{}: a rig of {} camera{}\n", options.file, rig.cameras.size(), rig.cameras.size() == 1 ? "" : "s");
+  print_calibration(rig);
+  print_cameras(rig);
+}
+
+void run(const InfoOptions& options) {
+  if (const auto format = motion_format_of_content(options.file)) {
+    tell_motion(options, *format);
+  } else if (options.file.ends_with(".toml")) {
+    tell_rig(options);
+  } else {
+    throw Error("{}: is none of the files that Marey knows: {}, rig (.toml)", options.file, motion_format_names());
+  }
+  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Say what is in a file");
+  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, or rig")->required();
+  command->add_flag("--json", options->json, "print it as JSON");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace marey::cli
