@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   marey::cli::add_calibrate(app);
   marey::cli::add_convert(app);
   marey::cli::add_info(app);
+  marey::cli::add_reconstruct(app);
   marey::cli::add_experiment(app);
   try {
     app.parse(argc, argv);

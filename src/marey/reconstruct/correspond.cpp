@@ -28,6 +28,8 @@ class Corresponder::Impl {
     return result_;
   }
 
+  void set_noise(double px) { options_.noise_px = px; }
+
  private:
   /// Groups from `sure` on are reported apart.
   void report(std::size_t observations, std::size_t sure) {
@@ -66,6 +68,10 @@ Corresponder::Corresponder(std::vector<Camera> cameras, const CorrespondOptions&
 Corresponder::~Corresponder() = default;
 Corresponder::Corresponder(Corresponder&&) noexcept = default;
 Corresponder& Corresponder::operator=(Corresponder&&) noexcept = default;
+
+void Corresponder::set_noise(double px) {
+  impl_->set_noise(px);
+}
 
 const Correspondences& Corresponder::match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
   return impl_->match(seen, expected);

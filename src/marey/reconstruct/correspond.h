@@ -63,6 +63,9 @@ class Corresponder {
   /// before.
   const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected = {});
 
+  /// From the next call on.
+  void set_noise(double px);
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

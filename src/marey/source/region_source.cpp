@@ -1,0 +1,63 @@
+#include "marey/source/region_source.h"
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+/// Chroma is stored at half size: a region that begins on an odd pixel is cut from the colours themselves.
+Picture cut(const Picture& picture, const cv::Rect& region) {
+  if (!picture.is_colour()) return Picture(picture.luma()(region));
+  if (region.x % 2 != 0 || region.y % 2 != 0) return Picture::from_bgr(picture.bgr()(region));
+  const cv::Rect half(region.x / 2, region.y / 2, (region.width + 1) / 2, (region.height + 1) / 2);
+  return {picture.luma()(region), picture.cb()(half), picture.cr()(half), picture.range(), std::make_shared<Picture>(picture)};
+}
+
+class RegionSource final : public Source {
+ public:
+  RegionSource(std::unique_ptr<Source> source, const cv::Rect& region) : source_(std::move(source)), region_(region) {
+    info_ = source_->info();
+    const cv::Rect whole({}, info_.size);
+    if (region.width <= 0 || region.height <= 0 || (region & whole) != region) {
+      throw Error("{}: the region [{}, {}, {}, {}] does not lie within its pictures of {}×{} px; correct it in the rig", info_.name,
+                  region.x, region.y, region.width, region.height, info_.size.width, info_.size.height);
+    }
+    info_.size = region.size();
+  }
+
+  const SourceInfo& info() const override { return info_; }
+
+  std::optional<Frame> next() override {
+    auto frame = source_->next();
+    while (frame && !frame->picture.empty() && (region_ & cv::Rect({}, frame->picture.size())) != region_) {
+      ++left_out_;
+      frame = source_->next();
+    }
+    if (frame && !frame->picture.empty()) frame->picture = cut(frame->picture, region_);
+    return frame;
+  }
+
+  std::vector<std::string> warnings() const override {
+    auto all = source_->warnings();
+    if (left_out_ > 0) {
+      all.push_back(fmt::format("{}: {} pictures were too small for the camera's region and were left out", info_.name, left_out_));
+    }
+    return all;
+  }
+
+ private:
+  std::unique_ptr<Source> source_;
+  cv::Rect region_;
+  SourceInfo info_;
+  std::int64_t left_out_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Source> crop(std::unique_ptr<Source> source, cv::Rect region) {
+  return std::make_unique<RegionSource>(std::move(source), region);
+}
+
+}  // namespace marey
