@@ -28,9 +28,10 @@ void span_weights(int order, double t, double* value, double* derivative) {
     if (degree == order - 1) {
       for (int j = 0; j <= degree; ++j) derivative[j] = (j > 0 ? value[j - 1] : 0) - (j < degree ? value[j] : 0);
     }
-    value[degree] = t / degree * value[degree - 1];
-    for (int j = degree - 1; j > 0; --j) value[j] = ((t + degree - j) * value[j - 1] + (1 - t + j) * value[j]) / degree;
-    value[0] *= (1 - t) / degree;
+    const double share = 1.0 / degree;
+    value[degree] = share * t * value[degree - 1];
+    for (int j = degree - 1; j > 0; --j) value[j] = share * ((t + degree - j) * value[j - 1] + (1 - t + j) * value[j]);
+    value[0] *= share * (1 - t);
   }
 }
 

@@ -69,6 +69,7 @@ struct SplineFitOptions {
   int least = 8;           ///< control points to begin with
   int most = 24;           ///< and to end with; both are raised to what the order needs
   double tolerance = 0.5;  ///< px, RMS distance between polygon and curve; the fewest control points that reach it are taken
+  int rounds = 4;          ///< that the parameter of the samples is corrected; 0 for the plain fit by arc length
 };
 
 /// The least-squares spline of a closed polygon (ordered corners, edges counted by their length); its parameter goes with arc

@@ -1,6 +1,8 @@
 // A closed spline through a polygon, by least squares. The polygon is sampled evenly along its length, a whole number of samples
 // a span, so that the normal matrix is circulant: the same few weights shifted from row to row, positive definite, and small.
-// Control points are added until the curve is near enough. Cost: M³ / 3 + a few products a sample for each number M tried.
+// Then the parameter of each sample is corrected to the place on the curve that is nearest to it, and the curve fitted again, so
+// that control points gather where the polygon bends. Cost: M³ / 6 + 4 M k² a round; log₂ of the range for the number M. Reference:
+// Hoschek, "Intrinsic parametrization for approximation", Computer Aided Geometric Design 5(1), 1988.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -13,7 +15,9 @@
 namespace marey {
 namespace {
 
-constexpr int kPerSpan = 8;  // samples of the polygon
+constexpr int kPerSpan = 4;       // samples of the polygon
+constexpr double kEager = 1.5;    // times Newton's step: the steps of neighbours help one another
+constexpr double kSteady = 1e-9;  // keeps a control point that no sample is near from running away
 
 /// The polygon from its topmost, then leftmost corner, clockwise on the screen.
 std::vector<Vector<2>> in_order(std::span<const Vector<2>> polygon, bool clockwise) {
@@ -56,33 +60,65 @@ Eigen::MatrixX2d sampled(std::span<const Vector<2>> corners, double length, int 
 
 struct Fit {
   Eigen::MatrixX2d points;
+  Eigen::MatrixXd normal;
+  Eigen::LLT<Eigen::MatrixXd> solver;
   double rms = 0;  // px
 };
 
-Fit fit(std::span<const Vector<2>> corners, double length, int order, int count) {
-  const Eigen::MatrixX2d samples = sampled(corners, length, count * kPerSpan);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(count, 2);
-  std::array<SplineWeights, kPerSpan> weights;
-  for (int i = 0; i < kPerSpan; ++i) weights[i] = spline_weights(order, count, static_cast<double>(i) / kPerSpan);
-  for (int s = 0; s < count * kPerSpan; ++s) {
-    const SplineWeights& w = weights[s % kPerSpan];
+/// The least-squares curve through the samples at parameters `places`. The normal matrix is banded but for its corners, where the
+/// curve closes; only its lower half is filled in.
+void solve(const Eigen::MatrixX2d& samples, std::span<const double> places, int order, Fit& fit) {
+  const int count = static_cast<int>(fit.points.rows());
+  fit.normal.setZero(count, count);
+  fit.points.setZero();
+  for (int s = 0; s < samples.rows(); ++s) {
+    const SplineWeights w = spline_weights(order, count, places[s]);
     for (int a = 0; a < order; ++a) {
-      const int i = (w.first + s / kPerSpan + a) % count;
-      right.row(i) += w.value[a] * samples.row(s);
-      for (int b = 0; b < order; ++b) normal(i, (w.first + s / kPerSpan + b) % count) += w.value[a] * w.value[b];
+      const int i = w.first + a < count ? w.first + a : w.first + a - count;
+      fit.points(i, 0) += w.value[a] * samples(s, 0);
+      fit.points(i, 1) += w.value[a] * samples(s, 1);
+      for (int b = 0; b <= a; ++b) {
+        const int j = w.first + b < count ? w.first + b : w.first + b - count;
+        fit.normal(std::max(i, j), std::min(i, j)) += w.value[a] * w.value[b];
+      }
     }
   }
-  Fit result;
-  result.points = normal.ldlt().solve(right);
+  fit.normal.diagonal().array() += kSteady;
+  fit.solver.compute(fit.normal);
+  fit.solver.solveInPlace(fit.points);
+}
+
+/// Moves each sample's parameter to the place on the curve that is nearest to it, by one step of Newton's method, and never past
+/// its neighbours. Returns the RMS distance there.
+double correct_places(const Eigen::MatrixX2d& samples, int order, const Eigen::MatrixX2d& points, std::span<double> places) {
+  const int count = static_cast<int>(points.rows());
+  const double most = 0.5 * count / static_cast<double>(samples.rows());
   double sum = 0;
-  for (int s = 0; s < count * kPerSpan; ++s) {
-    const SplineWeights& w = weights[s % kPerSpan];
-    Eigen::RowVector2d at = Eigen::RowVector2d::Zero();
-    for (int a = 0; a < order; ++a) at += w.value[a] * result.points.row((w.first + s / kPerSpan + a) % count);
-    sum += (at - samples.row(s)).squaredNorm();
+  for (int s = 0; s < samples.rows(); ++s) {
+    const SplineWeights w = spline_weights(order, count, places[s]);
+    Eigen::RowVector2d at = Eigen::RowVector2d::Zero(), slope = Eigen::RowVector2d::Zero();
+    for (int a = 0; a < order; ++a) {
+      const int i = w.first + a < count ? w.first + a : w.first + a - count;
+      at += w.value[a] * points.row(i);
+      slope += w.derivative[a] * points.row(i);
+    }
+    const Eigen::RowVector2d gap = samples.row(s) - at;
+    sum += gap.squaredNorm();
+    const double speed = slope.squaredNorm();
+    if (speed > 0) places[s] += std::clamp(kEager * gap.dot(slope) / speed, -most, most);
   }
-  result.rms = std::sqrt(sum / (count * kPerSpan));
+  return std::sqrt(sum / static_cast<double>(samples.rows()));
+}
+
+Fit fit(std::span<const Vector<2>> corners, double length, int order, int count, int rounds) {
+  const Eigen::MatrixX2d samples = sampled(corners, length, count * kPerSpan);
+  std::vector<double> places(samples.rows());
+  for (std::size_t s = 0; s < places.size(); ++s) places[s] = static_cast<double>(s) / kPerSpan;
+  Fit result{.points = Eigen::MatrixX2d(count, 2), .normal = {}, .solver = {}};
+  for (int round = 0; round <= rounds; ++round) {
+    solve(samples, places, order, result);
+    result.rms = correct_places(samples, order, result.points, places);
+  }
   return result;
 }
 
@@ -97,9 +133,22 @@ std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const
   const int needed = std::max(options.order, 3);
   if (!(length >= needed)) return std::nullopt;
   const int most = std::min(std::max(options.most, needed), static_cast<int>(std::min(length, 1e6)));
-  int count = std::clamp(options.least, needed, most);
-  Fit best = fit(corners, length, options.order, count);
-  while (best.rms > options.tolerance && count < most) best = fit(corners, length, options.order, ++count);
+  int low = std::clamp(options.least, needed, most), high = std::max(low, most);
+  Fit best = fit(corners, length, options.order, high, options.rounds);
+  if (low < high && best.rms <= options.tolerance) {
+    // The fewest that are enough, by bisection: more control points come nearer, but for a hair.
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      Fit tried = fit(corners, length, options.order, middle, options.rounds);
+      if (tried.rms <= options.tolerance) {
+        best = std::move(tried);
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+  }
+  const int count = high;
   std::vector<Vector<2>> points;
   points.reserve(count);
   for (int i = 0; i < count; ++i) points.emplace_back(best.points.row(i).transpose());

@@ -32,7 +32,7 @@ constexpr int kMostControlPoints = 64, kMostLines = 512;
 constexpr int kFewestControlPoints = 8, kChosenAtMost = 24;  // where the tolerance chooses
 // Noise, in heights of the target (px where it says so); each √second where it is a motion.
 constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part is hidden by the scene
-constexpr double kAcceleration = 0.6, kGrowthDrift = 0.15;
+constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
 constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
 constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
                  kHiddenCentre = 4;                   // how the centre swings with the steps; the last: factor
@@ -42,11 +42,12 @@ constexpr double kLeastReach = 4, kMostReach = 0.25;  // of a line: px; heights
 constexpr double kSeen = 0.6, kPartly = 0.25;         // shares of the lines found
 constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
 constexpr double kShareMemory = 0.05;
-constexpr double kSameBox = 0.5;      // IoU of outline and silhouette below which the outline has left its target
-constexpr double kNear = 0.2;         // heights: a silhouette that near corrects the motion; one farther off begins it anew
+constexpr double kSameBox = 0.5;      // IoU of a silhouette's outline and the detection's box from which on they are the same thing
+constexpr double kMostUnlike = 1.35;  // factor of a silhouette's size over the usual, from which on it is not believed
+constexpr double kLeft = 0.5;         // heights from where the centre is predicted: the motion begins anew
+constexpr int kRounds = 3;            // of the fit, in every frame
 constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
 constexpr double kHintScore = 0.3;    // continues a track, begins none
-constexpr double kVelocityDoubt = 2;  // heights/s, of a velocity from two silhouettes
 constexpr double kGrowthDoubt = 0.5;  // 1/s
 
 void check(const OutlineOptions& options) {
@@ -91,11 +92,17 @@ struct Silhouette {
   Timestamp time;
 };
 
+/// px, standard deviation axis by axis.
+struct MeasuredCentre {
+  Vector<2> centre, deviation;
+};
+
 struct FollowedTarget {
   TrackId id;
   ShapeFilter shape;
   MotionFilter motion;
   double height;           // px
+  double usual_area;       // px²
   double usual_share = 1;  // of the pixels within the outline that are foreground
   double share = 1;
   Box box = {};
@@ -104,7 +111,7 @@ struct FollowedTarget {
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  // a reader may still hold one
   bool knotted = false;                                // what the lines made of it was no outline
-  int hint = -1;                                       // index of what `look` said of it
+  std::optional<MeasuredCentre> measured = {};         // in this frame, for the motion filter
 };
 
 }  // namespace
@@ -119,11 +126,12 @@ class OutlineFollower::Implementation {
     hints_.clear();
     for (FollowedTarget& target : targets_) {
       predict(target, dt);
-      target.hint = -1;
+      target.measured.reset();
     }
-    if (foreground.mask.empty()) return hints_;
+    const cv::Mat& mask = foreground.covered.empty() ? foreground.mask : foreground.covered;
+    if (mask.empty()) return hints_;
     order_by_nearness();
-    for (const int index : nearest_first_) observe(targets_[index], foreground.mask, dt);
+    for (const int index : nearest_first_) observe(targets_[index], mask, dt);
     for (FollowedTarget& target : targets_) hint(target, detections);
     return hints_;
   }
@@ -141,8 +149,9 @@ class OutlineFollower::Implementation {
       const auto target =
           std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == track.id; });
       if (target != targets_.end()) {
-        if (seen != nullptr) put_right(*target, *seen);
+        if (seen != nullptr) take_silhouette(*target, *seen);
         if (track.box) bring_back(*target, track);
+        if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
         track.outline = report(*target);
       } else if (seen != nullptr) {
         track.outline = begin(track.id, *seen);
@@ -231,7 +240,7 @@ class OutlineFollower::Implementation {
     const Vector<2> gait = (clear ? 1 : kHiddenCentre) * target.height * Vector<2>(kGaitAcross, kGaitDown);
     const Vector<2> deviation = (P.diagonal() + gait.cwiseAbs2()).cwiseSqrt();
     const Vector<2> centre = target.shape.spline().centroid();
-    target.motion.correct_centre(centre, deviation);
+    target.measured = {centre, deviation};
     const double area = target.shape.spline().area();
     if (clear && dt > 0 && area > 0 && predicted_area > 0) {
       const double measured = target.motion.growth() + (std::sqrt(area / predicted_area) - 1) / dt;
@@ -293,28 +302,30 @@ class OutlineFollower::Implementation {
       if (iou(detection.box, box) > kExplained || intersection(detection.box, box).area() > 0.6 * box.area()) return;
     }
     const Vector<2> deviation = target.motion.centre_deviation();
-    target.hint = static_cast<int>(hints_.size());
     hints_.push_back({.value = box.centre(),
                       .covariance = Matrix<2>((deviation.cwiseAbs2() + Vector<2>::Constant(4)).asDiagonal()),
                       .score = kHintScore,
                       .box = box});
   }
 
-  /// The tracker says that `seen` is this target: where the outline is somewhere else, it begins anew there.
-  void put_right(FollowedTarget& target, const Detection& seen) {
-    const auto spline = fit_spline(seen.outline, fit_options(options_));
-    if (!spline || iou(spline->box(), seen.box) < kSameBox) return;
-    const bool strayed = iou(target.shape.spline().box(), seen.box) < kSameBox || target.state == Outline::State::held;
+  /// The tracker says that `seen`, which nobody shares, is this target: its whole edge tells more than the lines, which a leg that
+  /// swings leaves behind. A silhouette unlike the target (cut, or grown by something else) is left to the lines.
+  void take_silhouette(FollowedTarget& target, const Detection& seen) {
+    const int count = target.shape.spline().count();
+    const auto spline = fit_spline(seen.outline, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
+    if (!spline || spline->count() != count || iou(spline->box(), seen.box) < kSameBox) return;
+    const double growth = std::sqrt(spline->area() / target.usual_area);
+    if (is_knotted(*spline)) return;
+    if (target.state == Outline::State::seen && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return;
     const Vector<2> centre = spline->centroid();
-    if ((centre - target.motion.centre()).norm() > kNear * target.height) {
+    if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
       target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
-    } else if (strayed || target.knotted) {
-      target.motion.correct_centre(centre, target.height * Vector<2>(kGaitAcross, kGaitDown));
     }
     target.shape = ShapeFilter(*spline, kSilhouetteNoise);
     target.state = Outline::State::seen;
     target.knotted = false;
-    target.lines.clear();
+    target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
+    target.usual_area += kShareMemory * (spline->area() - target.usual_area);
   }
 
   /// The tracker holds that the target is somewhere else: the outline is moved there with its shape held.
@@ -328,6 +339,7 @@ class OutlineFollower::Implementation {
     target.shape = ShapeFilter(ClosedSpline(target.shape.spline().order(), std::move(points)), kBend * target.height);
     target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthDoubt);
     target.state = Outline::State::held;
+    target.measured.reset();
     target.lines.clear();
   }
 
@@ -346,11 +358,15 @@ class OutlineFollower::Implementation {
     const Vector<2> centre = spline->centroid(), velocity = (centre - before.centroid()) / dt;
     const double growth = (std::sqrt(spline->area() / before.area()) - 1) / dt;
     const double height = seen.box.height;
-    MotionFilter motion(centre, Vector<2>::Zero(), 0, kSilhouetteNoise, kVelocityDoubt * height, kGrowthDoubt);
     const double noise = std::sqrt(2) * (kSilhouetteNoise + kGaitAcross * height) / dt;
-    motion = MotionFilter(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthDoubt);
+    MotionFilter motion(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthDoubt);
     motion.correct_growth(growth, kGrowthNoise);
-    targets_.push_back({.id = id, .shape = ShapeFilter(std::move(*spline), kSilhouetteNoise), .motion = motion, .height = height});
+    const double area = spline->area();
+    targets_.push_back({.id = id,
+                        .shape = ShapeFilter(std::move(*spline), kSilhouetteNoise),
+                        .motion = motion,
+                        .height = height,
+                        .usual_area = area});
     first_seen_.erase(first);
     return report(targets_.back());
   }
