@@ -14,6 +14,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
 if(MAREY_TESTS)
   find_package(GTest REQUIRED)
+  find_package(OpenCV 4.6 REQUIRED COMPONENTS imgcodecs)  # reads back what was drawn
   # Named, so that another python3 that comes first on PATH is not taken.
   set(Python3_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "The interpreter of the script that tests call")
   find_package(Python3 REQUIRED COMPONENTS Interpreter)

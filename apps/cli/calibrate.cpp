@@ -9,6 +9,7 @@ void add_calibrate(CLI::App& app) {
   add_calibrate_lens(*calibrate);
   add_calibrate_wand(*calibrate);
   add_calibrate_board(*calibrate);
+  add_calibrate_pitch(*calibrate);
 }
 
 }  // namespace marey::cli

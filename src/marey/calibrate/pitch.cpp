@@ -12,8 +12,8 @@
 namespace marey {
 namespace {
 
-// The search narrows as the camera gets better: px in a picture of 3,072, more or less in others.
-constexpr double kReaches[] = {14, 8, 5, 5};
+// The search narrows as the camera gets better (units of `find_lines`, for a picture of 3,072 px; more or less for others).
+constexpr double kReaches[] = {14, 12, 10, 10, 8};
 constexpr double kReferenceWidth = 3072;
 constexpr double kSampleStep = 0.25;   // m
 constexpr double kFarthestClick = 50;  // px: what is clicked further off its line is no click on it
@@ -137,6 +137,7 @@ PitchViewResult calibrate_view(const PitchView& view, const std::vector<PitchPoi
     if (result.lines.empty()) return result;
     refine_on(result.lines);
   }
+  result.inlier = points_near(result.camera, points);
   return result;
 }
 

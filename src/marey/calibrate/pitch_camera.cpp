@@ -341,6 +341,10 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
   return result;
 }
 
+std::vector<char> points_near(const Camera& camera, const std::vector<PitchPoint>& points) {
+  return inliers_of(errors_of(camera, points));
+}
+
 Camera refine(const Camera& start, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
               const std::vector<LineSighting>& sightings, bool free_lens) {
   Numbers numbers = numbers_of(start);

@@ -14,22 +14,30 @@ constexpr double kStep = 0.5;         // px between readings along a normal
 constexpr double kBlur = 2;           // px: how much optics and compression widen paint
 constexpr double kLeastContrast = 3;  // grey levels above the brighter side
 constexpr double kPaintSigma = 0.35;  // px: how well a peak's place is known
-constexpr double kTolerance = 0.8;    // px: off the smooth curve
+constexpr double kTolerance = 0.8;    // units: off the smooth curve
+constexpr double kFaint = 0.3;        // of the contrast of a line's brighter fifth
 constexpr double kLeastShare = 0.25;  // of a line's samples in the picture
 constexpr int kLeastSamples = 6;
 constexpr int kDraws = 300;
 constexpr std::size_t kLongestArc = 60;  // samples: a quarter of the centre circle; longer pieces of arcs are no parabola
 
+// Offsets are counted in units of what a camera nearly right may be wrong by: a pixel far away, centimetres of uneven ground near
+// by.
+constexpr double kUnitPixels = 1, kUnitMetres = 0.03;
+
 /// Where across one sample of a line paint may be.
 struct Candidate {
   int sample;
   double along;   // of the piece, in [0, 1]
-  double offset;  // px along the normal
+  double offset;  // units along the normal
+  double contrast;
 };
 
 struct Sample {
   Vector<2> ground, pixel, normal;
   double width;  // px: the paint's, across
+
+  double unit() const { return std::hypot(kUnitPixels, kUnitMetres * width / kPitchLineWidth); }  // px
 };
 
 /// A sample in the picture, or nothing.
@@ -57,10 +65,15 @@ double brightness(const cv::Mat& luma, const Vector<2>& at) {
 /// Brightness along a sample's normal, smoothed by what the paint's own width allows.
 class Profile {
  public:
+  struct Peak {
+    double offset;    // px
+    double contrast;  // grey levels above the brighter side
+  };
+
   Profile(const cv::Mat& luma, const Sample& sample, double reach) : width_(sample.width) {
-    const double sigma = std::hypot(0.8, sample.width / 3) / 2;
+    const double sigma = std::max(0.5, 0.35 * sample.width);  // wide paint has no peak but a plateau until it is smoothed
     const int half = static_cast<int>(std::ceil(3 * sigma / kStep));
-    side_ = static_cast<int>(std::lround((0.6 * sample.width + 2) / kStep));
+    side_ = static_cast<int>(std::lround((1.1 * sample.width + 2) / kStep));  // paint may be twice as wide as it should
     first_ = -reach - (side_ + 1) * kStep;
     const int count = static_cast<int>(std::ceil(-2 * first_ / kStep)) + 1;
     std::vector<double> raw;
@@ -75,17 +88,18 @@ class Profile {
     }
   }
 
-  /// Offsets, px, of the peaks that may be paint.
-  std::vector<double> peaks() const {
-    std::vector<double> result;
+  /// The peaks that may be paint.
+  std::vector<Peak> peaks() const {
+    std::vector<Peak> result;
     const int count = static_cast<int>(values_.size());
     for (int i = side_; i + side_ < count; ++i) {
       const double here = values_[i], before = values_[i - 1], after = values_[i + 1];
       if (!(here > before && here >= after)) continue;
       const double low = values_[i - side_], high = values_[i + side_];
-      if (here - std::max(low, high) < kLeastContrast) continue;
+      const double contrast = here - std::max(low, high);
+      if (contrast < kLeastContrast) continue;
       if (!as_wide_as_paint(i, (here + (low + high) / 2) / 2)) continue;
-      result.push_back(first_ + (i + (before - after) / (2 * (before - 2 * here + after))) * kStep);
+      result.push_back({first_ + (i + (before - after) / (2 * (before - 2 * here + after))) * kStep, contrast});
     }
     return result;
   }
@@ -96,7 +110,7 @@ class Profile {
     while (left > 0 && values_[left] > level) --left;
     while (right + 1 < static_cast<int>(values_.size()) && values_[right] > level) ++right;
     const double measured = (right - left - 1) * kStep, expected = std::hypot(width_, kBlur);
-    return measured > 0.5 * expected && measured < 1.7 * expected + kStep;
+    return measured > 0.5 * expected && measured < 2.2 * expected + kStep;
   }
 
   double width_;
@@ -105,24 +119,32 @@ class Profile {
   std::vector<double> values_;
 };
 
-Vector<3> parabola(const std::vector<Candidate>& all, const std::vector<int>& which) {
-  Eigen::MatrixX3d A(which.size(), 3);
+/// Offset along a line as a polynomial: a parabola by consensus, then bent further where paint goes on beside it.
+using Curve = Eigen::VectorXd;
+constexpr int kParabola = 2, kBent = 5;
+constexpr int kBendings = 4;
+
+Curve fit(const std::vector<Candidate>& all, const std::vector<int>& which, int degree) {
+  Eigen::MatrixXd A(which.size(), degree + 1);
   Eigen::VectorXd b(which.size());
   for (std::size_t i = 0; i < which.size(); ++i) {
     const Candidate& one = all[which[i]];
-    A.row(i) << 1, one.along, one.along * one.along;
-    b(i) = one.offset;
+    double power = 1;
+    for (int k = 0; k <= degree; ++k, power *= 2 * one.along - 1) A(static_cast<Eigen::Index>(i), k) = power;
+    b(static_cast<Eigen::Index>(i)) = one.offset;
   }
   return A.colPivHouseholderQr().solve(b);
 }
 
-double at(const Vector<3>& curve, double along) {
-  return curve(0) + along * (curve(1) + along * curve(2));
+double at(const Curve& curve, double along) {
+  double value = 0;
+  for (Eigen::Index k = curve.size() - 1; k >= 0; --k) value = value * (2 * along - 1) + curve(k);
+  return value;
 }
 
 /// The candidates on the smooth curve that most samples agree with; at most one a sample.
 std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t samples, double reach) {
-  const auto near = [&](const Vector<3>& curve) {
+  const auto near = [&](const Curve& curve) {
     std::vector<int> hits;
     for (int i = 0; i < static_cast<int>(all.size()); ++i) {
       const double off = std::abs(at(curve, all[i].along) - all[i].offset);
@@ -145,49 +167,62 @@ std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t sam
     const double span = all[three[2]].along - all[three[0]].along;
     if (span < 0.3 || all[three[1]].along - all[three[0]].along < 0.05 || all[three[2]].along - all[three[1]].along < 0.05)
       continue;
-    const Vector<3> curve = parabola(all, three);
+    const Curve curve = fit(all, three, kParabola);
     if (std::max({std::abs(at(curve, 0)), std::abs(at(curve, 0.5)), std::abs(at(curve, 1))}) > reach) continue;
     auto hits = near(curve);
     if (hits.size() > best.size()) best = std::move(hits);
   }
-  for (int round = 0; round < 2 && best.size() >= 3; ++round) best = near(parabola(all, best));
+  for (int round = 0; round < kBendings && best.size() > 2 * kBent; ++round)
+    best = near(fit(all, best, round == 0 ? kParabola : kBent));
   if (best.size() < std::max<std::size_t>(kLeastSamples, static_cast<std::size_t>(kLeastShare * static_cast<double>(samples))))
     return {};
   return best;
+}
+
+/// A line is about as bright all along: what is much fainter than most of it is grass.
+void drop_faint(std::vector<Candidate>& candidates) {
+  if (candidates.empty()) return;
+  std::vector<double> contrasts;
+  for (const Candidate& one : candidates) contrasts.push_back(one.contrast);
+  const auto bright = contrasts.begin() + static_cast<std::ptrdiff_t>(contrasts.size() * 4 / 5);
+  std::nth_element(contrasts.begin(), bright, contrasts.end());
+  const double least = kFaint * *bright;
+  std::erase_if(candidates, [&](const Candidate& one) { return one.contrast < least; });
 }
 
 /// One piece of a line: samples that follow one another.
 void find_piece(const cv::Mat& luma, const std::vector<Sample>& samples, int line, double reach, std::vector<LineSighting>& found) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    for (const double offset : Profile(luma, samples[i], reach).peaks())
-      candidates.push_back({static_cast<int>(i), static_cast<double>(i) / static_cast<double>(samples.size()), offset});
+    for (const auto& [offset, contrast] : Profile(luma, samples[i], reach * samples[i].unit()).peaks())
+      candidates.push_back({static_cast<int>(i), static_cast<double>(i) / static_cast<double>(samples.size()),
+                            offset / samples[i].unit(), contrast});
   }
+  drop_faint(candidates);
   if (candidates.size() < static_cast<std::size_t>(kLeastSamples)) return;
   for (const int which : on_one_curve(candidates, samples.size(), reach)) {
     const Sample& sample = samples[candidates[which].sample];
-    found.push_back({sample.ground, sample.pixel + candidates[which].offset * sample.normal, sample.normal,
+    found.push_back({sample.ground, sample.pixel + candidates[which].offset * sample.unit() * sample.normal, sample.normal,
                      sample.width / kPitchLineWidth, kPaintSigma, line});
   }
 }
 
 }  // namespace
 
-std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<PitchLine>& lines,
-                                     double reach_px) {
+std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<PitchLine>& lines, double reach) {
   std::vector<LineSighting> found;
   for (std::size_t number = 0; number < lines.size(); ++number) {
     const PitchLine& line = lines[number];
     const bool is_arc = line.tangents.front().dot(line.tangents.back()) < 1 - 1e-9;
     std::vector<Sample> samples;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
-      if (const auto sample = sample_at(camera, line.points[i], line.tangents[i], reach_px + 8)) samples.push_back(*sample);
+      if (const auto sample = sample_at(camera, line.points[i], line.tangents[i], reach + 8)) samples.push_back(*sample);
       if (is_arc && samples.size() >= kLongestArc) {
-        find_piece(luma, samples, static_cast<int>(number), reach_px, found);
+        find_piece(luma, samples, static_cast<int>(number), reach, found);
         samples.clear();
       }
     }
-    find_piece(luma, samples, static_cast<int>(number), reach_px, found);
+    find_piece(luma, samples, static_cast<int>(number), reach, found);
   }
   return found;
 }

@@ -16,9 +16,9 @@
 
 namespace marey {
 
-/// `luma`: CV_8UC1, people not in it (a median over time). `lines` in the world, m, z = 0. `reach_px`: how far from where it is
-/// expected a line may be. Lines that are not seen, or not for a quarter of what is in the picture, give no sighting.
-std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<PitchLine>& lines,
-                                     double reach_px);
+/// `luma`: CV_8UC1, people not in it (a median over time). `lines` in the world, m, z = 0. `reach`: how far from where
+/// it is expected a line may be, px where the pitch is far away, 3 cm each near by. Lines that are not seen, or not for a quarter
+/// of what is in the picture, give no sighting.
+std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<PitchLine>& lines, double reach);
 
 }  // namespace marey

@@ -1,0 +1,166 @@
+#include "marey/pipeline/calibrate_pitch.h"
+
+#include <charconv>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/rig_file.h"
+#include "marey/format/rig_sources.h"
+
+#include "calibrate_commands.h"
+#include "known.h"
+#include "progress_bar.h"
+
+namespace marey::cli {
+namespace {
+
+struct CalibratePitch {
+  std::string rig, out, pictures;
+  std::vector<std::string> sources, points;
+  std::string size = "105x68";
+  bool json = false;
+  bool quiet = false;
+};
+
+PitchSize parse_size(const std::string& text) {
+  PitchSize size;
+  const auto cross = text.find('x');
+  const auto read = [](std::string_view part, double& value) {
+    const auto [stop, failed] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return failed == std::errc() && stop == part.data() + part.size();
+  };
+  const std::string_view all = text;
+  if (cross == std::string::npos || !read(all.substr(0, cross), size.length) || !read(all.substr(cross + 1), size.width))
+    throw Error("\"{}\" is no size of a pitch; it must read LENGTHxWIDTH in m, as 105x68", text);
+  if (!(size.length >= 40 && size.length <= 130 && size.width >= 42 && size.width <= 100))
+    throw Error("a pitch of {} x {} m is none: the areas need 40 to 130 m by 42 to 100 m", size.length, size.width);
+  return size;
+}
+
+std::map<std::string, std::string> parse_points(const std::vector<std::string>& pairs) {
+  std::map<std::string, std::string> result;
+  for (const std::string& pair : pairs) {
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
+      throw Error("--points {}: it must read CAMERA=FILE", pair);
+    if (!result.emplace(pair.substr(0, equals), pair.substr(equals + 1)).second)
+      throw Error("--points: camera \"{}\" is given twice", pair.substr(0, equals));
+  }
+  return result;
+}
+
+nlohmann::json as_json(const PitchRun& run) {
+  nlohmann::json cameras;
+  double sum = 0, square = 0;
+  int inliers = 0, observations = 0;
+  for (std::size_t i = 0; i < run.views.size(); ++i) {
+    const PitchViewResult& found = run.calibration.views[i];
+    double camera_sum = 0, camera_square = 0;
+    int good = 0;
+    nlohmann::json points = nlohmann::json::array();
+    for (std::size_t k = 0; k < found.inlier.size(); ++k) {
+      nlohmann::json point = {
+          {"name", run.views[i].points[k].name}, {"error_px", found.error_px[k]}, {"used", found.inlier[k] != 0}};
+      if (found.error_m[k]) point["error_m"] = *found.error_m[k];
+      if (found.better_name[k]) point["fits"] = {found.better_name[k]->x(), found.better_name[k]->y()};
+      points.push_back(std::move(point));
+      if (!found.inlier[k]) continue;
+      camera_sum += found.error_px[k], camera_square += found.error_px[k] * found.error_px[k], ++good;
+    }
+    const int all = static_cast<int>(found.inlier.size());
+    cameras[run.cameras[i]] = {{"mean_px", camera_sum / std::max(1, good)},
+                               {"rms_px", std::sqrt(camera_square / std::max(1, good))},
+                               {"inliers", good},
+                               {"observations", all},
+                               {"lines",
+                                {{"sightings", found.lines.size()},
+                                 {"median_px", found.line_median_px},
+                                 {"p95_px", found.line_95_px},
+                                 {"median_m", found.line_median_m},
+                                 {"p95_m", found.line_95_m}}},
+                               {"points", points}};
+    sum += camera_sum, square += camera_square, inliers += good, observations += all;
+  }
+  return {{"all",
+           {{"mean_px", sum / std::max(1, inliers)},
+            {"rms_px", std::sqrt(square / std::max(1, inliers))},
+            {"inliers", inliers},
+            {"observations", observations}}},
+          {"cameras", cameras},
+          {"warnings", run.warnings}};
+}
+
+void print_report(const PitchRun& run) {
+  for (std::size_t i = 0; i < run.views.size(); ++i) {
+    const PitchViewResult& found = run.calibration.views[i];
+    const Vector<3>& centre = found.camera.centre();
+    const auto used = std::count(found.inlier.begin(), found.inlier.end(), 1);
+    const Vector<2> place = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
+    fmt::print("{}: {} of {} clicks used; the camera stands at ({:.1f}, {:.1f}), {:.1f} m up\n", run.cameras[i], used,
+               found.inlier.size(), place.x(), place.y(), centre.z());
+    if (!found.lines.empty())
+      fmt::print("  white lines   {} places; {:.2f} px and {:.3f} m off in the middle, {:.2f} px and {:.3f} m for 95 %\n",
+                 found.lines.size(), found.line_median_px, found.line_median_m, found.line_95_px, found.line_95_m);
+    for (std::size_t k = 0; k < found.inlier.size(); ++k) {
+      if (found.inlier[k]) continue;
+      fmt::print("  left out      the click on {} is {:.0f} px off", run.views[i].points[k].name, found.error_px[k]);
+      if (found.error_m[k]) fmt::print(", {:.1f} m", *found.error_m[k]);
+      if (found.better_name[k]) fmt::print("; it would fit ({:g},{:g})", found.better_name[k]->x(), found.better_name[k]->y());
+      fmt::print("\n");
+    }
+  }
+  if (run.calibration.ground_from_world(1, 1) < 0)
+    fmt::print("the clicks' y grows to the right of x: the rig keeps a right-handed world, and turns results back\n");
+}
+
+void run(const CalibratePitch& command) {
+  Rig rig = read_rig(command.rig);
+  set_sources(rig, command.sources);
+  PitchRunOptions options;
+  options.pitch.size = parse_size(command.size);
+  options.pictures = command.pictures;
+  PitchRun found;
+  {
+    ProgressBar bar(command.quiet);
+    options.progress = [&](const std::string& what, int done, int all) { bar.show(what, done, all); };
+    found = calibrate_pitch_of(rig, parse_points(command.points), options);
+  }
+  write_rig(found.rig, command.out);
+  for (const std::string& sentence : found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (command.json) {
+    fmt::print("{}\n", as_json(found).dump(2));
+  } else {
+    print_report(found);
+    fmt::print("rig: {}\n", command.out);
+    if (!command.pictures.empty()) fmt::print("pictures: {}\n", command.pictures);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_pitch(CLI::App& calibrate) {
+  auto options = std::make_shared<CalibratePitch>();
+  CLI::App* command =
+      calibrate.add_subcommand("pitch", "Lenses and places of cameras over a football pitch, from clicks and its white lines");
+  command->add_option("rig", options->rig, "rig file: the cameras' names and sources")->required();
+  command->add_option("sources", options->sources, "CAMERA=VIDEO, in place of the rig's sources");
+  command->add_option("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera")
+      ->required();
+  command->add_option("--size", options->size, "of the pitch, LENGTHxWIDTH in m")
+      ->check(known([](const std::string& text) { parse_size(text); }))
+      ->capture_default_str();
+  command->add_option("-o,--out", options->out, "rig file to write")->required();
+  command->add_option("--pictures", options->pictures,
+                      "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
+  command->add_flag("--json", options->json, "print JSON instead of a report");
+  command->add_flag("-q,--quiet", options->quiet, "no progress");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,91 @@
+#include "marey/draw/picture_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+#include "marey/core/part_name.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+}
+
+namespace marey {
+namespace {
+
+template <typename T, void (*Free)(T**)>
+struct FreeBy {
+  void operator()(T* object) const { Free(&object); }
+};
+using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+
+constexpr int kJpegQuality = 2;  // FFmpeg's scale: 2 is the best that is worth its bytes
+
+/// The planes that the encoder wants, in the order of AVFrame::data.
+std::vector<cv::Mat> planes_of(const Picture& picture, bool jpeg) {
+  const cv::Mat bgr = picture.bgr();
+  cv::Mat converted;
+  if (!jpeg) {
+    cv::cvtColor(bgr, converted, cv::COLOR_BGR2RGB);
+    return {converted};
+  }
+  cv::cvtColor(bgr, converted, cv::COLOR_BGR2YCrCb);  // full range, as JPEG has it
+  std::vector<cv::Mat> planes;
+  cv::split(converted, planes);
+  const cv::Size half((bgr.cols + 1) / 2, (bgr.rows + 1) / 2);
+  cv::Mat cb, cr;
+  cv::resize(planes[2], cb, half, 0, 0, cv::INTER_AREA);
+  cv::resize(planes[1], cr, half, 0, 0, cv::INTER_AREA);
+  return {planes[0], cb, cr};
+}
+
+}  // namespace
+
+void write_picture(const std::string& path, const Picture& picture) {
+  namespace fs = std::filesystem;
+  const std::string ending = fs::path(path).extension().string();
+  const bool jpeg = ending == ".jpg" || ending == ".jpeg";
+  const std::vector<cv::Mat> planes = planes_of(picture, jpeg);
+  const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
+  if (encoder == nullptr) throw Error("{}: FFmpeg was built without an encoder for {}", path, jpeg ? "JPEG" : "PNG");
+  const CodecPtr codec(avcodec_alloc_context3(encoder));
+  codec->width = picture.size().width;
+  codec->height = picture.size().height;
+  codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_RGB24;
+  codec->color_range = AVCOL_RANGE_JPEG;
+  codec->time_base = {1, 25};
+  if (jpeg) {
+    codec->flags |= AV_CODEC_FLAG_QSCALE;
+    codec->global_quality = FF_QP2LAMBDA * kJpegQuality;
+  }
+  const FramePtr frame(av_frame_alloc());
+  const PacketPtr packet(av_packet_alloc());
+  frame->format = codec->pix_fmt;
+  frame->width = codec->width;
+  frame->height = codec->height;
+  frame->quality = codec->global_quality;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    frame->data[i] = planes[i].data;
+    frame->linesize[i] = static_cast<int>(planes[i].step);
+  }
+  if (avcodec_open2(codec.get(), encoder, nullptr) < 0 || avcodec_send_frame(codec.get(), frame.get()) < 0 ||
+      avcodec_send_frame(codec.get(), nullptr) < 0 || avcodec_receive_packet(codec.get(), packet.get()) < 0)
+    throw Error("{}: a picture of {} x {} pixels cannot be encoded", path, codec->width, codec->height);
+  const std::string part = part_name(path);
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(packet->data), packet->size);
+  out.close();
+  std::error_code error;
+  if (out) fs::rename(part, path, error);
+  if (!out || error) {
+    fs::remove(part, error);
+    throw Error("{}: cannot be written; is there such a folder, and room in it?", path);
+  }
+}
+
+}  // namespace marey

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "marey/core/picture.h"
+
+namespace marey {
+
+/// Writes one picture, whole or not at all: JPEG where `path` ends in .jpg or .jpeg, else PNG. Throws Error where that cannot be.
+void write_picture(const std::string& path, const Picture& picture);
+
+}  // namespace marey

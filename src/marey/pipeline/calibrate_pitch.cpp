@@ -1,0 +1,193 @@
+#include "marey/pipeline/calibrate_pitch.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/draw/picture_file.h"
+#include "marey/draw/pitch_drawing.h"
+#include "marey/format/pitch_points.h"
+#include "marey/format/rig_sources.h"
+#include "marey/format/whole_file.h"
+#include "marey/source/open_source.h"
+
+namespace marey {
+namespace {
+
+// The empty ground is the median of this many pictures, spread over this long a beginning: who moves is in few of them.
+constexpr int kPictures = 15;
+constexpr double kSeconds = 60;
+constexpr double kUsualRate = 25;
+
+cv::Mat as_bytes(const cv::Mat& luma) {
+  if (luma.type() == CV_8UC1) return luma;
+  cv::Mat bytes;
+  luma.convertTo(bytes, CV_8U, 1.0 / 257);
+  return bytes;
+}
+
+/// The median over time of each pixel, 8-bit luma.
+cv::Mat empty_ground(Source& source, const std::optional<cv::Rect>& region) {
+  const double rate = source.info().rate_hz.value_or(kUsualRate);
+  double span = kSeconds * rate;
+  if (source.info().frame_count) span = std::min(span, static_cast<double>(*source.info().frame_count));
+  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kPictures));
+  std::vector<cv::Mat> pictures;
+  while (pictures.size() < kPictures) {
+    const auto frame = source.next();
+    if (!frame) break;
+    if (frame->index % step != 0) continue;
+    const cv::Mat luma = as_bytes(frame->picture.luma());
+    if (!pictures.empty() && luma.size() != source.info().size) continue;
+    pictures.push_back(region ? luma(*region & cv::Rect({}, luma.size())).clone() : luma.clone());
+  }
+  if (pictures.empty()) throw Error("{}: not one frame could be read", source.info().name);
+  cv::Mat median(pictures[0].size(), CV_8UC1);
+  std::vector<unsigned char> values(pictures.size());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  for (int y = 0; y < median.rows; ++y) {
+    for (int x = 0; x < median.cols; ++x) {
+      for (std::size_t i = 0; i < pictures.size(); ++i) values[i] = pictures[i].at<unsigned char>(y, x);
+      std::nth_element(values.begin(), middle, values.end());
+      median.at<unsigned char>(y, x) = *middle;
+    }
+  }
+  return median;
+}
+
+PitchView view_of(RigCamera& camera, const std::string& clicks_path, std::vector<std::string>& warnings) {
+  PitchView view;
+  view.name = camera.name;
+  const PitchClicks clicks = read_pitch_clicks(clicks_path);
+  for (const PitchClicks::Point& click : clicks.points) view.points.push_back({click.ground, click.pixel, click.name});
+  for (const PitchClicks::Line& line : clicks.lines) view.lines.push_back({line.from, line.to, line.pixels});
+  if (!camera.source.empty()) {
+    const auto source = open_source(camera.source, camera.rate_hz);
+    view.empty_ground = empty_ground(*source, camera.region);
+    view.size = view.empty_ground.size();
+    camera.size = view.size;
+  } else if (camera.size) {
+    view.size = *camera.size;
+    warnings.push_back(
+        fmt::format("camera \"{}\" has no pictures: it is calibrated by the clicks alone, not by the white lines", camera.name));
+  } else {
+    throw Error("camera \"{}\": its size is not known; give its source, or size = [width, height] in px", camera.name);
+  }
+  const cv::Rect frame({}, view.size);
+  for (const PitchPoint& point : view.points) {
+    if (!frame.contains(cv::Point(cvRound(point.pixel.x()), cvRound(point.pixel.y()))))
+      throw Error(
+          "{}: the click on {} at ({:.0f}, {:.0f}) is outside camera \"{}\"'s picture of {} x {} px; is it another camera's file?",
+          clicks_path, point.name, point.pixel.x(), point.pixel.y(), camera.name, view.size.width, view.size.height);
+  }
+  return view;
+}
+
+/// A lens known before, from a board, against the one found over the pitch.
+void compare_lens(const RigCamera& before, const Camera& found, std::vector<std::string>& warnings) {
+  if (!before.lens || !before.size || *before.size != found.size()) return;
+  const Camera old(*before.lens, found.camera_from_world(), found.size());
+  double worst = 0;
+  for (double x = 0; x <= 1; x += 0.125) {
+    for (double y = 0.25; y <= 1; y += 0.125) {
+      const auto ray = found.ray({x * (found.size().width - 1), y * (found.size().height - 1)});
+      const auto pixel = ray ? old.project(ray->origin + ray->direction) : std::nullopt;
+      if (pixel) worst = std::max(worst, (*pixel - Vector<2>(x * (found.size().width - 1), y * (found.size().height - 1))).norm());
+    }
+  }
+  warnings.push_back(
+      fmt::format("camera \"{}\": the lens it came with and the one that the pitch shows differ by up to {:.0f} px; "
+                  "the pitch's is kept",
+                  before.name, worst));
+}
+
+std::string joined(const std::string& folder, const std::string& name) {
+  return (std::filesystem::path(folder) / name).string();
+}
+
+void draw(const PitchRun& run, const PitchRunOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(options.pictures, error);
+  if (error) throw Error("{}: this folder cannot be made ({})", options.pictures, error.message());
+  const Matrix<3> world_from_ground = run.calibration.ground_from_world.inverse();
+  const auto to_world = [&](const Vector<2>& pitch) -> Vector<2> {
+    return (world_from_ground * (pitch + run.calibration.corner).homogeneous()).hnormalized();
+  };
+  auto lines = pitch_lines(options.pitch.size, 0.25);
+  for (PitchLine& line : lines) {
+    for (Vector<2>& place : line.points) place = to_world(place);
+  }
+  for (std::size_t i = 0; i < run.views.size(); ++i) {
+    const PitchView& view = run.views[i];
+    const PitchViewResult& found = run.calibration.views[i];
+    if (!view.empty_ground.empty()) {
+      std::vector<Vector<2>> paint;
+      for (const LineSighting& seen : found.lines) paint.push_back(seen.pixel);
+      std::vector<DrawnClick> clicks;
+      for (std::size_t k = 0; k < view.points.size(); ++k)
+        clicks.push_back({view.points[k].pixel, found.inlier[k] != 0, view.points[k].name});
+      write_picture(joined(options.pictures, view.name + ".jpg"),
+                    draw_pitch(Picture(view.empty_ground), found.camera, lines, paint, clicks));
+    }
+    const GroundView ground(found.camera);
+    WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
+    map.write(pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
+                            [&](const Vector<2>& pitch) -> std::optional<double> {
+                              const auto pixel = ground.pixel(to_world(pitch));
+                              if (!pixel || !found.camera.in_picture(*pixel)) return std::nullopt;
+                              const auto place = ground.place(*pixel);
+                              if (!place) return std::nullopt;
+                              return place->by_pixel.operatorNorm();
+                            }));
+    map.finish();
+  }
+}
+
+}  // namespace
+
+PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options) {
+  PitchRun run;
+  run.rig = rig;
+  if (clicks.empty()) throw Error("give the clicked points of at least one camera: --points CAM=FILE");
+  for (const auto& [name, path] : clicks) camera_named(run.rig, name);
+  for (RigCamera& camera : run.rig.cameras) {
+    const auto given = clicks.find(camera.name);
+    if (given == clicks.end()) continue;
+    options.progress("looking at the ground", static_cast<int>(run.views.size()), static_cast<int>(clicks.size()));
+    run.views.push_back(view_of(camera, given->second, run.warnings));
+    run.cameras.push_back(camera.name);
+  }
+  run.calibration = calibrate_pitch(run.views, options.pitch);
+  run.rig.ground_from_world = run.calibration.ground_from_world;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < run.views.size(); ++i) {
+    const PitchViewResult& found = run.calibration.views[i];
+    RigCamera& camera = camera_named(run.rig, run.cameras[i]);
+    compare_lens(camera, found.camera, run.warnings);
+    camera.size = found.camera.size();
+    camera.lens = found.camera.lens();
+    camera.camera_from_world = found.camera.camera_from_world();
+    camera.ground_from_image.reset();
+    double square = 0, good = 0;
+    for (std::size_t k = 0; k < found.inlier.size(); ++k) {
+      if (found.inlier[k]) square += found.error_px[k] * found.error_px[k], ++good;
+    }
+    camera.rms_px = std::sqrt(square / std::max(1.0, good));
+    sum += square, count += good;
+  }
+  run.rig.calibration = Rig::Calibration{.method = "pitch",
+                                         .mean_px = {},
+                                         .rms_px = std::sqrt(sum / std::max(1.0, count)),
+                                         .inliers = static_cast<int>(count),
+                                         .observations = {},
+                                         .grade = {}};
+  if (!options.pictures.empty()) draw(run, options);
+  return run;
+}
+
+}  // namespace marey

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "marey/calibrate/pitch.h"
+#include "marey/core/rig.h"
+
+namespace marey {
+
+struct PitchRun {
+  Rig rig;                            ///< what was given, with lenses, poses and `ground_from_world` found
+  std::vector<std::string> cameras;   ///< those calibrated, in the rig's order
+  std::vector<PitchView> views;       ///< one for each: what it was calibrated from
+  PitchCalibration calibration;       ///< one view for each
+  std::vector<std::string> warnings;  ///< one sentence each
+};
+
+struct PitchRunOptions {
+  PitchCalibrationOptions pitch;
+  std::string pictures;  ///< a folder for overlays and the accuracy maps; empty for none
+  std::function<void(const std::string& what, int done, int all)> progress = [](const std::string&, int, int) {};
+};
+
+/// Calibrates the rig's cameras over a pitch: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
+/// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Throws Error
+/// where a file cannot be read, a camera is not in the rig, or the clicks do not decide.
+PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options = {});
+
+}  // namespace marey
