@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <random>
 
@@ -19,6 +20,8 @@ constexpr double kFaint = 0.3;        // of the contrast of a line's brighter fi
 constexpr double kLeastShare = 0.25;  // of a line's samples in the picture
 constexpr int kLeastSamples = 6;
 constexpr int kDraws = 300;
+constexpr std::size_t kTrail = 12;       // samples that tell where paint goes on
+constexpr int kLongestGap = 8;           // samples without paint, as where somebody stood
 constexpr std::size_t kLongestArc = 60;  // samples: a quarter of the centre circle; longer pieces of arcs are no parabola
 
 // Offsets are counted in units of what a camera nearly right may be wrong by: a pixel far away, centimetres of uneven ground near
@@ -179,6 +182,28 @@ std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t sam
   return best;
 }
 
+/// Walks on from what was found, `step` +1 or -1 along the candidates (which are in the order of their samples): paint goes on
+/// where the last of it points to, even where no polynomial follows.
+void walk_on(const std::vector<Candidate>& all, std::vector<int>& found, int step) {
+  std::vector<char> taken(all.size(), 0);
+  for (const int i : found) taken[i] = 1;
+  std::deque<int> last;
+  const int count = static_cast<int>(all.size());
+  for (int i = step > 0 ? 0 : count - 1; i >= 0 && i < count; i += step) {
+    if (!taken[i]) {
+      if (last.size() < kTrail || all[last.back()].sample == all[i].sample) continue;
+      if (std::abs(all[last.back()].sample - all[i].sample) > kLongestGap) continue;
+      const Curve ahead = fit(all, {last.begin(), last.end()}, 1);
+      if (std::abs(at(ahead, all[i].along) - all[i].offset) >= kTolerance) continue;
+      taken[i] = 1;
+      found.push_back(i);
+    }
+    last.push_back(i);
+    if (last.size() > kTrail) last.pop_front();
+  }
+  std::sort(found.begin(), found.end());
+}
+
 /// A line is about as bright all along: what is much fainter than most of it is grass.
 void drop_faint(std::vector<Candidate>& candidates) {
   if (candidates.empty()) return;
@@ -200,7 +225,9 @@ void find_piece(const cv::Mat& luma, const std::vector<Sample>& samples, int lin
   }
   drop_faint(candidates);
   if (candidates.size() < static_cast<std::size_t>(kLeastSamples)) return;
-  for (const int which : on_one_curve(candidates, samples.size(), reach)) {
+  std::vector<int> paint = on_one_curve(candidates, samples.size(), reach);
+  for (const int step : {1, -1}) walk_on(candidates, paint, step);
+  for (const int which : paint) {
     const Sample& sample = samples[candidates[which].sample];
     found.push_back({sample.ground, sample.pixel + candidates[which].offset * sample.unit() * sample.normal, sample.normal,
                      sample.width / kPitchLineWidth, kPaintSigma, line});
