@@ -18,6 +18,18 @@ std::shared_ptr<const Outline> carried(const Outline& outline, const Vector<2>& 
   return result;
 }
 
+std::shared_ptr<const Outline> with_centre(const std::shared_ptr<const Outline>& outline, const TrackRow& row) {
+  if (!row.has_centre) return outline;
+  const Vector<2> centre(row.centre_x, row.centre_y);
+  auto result = std::make_shared<Outline>(*outline);
+  if (outline->state == Outline::State::held) {
+    for (Vector<2>& point : result->control_points) point += centre - outline->centre;
+    result->lines.clear();
+  }
+  result->centre = centre;
+  return result;
+}
+
 }  // namespace
 
 void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, std::span<Track<2>> tracks) {
@@ -31,12 +43,12 @@ void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, 
     if (row.observed()) {
       const auto found = outlines.find(row.first_id);
       if (found == outlines.end()) continue;
-      tracks[i].outline = found->second;
+      tracks[i].outline = with_centre(found->second, row);
       last_[row.id] = {found->second, place, row.height};
     } else if (const auto known = before_.find(row.id); known != before_.end()) {
       const Last& last = known->second;
       const double scale = last.height > 0 && row.has_box() ? row.height / last.height : 1;
-      tracks[i].outline = carried(*last.outline, last.place, place, scale);
+      tracks[i].outline = with_centre(carried(*last.outline, last.place, place, scale), row);
       last_[row.id] = last;
     }
   }

@@ -11,8 +11,9 @@
 
 namespace marey {
 
-/// Gives the rows of a second pass the outlines of the first. A row that was seen keeps the outline found in that frame; one that
-/// was filled in gets the last outline of the same target, moved and scaled with it, and `held`.
+/// Gives the rows of a second pass the outlines of the first. A row that was seen keeps the outline of that frame, its centre
+/// smoothed; one that was filled in gets the last outline of the same target, moved and scaled with it, and `held`. Curves that
+/// were found stay where they were found; those that were held go with the smoothed centre.
 class OutlinesOfRows {
  public:
   /// The recording must outlive it.

@@ -33,7 +33,7 @@ struct MarkerSummary {
 
 /// Follows markers through a recording (whatever open_source opens) under the names they have in the first frame, and writes where
 /// they were. After the last frame (not where `live`) false points are dropped, what is known to be gone is cut, and gaps
-/// are filled from both ends. Memory grows with the rows, 52 bytes each.
+/// are filled from both ends. Memory grows with the rows, 64 bytes each.
 /// Throws Error where the input cannot be read at all, labels do not fit, or an output cannot be written.
 MarkerSummary track_markers(const std::string& pictures, std::optional<double> rate_hz, const TrackOutput& output,
                             const TrackMarkersOptions& options = {}, const RunHooks& hooks = {});

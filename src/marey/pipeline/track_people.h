@@ -50,7 +50,7 @@ struct TrackSummary {
 
 /// Follows people through a recording and writes where they were. The only place that knows the order of the steps: source,
 /// detector (told where people are expected), tracker, second pass over the whole recording, files. Memory grows with the number of
-/// rows, 52 bytes each, and with nothing else; not even with those where `live`. Outlines wait for the
+/// rows, 64 bytes each, and with nothing else; not even with those where `live`. Outlines wait for the
 /// second pass on disk. The same input gives the same output, bit for bit.
 /// Throws Error where the input cannot be read at all, or an output not written; nothing half-written stays behind.
 TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, const TrackPeopleOptions& options = {},

@@ -21,6 +21,11 @@ TrackRow row_of(std::int32_t frame, const Track<2>& track) {
     row.width = static_cast<float>(track.box->width);
     row.height = static_cast<float>(track.box->height);
   }
+  if (track.outline && track.outline->state != Outline::State::held) {
+    row.centre_x = static_cast<float>(track.outline->centre.x());
+    row.centre_y = static_cast<float>(track.outline->centre.y());
+    row.has_centre = true;
+  }
   row.score = static_cast<float>(track.score);
   row.state = track.state;
   return row;

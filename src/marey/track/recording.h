@@ -9,7 +9,7 @@
 
 namespace marey {
 
-/// One target in one frame, as small as a match of 90 minutes needs it: 52 bytes. px and px/s.
+/// One target in one frame, as small as a match of 90 minutes needs it: 64 bytes. px and px/s.
 struct TrackRow {
   std::int32_t frame = 0;  ///< 0-based
   std::int32_t id = 0;
@@ -17,8 +17,10 @@ struct TrackRow {
   float x = 0, y = 0;                              ///< position
   float vx = 0, vy = 0;                            ///< velocity
   float left = 0, top = 0, width = 0, height = 0;  ///< box; width and height are 0 where the target has no extent
+  float centre_x = 0, centre_y = 0;                ///< of the outline, where `has_centre`
   float score = 1;
   Track<2>::State state = Track<2>::State::observed;
+  bool has_centre = false;  ///< an outline was found; after smoothing, also where one was found shortly before and after
 
   bool observed() const { return state == Track<2>::State::observed; }
   bool has_box() const { return width > 0 && height > 0; }

@@ -25,6 +25,7 @@ TrackRow interpolated(const TrackRow& a, const TrackRow& b, std::int32_t frame, 
   row.height = between(a.height, b.height, share);
   row.score = between(a.score, b.score, share);
   row.state = Track<2>::State::predicted;
+  row.has_centre = false;
   return row;
 }
 
@@ -44,6 +45,7 @@ class LocalLine {
   }
   double value() const { return wv_ / w_ - slope() * wt_ / w_; }
   double mean() const { return wv_ / w_; }
+  double weight() const { return w_; }
 
  private:
   double w_ = 0, wt_ = 0, wtt_ = 0, wv_ = 0, wtv_ = 0;
@@ -65,6 +67,21 @@ void around(const Tracklet& rows, const std::vector<double>& times, std::size_t 
   }
   for (std::size_t i = k + 1; i < rows.size() && take(i); ++i) {
   }
+}
+
+/// The centre of the outline, from those found round about; a row between two that have one gets one.
+void smooth_outline(const Tracklet& rows, const std::vector<double>& times, std::size_t k, double sigma, TrackRow& row) {
+  LocalLine x, y, early, late;
+  around(rows, times, k, sigma, [&](const TrackRow& other, double t, double weight) {
+    if (!other.has_centre) return;
+    x.add(t, weight, other.centre_x);
+    y.add(t, weight, other.centre_y);
+    (t < 0 ? early : late).add(t, weight, 0);
+  });
+  row.has_centre = row.has_centre || (early.weight() > 0 && late.weight() > 0);
+  if (!row.has_centre) return;
+  row.centre_x = static_cast<float>(x.value());
+  row.centre_y = static_cast<float>(y.value());
 }
 
 }  // namespace
@@ -105,6 +122,7 @@ void smooth(Tracklet& rows, const Recording& recording, const Smoothing& smoothi
       height.add(t, weight, row.height);
     });
     TrackRow& row = rows[k];
+    smooth_outline(before, times, k, smoothing.place, row);
     row.x = static_cast<float>(x.value());
     row.y = static_cast<float>(y.value());
     row.vx = static_cast<float>(x.slope());

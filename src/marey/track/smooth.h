@@ -13,8 +13,8 @@ struct Smoothing {
 /// seconds; where it lasts longer they are left out. `rows` are one target's, in the order of frames; frames may be missing.
 void fill_gaps(Recording::Tracklet& rows, const Recording& recording, double longest);
 
-/// Replaces places, sizes and velocities by local straight-line fits under a Gaussian kernel that looks both ways, so that
-/// nothing lags. Observed rows weigh more than predicted ones.
+/// Replaces places, sizes, velocities and the centres of outlines by local straight-line fits under a Gaussian kernel that looks
+/// both ways, so that nothing lags. Observed rows weigh more than predicted ones.
 void smooth(Recording::Tracklet& rows, const Recording& recording, const Smoothing& smoothing);
 
 }  // namespace marey

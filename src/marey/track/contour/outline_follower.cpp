@@ -295,7 +295,7 @@ class OutlineFollower::Implementation {
   }
 
   void hint(FollowedTarget& target, std::span<const Detection> detections) {
-    if (target.state == Outline::State::held) return;
+    if (target.state != Outline::State::seen) return;
     const Box box = target.shape.spline().box();
     target.box = box;
     for (const Detection& detection : detections) {
