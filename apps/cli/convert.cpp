@@ -11,6 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion.h"
+#include "marey/format/rig_exchange.h"
 
 #include "commands.h"
 #include "known.h"
@@ -52,7 +53,7 @@ MotionFormat format_to_write(const ConvertOptions& options) {
 }
 
 MotionFormat format_to_read(const ConvertOptions& options) {
-  const auto format = motion_format_of_content(options.from);
+  const auto format = fs::is_directory(options.from) ? std::nullopt : motion_format_of_content(options.from);
   if (!format) throw Error("{}: is none of the files that Marey reads: {}", options.from, motion_format_names());
   return *format;
 }
@@ -66,7 +67,18 @@ void leave_out_others(TakeFrame& frame, const std::vector<TakeTrack>& tracks) {
   });
 }
 
-void convert(const ConvertOptions& options) {
+void convert_rig(const ConvertOptions& options) {
+  const auto by_name = rig_format_of_name(options.to);
+  if (options.format.empty() && !by_name) {
+    throw Error("{}: its ending is of no format of calibrations; name one with --format: {}", options.to, rig_format_names());
+  }
+  if (!options.up.empty() || !options.from_up.empty()) {
+    throw Error("{}: is a calibration, whose z is up always; --up and --from-up are for points", options.from);
+  }
+  write_rig_as(read_rig_any(options.from), options.to, options.format.empty() ? *by_name : parse_rig_format(options.format));
+}
+
+void convert_motion(const ConvertOptions& options) {
   const MotionFormat from = format_to_read(options), to = format_to_write(options);
   std::error_code error;
   if (fs::equivalent(options.from, options.to, error))
@@ -94,15 +106,37 @@ void convert(const ConvertOptions& options) {
   writer->finish();
 }
 
+void convert(const ConvertOptions& options) {
+  std::error_code error;
+  if (fs::equivalent(options.from, options.to, error))
+    throw Error("{}: cannot be converted into itself; name another file", options.to);
+  const bool motion = fs::is_regular_file(options.from, error) && motion_format_of_content(options.from);
+  if (!motion && rig_format_of_content(options.from)) return convert_rig(options);
+  convert_motion(options);
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand("convert", "Write a recording of points in another format");
-  command->add_option("A", options->from, "take, C3D, TRC or CSV (tidy, Motive's, Nexus's); known by its content")->required();
-  command->add_option("B", options->to, "what to write; its ending tells the format: .marey, .c3d, .trc, .csv")->required();
-  command->add_option("--format", options->format, "B's format in place of its ending: " + motion_format_names())
-      ->check(CLI::IsMember({"take", "c3d", "trc", "csv", "motive"}));
+  CLI::App* command = app.add_subcommand("convert", "Write a recording of points, or a calibration, in another format");
+  command->add_option("A", options->from, "take, C3D, TRC, CSV (tidy, Motive's, Nexus's) or calibration; known by its content")
+      ->required();
+  command
+      ->add_option(
+          "B", options->to,
+          "what to write; its ending tells the format: .marey, .c3d, .trc, .csv; of a calibration .toml, .yml, .qca.txt, .xml")
+      ->required();
+  command
+      ->add_option("--format", options->format,
+                   "B's format in place of its ending: " + motion_format_names() + "; of a calibration " + rig_format_names())
+      ->check(known([](const std::string& name) {
+        try {
+          parse_motion_format(name);
+        } catch (const Error&) {
+          parse_rig_format(name);
+        }
+      }));
   command->add_option("--up", options->up, "the axis that is up in B (in A, where B is a take); coordinates are turned accordingly")
       ->check(CLI::IsMember({"y", "z"}))
       ->default_str("z");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig_exchange.h"
 #include "marey/format/take_file.h"
 
 #include "commands.h"
@@ -213,7 +214,7 @@ void tell_motion(const InfoOptions& options, MotionFormat format) {
 }
 
 void tell_rig(const InfoOptions& options) {
-  const Rig rig = read_rig(options.file);
+  const Rig rig = read_rig_any(options.file);
   if (options.json) return print({{"format", "rig"}, {"cameras", as_json(rig)}});
   fmt::print("{}: a rig of {} camera{}\n", options.file, rig.cameras.size(), rig.cameras.size() == 1 ? "" : "s");
   print_calibration(rig);
@@ -221,12 +222,15 @@ void tell_rig(const InfoOptions& options) {
 }
 
 void run(const InfoOptions& options) {
-  if (const auto format = motion_format_of_content(options.file)) {
+  const bool folder = std::filesystem::is_directory(options.file);
+  const auto format = folder ? std::nullopt : motion_format_of_content(options.file);
+  if (format) {
     tell_motion(options, *format);
-  } else if (options.file.ends_with(".toml")) {
+  } else if (rig_format_of_content(options.file)) {
     tell_rig(options);
   } else {
-    throw Error("{}: is none of the files that Marey knows: {}, rig (.toml)", options.file, motion_format_names());
+    throw Error("{}: is none of the files that Marey knows: points: {}; calibrations: {}", options.file, motion_format_names(),
+                rig_format_names());
   }
   if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }
@@ -236,7 +240,7 @@ void run(const InfoOptions& options) {
 void add_info(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a file");
-  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, or rig")->required();
+  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, or calibration")->required();
   command->add_flag("--json", options->json, "print it as JSON");
   command->callback([options] { run(*options); });
 }

@@ -77,8 +77,8 @@ def read_opensim(path):
     labels = list(table.getColumnLabels())
     places = np.empty((3, len(labels), table.getNumRows()))
     for frame in range(table.getNumRows()):
-        row = table.getRowAtIndex(frame).to_numpy()
-        places[:, :, frame] = row.T if row.shape[1] == 3 else row
+        row = table.getRowAtIndex(frame)
+        places[:, :, frame] = np.array([[row[marker][axis] for marker in range(len(labels))] for axis in range(3)])
     return labels, places, list(table.getIndependentColumn())
 
 
@@ -105,7 +105,7 @@ def check_made_up(program, folder, markers, frames, seed):
     assert (words[~there] == -1).all()
     scale = -point["SCALE"]["value"][0]
     assert (np.abs((words[there] & 0xFF) * scale - 0.5) <= scale / 2).all() and (words[there] >> 8 == 0b101).all()
-    if markers <= 255:
+    if hasattr(opensim, "C3DFileAdapter"):  # the package of PyPI is built without it
         labels, found, _ = read_opensim(c3d)
         assert labels == names
         expect_equal("opensim, C3D", found, wanted)

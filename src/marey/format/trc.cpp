@@ -151,7 +151,7 @@ class TrcWriter : public MotionWriter {
                        point->position.z() * 1000);
       }
     }
-    line_ += '\n';
+    line_ += "\t\n";  // OpenSim loses a last cell that is blank, and writes its own rows so
     file_.write(line_);
     next_ = index + 1;
   }

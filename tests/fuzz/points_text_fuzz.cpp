@@ -1,0 +1,45 @@
+// TRC and the three kinds of CSV: whatever a file holds, reading it ends in frames or in one Error, by growing index, each marker
+// once.
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <set>
+#include <string_view>
+
+#include "marey/core/error.h"
+#include "marey/format/motion_csv.h"
+#include "marey/format/trc.h"
+
+namespace {
+
+void check(bool holds) {
+  if (!holds) std::abort();
+}
+
+void walk(marey::MotionReader& reader) {
+  check(reader.info().header.rate_hz > 0);
+  std::int64_t last = -1;
+  while (const auto frame = reader.next()) {
+    check(frame->index > last);
+    last = frame->index;
+    std::set<marey::TrackId> seen;
+    for (const marey::TakePoint& point : frame->points) {
+      check(point.position.allFinite() && marey::number(point.track) > 0 && seen.insert(point.track).second);
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  for (const auto read : {marey::read_trc, marey::read_tidy_csv, marey::read_motive_csv, marey::read_nexus_csv}) {
+    try {
+      walk(*read(text, "file"));
+    } catch (const marey::Error& error) {
+      const std::string_view message = error.what();
+      check(message.starts_with("file:") && message.find('\n') == std::string_view::npos);
+    }
+  }
+  return 0;
+}
