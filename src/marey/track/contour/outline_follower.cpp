@@ -31,7 +31,7 @@ using Finding = MeasurementLine::Finding;
 constexpr int kMostControlPoints = 64, kMostLines = 512;
 constexpr int kFewestControlPoints = 8, kChosenAtMost = 24;  // where the tolerance chooses
 // Noise, in heights of the target (px where it says so); each √second where it is a motion.
-constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part is hidden by the scene
+constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part may be hidden
 constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
 constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
 constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
@@ -45,6 +45,7 @@ constexpr double kShareMemory = 0.05;
 constexpr double kSameBox = 0.5;      // IoU of a silhouette's outline and the detection's box from which on they are the same thing
 constexpr double kMostUnlike = 1.35;  // factor of a silhouette's size over the usual, from which on it is not believed
 constexpr double kLeft = 0.5;         // heights from where the centre is predicted: the motion begins anew
+constexpr double kLeastArea = 0.5;    // px²
 constexpr int kRounds = 3;            // of the fit, in every frame
 constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
 constexpr double kHintScore = 0.3;    // continues a track, begins none
@@ -87,6 +88,17 @@ bool is_knotted(const ClosedSpline& spline) {
   return std::abs(turned - 2 * std::numbers::pi) > 1;
 }
 
+/// The outline of a silhouette; nothing where it is no simple curve, or not about as large as the detection.
+std::optional<ClosedSpline> outline_of(const Detection& seen, SplineFitOptions options) {
+  for (const int rounds : {options.rounds, 0}) {
+    options.rounds = rounds;
+    auto spline = fit_spline(seen.outline, options);
+    if (!spline || !(spline->area() > kLeastArea) || iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
+    if (!is_knotted(*spline)) return spline;
+  }
+  return std::nullopt;
+}
+
 struct Silhouette {
   ClosedSpline spline;
   Timestamp time;
@@ -110,6 +122,7 @@ struct FollowedTarget {
   Footprint footprint = {};
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  // a reader may still hold one
+  bool crowded = false;                                // its box meets another's
   bool knotted = false;                                // what the lines made of it was no outline
   std::optional<MeasuredCentre> measured = {};         // in this frame, for the motion filter
 };
@@ -164,7 +177,7 @@ class OutlineFollower::Implementation {
  private:
   void predict(FollowedTarget& target, double dt) {
     const bool held = target.state == Outline::State::held;
-    const double stiff = target.state == Outline::State::seen ? 1 : kStiff;
+    const double stiff = target.state == Outline::State::seen && !target.crowded ? 1 : kStiff;
     const double step = std::sqrt(dt) * target.height;
     const double growth = held ? 0 : std::clamp(dt * target.motion.growth(), -0.2, 0.2);
     const ShapeNoise noise{.bend = held ? 0 : kBend * stiff * step,
@@ -188,9 +201,12 @@ class OutlineFollower::Implementation {
 
   void observe(FollowedTarget& target, const cv::Mat& mask, double dt) {
     others_.clear();
+    target.crowded = false;
     const Box wide = grown(target.box, 2 + kMostReach * target.height);
     for (const FollowedTarget& other : targets_) {
-      if (&other != &target && intersection(other.box, wide).area() > 0) others_.push_back(&other.footprint);
+      if (&other == &target || intersection(other.box, wide).area() <= 0) continue;
+      others_.push_back(&other.footprint);
+      target.crowded = target.crowded || intersection(other.box, target.box).area() > 0;
     }
     target.share = foreground_share(target, mask);
     place_lines(target);
@@ -312,10 +328,9 @@ class OutlineFollower::Implementation {
   /// swings leaves behind. A silhouette unlike the target (cut, or grown by something else) is left to the lines.
   void take_silhouette(FollowedTarget& target, const Detection& seen) {
     const int count = target.shape.spline().count();
-    const auto spline = fit_spline(seen.outline, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
-    if (!spline || spline->count() != count || iou(spline->box(), seen.box) < kSameBox) return;
+    const auto spline = outline_of(seen, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
+    if (!spline || spline->count() != count) return;
     const double growth = std::sqrt(spline->area() / target.usual_area);
-    if (is_knotted(*spline)) return;
     if (target.state == Outline::State::seen && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return;
     const Vector<2> centre = spline->centroid();
     if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
@@ -346,8 +361,8 @@ class OutlineFollower::Implementation {
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
   /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
   std::shared_ptr<const Outline> begin(TrackId id, const Detection& seen) {
-    auto spline = fit_spline(seen.outline, fit_options(options_));
-    if (!spline || iou(spline->box(), seen.box) < kSameBox) return nullptr;
+    auto spline = outline_of(seen, fit_options(options_));
+    if (!spline) return nullptr;
     const auto first = first_seen_.find(id);
     if (first == first_seen_.end()) {
       first_seen_.emplace(id, Silhouette{std::move(*spline), *now_});
