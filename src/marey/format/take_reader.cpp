@@ -155,6 +155,9 @@ class TakeReader::Cursor {
     while (frames_.step()) {
       TakeFrame frame;
       frame.index = frames_.integer(0);
+      if (frame.index < 0 || frame.index < next_index_ || (!fetched_.empty() && frame.index <= fetched_.back().index)) {
+        throw Error("{}: is damaged (frame {} stands in the wrong place); restore it from a copy", database_.path(), frame.index);
+      }
       frame.time = Timestamp(Duration(frames_.integer(1)));
       const std::string where = fmt::format("{}: frame {}", database_.path(), frame.index);
       frame.points = points_of(frames_.blob(2), where);

@@ -1,0 +1,114 @@
+"""`marey convert` and `marey info` as their user sees them: good files, and files that cannot be used.
+
+Usage: files_test.py MAREY [unittest options]
+"""
+
+import json
+import pathlib
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+ROWS = "frame,time,id,label,x,y,z\n" + "".join(f"{f},{f / 100:.6f},{m},M{m},{0.1 * m},{f / 64},1.5\n" for f in range(50) for m in (1, 2, 3))
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.csv = self.folder / "walk.csv"
+        self.csv.write_text(ROWS)
+
+    def run_marey(self, *arguments, code=0):
+        done = subprocess.run([MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=60)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def refused(self, *arguments, code=1):
+        """Ends with `code` and one sentence, and leaves nothing behind."""
+        before = sorted(self.folder.rglob("*"))
+        said = self.run_marey(*arguments, code=code).stderr
+        self.assertEqual(sorted(self.folder.rglob("*")), before, "something was left behind")
+        if code == 1:
+            self.assertEqual(len(said.strip().splitlines()), 1, said)
+        return said
+
+    def test_round_through_every_format(self):
+        at = self.csv
+        for name in ("a.c3d", "b.marey", "c.trc", "d.csv"):
+            self.run_marey("convert", at, name)
+            at = self.folder / name
+            told = json.loads(self.run_marey("info", name, "--json").stdout)
+            self.assertEqual((told["frames"], told["points"], told["rate_hz"]), (50, 150, 100.0), told)
+            self.assertEqual([track["label"] for track in told["tracks"]], ["M1", "M2", "M3"])
+            self.assertIn("50 frames at 100 Hz", self.run_marey("info", name).stdout)
+        rows = [line.split(",") for line in at.read_text().splitlines()]
+        self.assertEqual(rows[0][:7], "frame,time,id,label,x,y,z".split(","))
+        self.assertEqual([float(value) for value in rows[-1][4:7]], [0.3, 49 / 64, 1.5])
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.c3d", "b.marey", "c.trc", "d.csv", "walk.csv"])
+
+    def test_axis_that_is_up(self):
+        self.run_marey("convert", self.csv, "y.trc", "--up", "y")
+        row = (self.folder / "y.trc").read_text().splitlines()[-1].split("\t")
+        self.assertEqual([float(value) for value in row[2:5]], [100.0, 1500.0, -49 / 64 * 1000])
+        self.run_marey("convert", "y.trc", "back.marey", "--up", "y")
+        self.run_marey("convert", "back.marey", "back.csv")
+        row = (self.folder / "back.csv").read_text().splitlines()[-1].split(",")
+        self.assertEqual([float(value) for value in row[4:7]], [0.3, 49 / 64, 1.5])
+
+    def test_files_that_are_cut_off(self):
+        for name in ("a.c3d", "a.marey"):
+            self.run_marey("convert", self.csv, name)
+            data = (self.folder / name).read_bytes()
+            for share in (0.001, 0.3, 0.9):
+                (self.folder / name).write_bytes(data[: int(len(data) * share)])
+                self.assertIn(name, self.refused("convert", name, "out.csv"))
+
+    def test_frames_beyond_what_is_there(self):
+        self.run_marey("convert", self.csv, "a.c3d")
+        data = bytearray((self.folder / "a.c3d").read_bytes())
+        at = data.index(b"ACTUAL_END_FIELD") + len(b"ACTUAL_END_FIELD") + 5
+        struct.pack_into("<HH", data, at, 0xFFFF, 0x7FFF)
+        (self.folder / "a.c3d").write_bytes(data)
+        said = self.run_marey("info", "a.c3d")
+        self.assertIn("50 frames", said.stdout)
+        self.assertIn("but holds 50", said.stderr)
+
+    def test_what_cannot_be_used(self):
+        self.assertIn("no such file", self.refused("info", "none.c3d"))
+        (self.folder / "notes.txt").write_text("hello\n")
+        self.assertIn("none of the files", self.refused("info", "notes.txt"))
+        self.assertIn("none of the files", self.refused("convert", "notes.txt", "out.c3d"))
+        self.assertIn("its ending is of no format", self.refused("convert", self.csv, "out.xyz"))
+        self.assertIn("cannot be converted into itself", self.refused("convert", self.csv, self.csv))
+        self.assertIn("is no take", self.refused("convert", self.csv, "notes.txt", "--format", "take"))
+        self.refused("convert", self.csv, "out.c3d", "--up", "x", code=2)
+        self.assertIn("cannot be written", self.refused("convert", self.csv, "/dev/full", "--format", "c3d"))
+        self.assertIn("read only", self.refused("convert", self.csv, "out.csv", "--format", "nexus"))
+
+    def test_killed_while_it_writes_a_take(self):
+        with open(self.csv, "w") as file:
+            file.write("frame,time,id,label,x,y,z\n")
+            file.writelines(f"{f},{f / 100:.6f},{m},M{m},0.5,1,1.5\n" for f in range(20_000) for m in range(1, 41))
+        writing = subprocess.Popen([MAREY, "convert", self.csv, self.folder / "a.marey", "--quiet"])
+        while not (self.folder / "a.marey").exists() and writing.poll() is None:
+            pass
+        try:
+            writing.wait(1.2)
+        except subprocess.TimeoutExpired:
+            writing.send_signal(signal.SIGKILL)
+            writing.wait()
+        told = json.loads(self.run_marey("info", "a.marey", "--json").stdout)
+        self.assertEqual(told["points"], 40 * told["frames"])
+        self.run_marey("convert", "a.marey", "a.c3d")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.c3d", "a.marey", "walk.csv"])
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    unittest.main()
