@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include "marey/format/motion.h"
 #include "marey/format/take_file.h"
@@ -37,7 +38,7 @@ TakeFrame frame_of(std::int64_t index) {
 MotionPlan plan() {
   MotionPlan plan;
   plan.info.header.rate_hz = 120;
-  for (int m = 1; m <= kMarkers; ++m) plan.info.tracks.push_back({TrackId(m), "M" + std::to_string(m)});
+  for (int m = 1; m <= kMarkers; ++m) plan.info.tracks.push_back({TrackId(m), fmt::format("M{}", m)});
   plan.last_frame = kFrames - 1;
   plan.farthest_m = 5;
   plan.tells_measured = true;
