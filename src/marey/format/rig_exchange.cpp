@@ -79,6 +79,7 @@ std::optional<RigFormat> rig_format_of_content(const std::string& path) {
   std::string text(1 << 16, '\0');
   in.read(text.data(), std::ssize(text));
   text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.find('\0') != std::string::npos) return std::nullopt;  // a take holds a rig's text among other things
   if (has(text, "<opencv_storage") || text.starts_with("%YAML") || text.starts_with("---")) return RigFormat::opencv;
   const bool xml = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF") == text.find('<') && has(text, "<");
   if (xml && has(text, "<calibration") && has(text, "<camera")) return RigFormat::qualisys;

@@ -103,6 +103,11 @@ TEST(RigExchange, FormatsAreKnownByTheirNames) {
   EXPECT_FALSE(rig_format_of_name("a.c3d"));
   EXPECT_EQ(parse_rig_format("tsai"), RigFormat::tsai);
   EXPECT_THROW(parse_rig_format("c3d"), Error);
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "take", std::string("SQLite format 3\0[[camera]]", 26));
+  EXPECT_FALSE(rig_format_of_content(folder / "take"));
+  EXPECT_THROW(read_rig_any(folder / "take"), Error);
+  EXPECT_THROW(read_rig_any(folder / "nothing"), Error);
 }
 
 TEST(OpenCvRig, ReadsASingleCameraAndAStereoPair) {

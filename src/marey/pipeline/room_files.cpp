@@ -95,6 +95,16 @@ Rig with_sources(Rig rig, bool videos) {
   return rig;
 }
 
+void write_labels(const RoomScene& scene, const std::filesystem::path& folder) {
+  WholeFile file((folder / "labels.csv").string());
+  file.write("label,x,y,z\n");
+  const std::vector<Vector<3>> points = scene.points(0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    file.write(fmt::format("{},{:.6f},{:.6f},{:.6f}\n", scene.labels()[i], points[i].x(), points[i].y(), points[i].z()));
+  }
+  file.finish();
+}
+
 void write_rigs(const RoomScene& scene, const std::filesystem::path& folder, bool videos) {
   const auto write = [&](const Rig& rig, const char* name) {
     WholeFile file((folder / name).string());
@@ -120,6 +130,7 @@ void write_room(const RoomScene& scene, const std::string& folder, const RoomFil
                 const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const std::filesystem::path place = folder;
   write_rigs(scene, place, options.videos);
+  write_labels(scene, place);
   ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
   ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
   WholeFile truth((place / "truth.csv").string());
