@@ -1,8 +1,8 @@
 #include "marey/pipeline/outline_methods.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <optional>
 #include <type_traits>
@@ -17,16 +17,23 @@
 namespace marey {
 namespace {
 
+/// Time of this thread alone, whatever else the machine does.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(now()) {}
+  ~Stopwatch() { seconds_ += now() - begin_; }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
+  static double now() {
+    std::timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
   double& seconds_;
-  std::chrono::steady_clock::time_point begin_;
+  double begin_;
 };
 
 std::vector<Observation<2>> observations_of(std::span<const Detection> detections) {
@@ -52,6 +59,7 @@ class TrackedMethod final : public OutlineMethod {
   explicit TrackedMethod(const std::optional<OutlineOptions>& options) : detector_(make_background()) {
     TrackerOptions tracker;
     tracker.steady_camera = true;
+    tracker.reclaim = true;  // nothing is joined afterwards
     tracker_ = make_tracker<2>(tracker);
     if (options) outlines_.emplace(*options);
   }

@@ -85,6 +85,7 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
 TrackerOptions tracker_options(const PeopleInput& input, const TrackPeopleOptions& options) {
   TrackerOptions tracker = options.tracker;
   tracker.steady_camera = !input.pictures.empty();
+  tracker.reclaim = tracker.steady_camera && options.live;
   return tracker;
 }
 

@@ -45,6 +45,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     claim_overlapped(seen);
+    claim_reappeared(seen);
     keep_merged(seen);
     correct(now, seen);
     retire_lost(now);
@@ -69,6 +70,7 @@ class FilterTracker final : public Tracker<F::dimension> {
  private:
   void predict_to(Timestamp now) {
     const double dt = now_ ? seconds(now - *now_) : 0.0;
+    dt_ = dt;
     now_ = now;
     for (Target<F>& target : targets_) {
       target.filter.predict(dt);
@@ -214,6 +216,44 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
+  /// Before a camera that stands still, nobody vanishes but behind something: somebody of his size who appears where he may have
+  /// gone by now, and whom nobody else claims, is he.
+  void claim_reappeared(std::span<const Observation<D>> seen) {
+    if constexpr (D == 2) {
+      if (!options_.reclaim) return;
+      claimed_.assign(seen.size(), 0);
+      for (const Target<F>& target : targets_) {
+        if (target.observation >= 0) claimed_[target.observation] = 1;
+      }
+      pairs_.clear();
+      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
+        const Target<F>& target = targets_[row];
+        const double unseen = seconds(*now_ - target.last_seen);
+        if (!target.confirmed || target.observation >= 0 || target.hidden || !target.size || unseen <= recently) continue;
+        for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
+          if (claimed_[i] || !seen[i].box || seen[i].shared || seen[i].score < options_.confident) continue;
+          const double worth = worth_of_reappearing(target, seen[i], unseen);
+          if (worth > 0) pairs_.push_back({row, i, worth});
+        }
+      }
+      if (pairs_.empty()) return;
+      const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
+      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
+        if (columns[row] != GatedAssigner::nobody) targets_[row].observation = columns[row];
+      }
+    }
+  }
+
+  double worth_of_reappearing(const Target<F>& target, const Observation<D>& observation, double unseen) const {
+    const Matrix<D> S = target.filter.innovation_covariance(noise_of(observation, target));
+    const Vector<D> residual = place_of(observation, target) - target.filter.position();
+    const double distance = residual.dot(S.inverse() * residual);
+    const double farthest = target.unit * (reappears_within + reappearing_speed * unseen);
+    if (!(distance <= gate_) || residual.norm() > farthest) return 0;
+    if (target.size->distance(*observation.box, size_options_) > gate_) return 0;
+    return 1 + gate_ - distance;
+  }
+
   static Vector<D> centre_of(const Observation<D>& observation) {
     if constexpr (D == 2) {
       if (observation.box) return observation.box->centre();
@@ -249,7 +289,9 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
     if constexpr (D == 2) crowd_.mark_hidden(targets_, seen);
     for (Target<F>& target : targets_) {
-      if (target.observation < 0) target.evidence -= target.hidden ? hidden_evidence : miss_evidence;
+      if (target.observation < 0)
+        target.evidence -=
+            target.hidden ? hidden_evidence : std::min(miss_evidence, (options_.reclaim ? hidden_misses : misses_a_second) * dt_);
     }
   }
 
@@ -365,9 +407,13 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double crowded_size_limit = 9;  // a box whose size is not believed costs no more than this
   static constexpr double newcomer_cost = 1;       // a confirmed target has the first claim
   static constexpr double miss_evidence = 0.7;
+  static constexpr double hidden_misses = 3;    // the same where who vanished is expected back
+  static constexpr double misses_a_second = 5;  // of evidence: neighbouring frames miss somebody for the same reason
   static constexpr double hidden_evidence = 0.1;
   static constexpr double most_evidence = 10;
   static constexpr double overlapped = 0.25;         // IoU of a target's box and what must be the target, there being nobody else
+  static constexpr double reappears_within = 0.3;    // sizes; who was hidden is found again this near to where he is expected,
+  static constexpr double reappearing_speed = 0.5;   // sizes/s; and so much farther for each second
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
   static constexpr double duplicate_iou = 0.75;
@@ -377,6 +423,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   BoxSizeOptions size_options_;
   double gate_;
   std::optional<Timestamp> now_;
+  double dt_ = 0;                         // s since the frame before
   Vector<D> camera_ = Vector<D>::Zero();  // by how far the camera has moved the picture since the beginning
   int next_id_ = 1;
   std::vector<Target<F>> targets_;  // in the order of their ids

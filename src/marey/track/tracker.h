@@ -39,7 +39,10 @@ struct TrackerOptions {
   double confirm = 3;               ///< evidence that makes a target: about so many confident observations
   double patience = 2.5;            ///< a target that should be seen and is not is given up after this, s
   bool steady_camera = false;       ///< true where the camera is known to stand still; else its turning is read off the targets
-  double hidden_patience = 3;       ///< one that is hidden behind another or in a shared region after this, s
+  /// Somebody new is taken for a target of his size that vanished near there. For a camera that stands still, where tracks are not
+  /// joined afterwards with both sides known.
+  bool reclaim = false;
+  double hidden_patience = 3;  ///< one that is hidden behind another or in a shared region after this, s
 };
 
 /// What fits points without an extent, such as markers: lengths in px.

@@ -1,0 +1,93 @@
+"""Simulated people and the experiment on outlines, as their user sees them.
+
+Usage: people_test.py MAREY [unittest options].
+"""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+SMALL = ["--size", "320", "240", "--frames", "30", "--height", "40", "--quiet"]
+
+
+def silhouette(size, counts):
+    """Pixels of COCO's run lengths: a set of (column, row)."""
+    pixels, at, inside = set(), 0, False
+    for length in counts:
+        if inside:
+            pixels.update(divmod(i, size[0]) for i in range(at, at + length))
+        at, inside = at + length, not inside
+    assert at == size[0] * size[1]
+    return pixels
+
+
+class People(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_people_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_marey(self, *arguments, code=0):
+        done = subprocess.run([MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def test_the_truth_agrees_with_itself(self):
+        self.run_marey("simulate", "people", "-o", "film", *SMALL)
+        folder = self.folder / "film"
+        self.assertEqual(sorted(p.name for p in folder.iterdir()),
+                         ["positions.csv", "silhouettes.jsonl", "truth.txt", "video.mp4"])
+        boxes = {}
+        for line in (folder / "truth.txt").read_text().splitlines():
+            frame, person, left, top, width, height, *_ = map(float, line.split(","))
+            boxes[frame - 1, person] = (left - 1, top - 1, width, height)
+        self.assertGreater(len(boxes), 60)
+        seen = 0
+        for line in (folder / "silhouettes.jsonl").read_text().splitlines():
+            row = json.loads(line)
+            whole, visible = (silhouette(row["size"], row[name]) for name in ("whole", "visible"))
+            self.assertLessEqual(visible, whole)
+            if not whole:
+                continue
+            left, top, width, height = boxes[row["frame"], row["id"]]
+            self.assertGreaterEqual(min(x for x, _ in whole), left - 1)
+            self.assertLessEqual(max(x for x, _ in whole) + 1, left + width + 1)
+            self.assertGreaterEqual(min(y for _, y in whole), top - 1)
+            self.assertLessEqual(max(y for _, y in whole) + 1, top + height + 1)
+            seen += 1
+        self.assertGreater(seen, 60)
+
+    def test_the_same_seed_gives_the_same_film(self):
+        for name, seed in (("a", 3), ("b", 3), ("c", 4)):
+            self.run_marey("simulate", "people", "-o", name, "--seed", seed, *SMALL)
+        read = [(self.folder / name / "silhouettes.jsonl").read_bytes() for name in "abc"]
+        self.assertEqual(read[0], read[1])
+        self.assertNotEqual(read[0], read[2])
+
+    def test_what_cannot_be_is_refused(self):
+        said = self.run_marey("simulate", "people", "-o", "film", "--size", "100", "100", "--height", "400", code=1).stderr
+        self.assertIn("400 px tall do not fit", said)
+        self.assertIn("no_such.png", self.run_marey("simulate", "people", "--ground", "no_such.png", code=1).stderr)
+        for wrong in (["--light", "green"], ["--situation", "dance"], ["--people", "-1"], ["--frames", "0"]):
+            self.run_marey("simulate", "people", *wrong, code=2)
+        self.assertIn("holds", self.run_marey("experiment", "outlines", "--only", "nothing like it", code=1).stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_the_experiment_tells_every_method(self):
+        said = self.run_marey("experiment", "outlines", "--videos", 1, "--only", "partly hidden, 25", "--json", "--quiet").stdout
+        case, = json.loads(said)["cases"]
+        self.assertEqual(case["people"], 2)
+        self.assertEqual(len(case["methods"]), 4)
+        for name, method in case["methods"].items():
+            self.assertTrue(0 <= method["iou"] <= 1, name)
+            self.assertTrue(0 <= method["lost"] <= 2, name)
+        self.assertGreater(case["methods"]["Marey"]["iou"], case["methods"]["published (Arnaut & Costa)"]["iou"])
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
