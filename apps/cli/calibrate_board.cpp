@@ -43,7 +43,7 @@ nlohmann::json as_json(const BoardRun& run) {
     camera["readout_s"] = found.readout_s;
     cameras[run.rig.cameras[i].name] = std::move(camera);
   }
-  return {{"all", figures_of(run.found)}, {"cameras", cameras}, {"warnings", run.found.warnings}};
+  return {{"all", figures_of(run.found)}, {"cameras", cameras}, {"jitter_s", run.found.jitter_s}, {"warnings", run.found.warnings}};
 }
 
 void print_table(const BoardRun& run) {
@@ -98,6 +98,8 @@ void add_calibrate_board(CLI::App& calibrate) {
   command->add_option("-o,--out", options->out, "rig file with what was found")->required();
   command->add_flag("--refine", options->run.refine, "refine the lenses too");
   command->add_flag("--synced", options->run.synced, "the cameras are in step: keep the rig's offsets");
+  command->add_flag("--rolling-shutter", options->run.rolling_shutter,
+                    "find out how long each shutter takes from the top row to the bottom row");
   command->add_option("--most-offset", options->run.most_offset_s, "how far the films may be out of step, s")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

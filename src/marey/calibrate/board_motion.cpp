@@ -1,8 +1,10 @@
-// Minimises the squared distances, px, between corners seen and predicted over the cameras' poses, offsets and shutters, as much of
-// their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was exposed:
-// the board is placed at the exposures of the top and of the bottom row, and a corner lies between the two places in proportion to
-// its row. Second differences of neighbouring control poses are held to what a hand can do, so that the path stays defined where
-// few corners are seen. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
+// Minimises the squared distances, px, between corners seen and predicted over the cameras' poses, offsets and shutters, as much
+// of their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was
+// exposed: the board is placed at the exposures of the top and of the bottom row, and a corner lies between the two places in
+// proportion to its row. Second differences of neighbouring control poses are held to what a hand can do, so that the path stays
+// defined where few corners are seen. Each picture may have been taken a little before or after its time, as by webcams whose
+// frames are grabbed when a program gets to it: how much so is judged by the scatter found, and ends at nothing where clocks are
+// even. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
 #include "marey/calibrate/board_motion.h"
 
 #include <algorithm>
@@ -22,6 +24,8 @@ namespace {
 
 using Control = std::array<double, 7>;
 
+constexpr int kRounds = 6;  // of judging outliers and clocks
+
 struct SeenCorner {
   int id = 0;
   Vector<3> place = Vector<3>::Zero();  // on the board, m
@@ -34,6 +38,7 @@ struct View {
   std::size_t camera = 0;
   double time_s = 0;  // by the camera's clock
   std::vector<SeenCorner> corners;
+  double jitter_s = 0;  // its clock's own error
 };
 
 /// A view's errors, predicted minus seen. Blocks: four control poses, the camera's pose, its lens, its offset and readout.
@@ -44,8 +49,9 @@ struct ViewError {
   double knot_s = 0;
 
   template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, const T* d, const T* pose, const T* lens, const T* timing, T* errors) const {
-    const T middle = (T(time_s) + timing[0]) / T(knot_s), half = timing[1] / T(2 * knot_s);
+  bool operator()(const T* a, const T* b, const T* c, const T* d, const T* pose, const T* lens, const T* timing, const T* jitter,
+                  T* errors) const {
+    const T middle = (T(time_s) + timing[0] + jitter[0]) / T(knot_s), half = timing[1] / T(2 * knot_s);
     const SplinePose<T> top = spline_pose(a, b, c, d, T(middle - half));
     const SplinePose<T> bottom = spline_pose(a, b, c, d, T(middle + half));
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -61,6 +67,17 @@ struct ViewError {
       errors[2 * i] = lens[2] + lens[0] * at.x() - T(corner.pixel.x());
       errors[2 * i + 1] = lens[3] + lens[0] * lens[1] * at.y() - T(corner.pixel.y());
     }
+    return true;
+  }
+};
+
+/// A picture's own error of time, in standard deviations.
+struct Jitter {
+  double weight = 1;  // 1/s
+
+  template <typename T>
+  bool operator()(const T* jitter, T* error) const {
+    error[0] = jitter[0] * T(weight);
     return true;
   }
 };
@@ -158,7 +175,7 @@ class Motion {
     ceres::Solve(how, problem_.get(), &summary);
   }
 
-  /// Judges every corner anew by the noise of the others.
+  /// Judges every corner anew by the noise of the others, and how even the cameras' clocks are.
   void judge() {
     std::vector<double> distances;
     for (const View& view : views_) {
@@ -169,18 +186,29 @@ class Motion {
     if (distances.empty()) return;
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
-    const double limit = std::max(kAlwaysGood, kOutlierSigmas * *middle / 1.1774);
+    noise_px_ = std::max(kLeastNoise, *middle / 1.1774);  // the median of a Rayleigh distribution
+    const double limit = std::max(kAlwaysGood, kOutlierSigmas * noise_px_);
+    double square = 0;
+    for (const View& view : views_) square += view.jitter_s * view.jitter_s;
+    if (jitter_s_ > 0) jitter_s_ = std::min(kUneven * options_.knot_s, std::sqrt(square / static_cast<double>(views_.size())));
+    if (jitter_s_ < kEven * options_.knot_s) jitter_s_ = 0;
     for (View& view : views_) {
       const auto errors = errors_of(view);
       for (std::size_t i = 0; i < errors.size(); ++i) view.corners[i].inlier = errors[i] && errors[i]->norm() <= limit;
     }
   }
 
+  /// From now on pictures may be taken a little before or after their time.
+  void expect_jitter() { jitter_s_ = kUneven * options_.knot_s; }
+
   BoardRig report(bool deviations);
 
  private:
   static constexpr double kAlwaysGood = 0.5;  // px
   static constexpr double kOutlierSigmas = 6;
+  static constexpr double kLeastNoise = 0.02;  // px
+  static constexpr double kEven = 0.003;       // of a frame: a clock's error that does not count
+  static constexpr double kUneven = 0.03;      // of a frame: what is thought possible
 
   int segment_of(const View& view) const {
     return static_cast<int>(std::floor((view.time_s + timings_[view.camera][0] - begin_) / options_.knot_s));
@@ -190,6 +218,7 @@ class Motion {
   ceres::CostFunction* error_of(const View& view, int segment, bool inliers_only) const;
   void build(double loss_px);
   void hold(std::size_t camera);
+  void even_out(View& view);
   void smooth();
   void deviate(BoardRig& rig);
 
@@ -201,6 +230,8 @@ class Motion {
   std::vector<std::array<double, 2>> timings_;
   std::map<int, Control> controls_;
   double begin_ = 0;
+  double noise_px_ = 1;  // each axis, as judged last
+  double jitter_s_ = 0;  // standard deviation, as judged last
   std::unique_ptr<ceres::Problem> problem_;
   int equations_ = 0, unknowns_ = 0;
 };
@@ -223,7 +254,7 @@ ceres::CostFunction* Motion::error_of(const View& view, int segment, bool inlier
         using Model = std::decay_t<decltype(model)>;
         constexpr int lens = bundle::kLensBase + Model::coefficients;
         const int count = 2 * static_cast<int>(corners.size());
-        return new ceres::AutoDiffCostFunction<ViewError<Model>, ceres::DYNAMIC, 7, 7, 7, 7, bundle::kPose, lens, 2>(
+        return new ceres::AutoDiffCostFunction<ViewError<Model>, ceres::DYNAMIC, 7, 7, 7, 7, bundle::kPose, lens, 2, 1>(
             new ViewError<Model>{std::move(corners), from_begin, options_.knot_s}, count);
       },
       lens_models_[view.camera]);
@@ -234,11 +265,12 @@ std::vector<std::optional<Vector<2>>> Motion::errors_of(const View& view) const 
   std::vector<std::optional<Vector<2>>> errors(view.corners.size());
   if (!controlled(segment)) return errors;
   const std::unique_ptr<ceres::CostFunction> cost(error_of(view, segment, false));
-  std::array<const double*, 7> blocks{};
+  std::array<const double*, 8> blocks{};
   for (std::size_t i = 0; i < 4; ++i) blocks[i] = controls_.at(segment + static_cast<int>(i)).data();
   blocks[4] = poses_[view.camera].data();
   blocks[5] = lenses_[view.camera].data();
   blocks[6] = timings_[view.camera].data();
+  blocks[7] = &view.jitter_s;
   std::vector<double> numbers(2 * view.corners.size());
   if (!cost->Evaluate(blocks.data(), numbers.data(), nullptr)) return errors;
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = -Vector<2>(numbers[2 * i], numbers[2 * i + 1]);
@@ -248,7 +280,7 @@ std::vector<std::optional<Vector<2>>> Motion::errors_of(const View& view) const 
 void Motion::build(double loss_px) {
   problem_ = std::make_unique<ceres::Problem>();
   equations_ = 0;
-  for (const View& view : views_) {
+  for (View& view : views_) {
     const int segment = segment_of(view);
     ceres::CostFunction* cost = controlled(segment) ? error_of(view, segment, true) : nullptr;
     if (!cost) continue;
@@ -256,7 +288,8 @@ void Motion::build(double loss_px) {
     ceres::LossFunction* loss = loss_px > 0 ? new ceres::HuberLoss(loss_px * std::sqrt(cost->num_residuals())) : nullptr;
     problem_->AddResidualBlock(cost, loss, controls_[segment].data(), controls_[segment + 1].data(), controls_[segment + 2].data(),
                                controls_[segment + 3].data(), poses_[view.camera].data(), lenses_[view.camera].data(),
-                               timings_[view.camera].data());
+                               timings_[view.camera].data(), &view.jitter_s);
+    even_out(view);
   }
   smooth();
   for (std::size_t c = 0; c < inputs_.size(); ++c) hold(c);
@@ -275,11 +308,22 @@ void Motion::smooth() {
     const auto next = controls_.find(k + 1), after = controls_.find(k + 2);
     if (next == controls_.end() || after == controls_.end()) continue;
     if (!problem_->HasParameterBlock(next->second.data()) || !problem_->HasParameterBlock(after->second.data())) continue;
-    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Smoothness, 6, 7, 7, 7>(
-                                   new Smoothness{options_.acceleration * square, options_.turning * square}),
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Smoothness, 6, 7, 7, 7>(new Smoothness{
+                                   options_.acceleration * square / noise_px_, options_.turning * square / noise_px_}),
                                nullptr, control.data(), next->second.data(), after->second.data());
     equations_ += 6;
   }
+}
+
+void Motion::even_out(View& view) {
+  if (jitter_s_ > 0) {
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Jitter, 1, 1>(new Jitter{noise_px_ / jitter_s_}), nullptr,
+                               &view.jitter_s);
+    ++equations_;
+    return;
+  }
+  view.jitter_s = 0;
+  problem_->SetParameterBlockConstant(&view.jitter_s);
 }
 
 void Motion::hold(std::size_t camera) {
@@ -337,6 +381,7 @@ BoardRig Motion::report(bool deviations) {
   }
   rig.rms_px = std::sqrt(square / std::max(1, rig.inliers));
   rig.mean_px = sum / std::max(1, rig.inliers);
+  rig.jitter_s = jitter_s_;
   rig.noise_px = std::sqrt(square / std::max(1, equations_ - unknowns_));
   if (deviations) deviate(rig);
   return rig;
@@ -373,10 +418,12 @@ BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> ca
                           const BoardMotionOptions& options, bool deviations) {
   Motion motion(board, cameras, poses, start, options);
   motion.solve(2);
-  for (int round = 0; round < 3; ++round) {
+  motion.expect_jitter();
+  for (int round = 0; round < kRounds; ++round) {
+    motion.solve(round == 0 ? 2 : 0);
     motion.judge();
-    motion.solve(0);
   }
+  motion.solve(0);
   return motion.report(deviations);
 }
 

@@ -17,8 +17,6 @@ namespace {
 
 using Timing = BoardRigOptions::Timing;
 
-constexpr double kShows = 4;  // standard deviations from which a shutter's readout is believed
-
 /// Every view with the pose that its camera alone would give it; views without one are left out of both lists.
 std::vector<std::vector<PosedView>> pose_views(const Board& board, std::vector<BoardRigCamera>& cameras, bool stills) {
   std::vector<std::vector<PosedView>> all;
@@ -110,6 +108,24 @@ double longest_period(const std::vector<std::vector<PosedView>>& poses) {
   return longest;
 }
 
+void warn(BoardRig& rig, std::span<const BoardRigCamera> cameras, double frame_s) {
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const BoardRigPose& camera = rig.cameras[c];
+    if (camera.inliers < 0.8 * camera.observations)
+      rig.warnings.push_back(fmt::format(
+          "camera \"{}\": {} of {} corners do not fit the others'; was the board flat, and the lens calibrated at this focus?",
+          cameras[c].name, camera.observations - camera.inliers, camera.observations));
+    if (camera.offset_deviation_s > 0.1 * frame_s)
+      rig.warnings.push_back(
+          fmt::format("camera \"{}\": its offset is known to no better than {:.1f} ms; move the board faster, to all sides",
+                      cameras[c].name, 1e3 * camera.offset_deviation_s));
+  }
+  if (rig.jitter_s > 0.02 * frame_s)
+    rig.warnings.push_back(
+        fmt::format("pictures were taken unevenly, {:.1f} ms before or after their time: what moves fast will be placed badly",
+                    1e3 * rig.jitter_s));
+}
+
 }  // namespace
 
 BoardRig calibrate_board_rig(const Board& board, std::span<const BoardRigCamera> given, const BoardRigOptions& options) {
@@ -131,7 +147,10 @@ BoardRig calibrate_board_rig(const Board& board, std::span<const BoardRigCamera>
   how.knot_s = longest_period(poses);
   how.refine_offsets = options.timing == Timing::films;
   how.refine_lenses = options.refine_lenses;
-  return fit_board_motion(board, cameras, poses, start, how, true);
+  how.refine_readout = options.rolling_shutter;
+  BoardRig rig = fit_board_motion(board, cameras, poses, start, how, true);
+  warn(rig, cameras, how.knot_s);
+  return rig;
 }
 
 }  // namespace marey

@@ -46,8 +46,9 @@ struct BoardRigOptions {
     synced,  ///< the board moves; offsets are held
   };
   Timing timing = Timing::films;
-  double most_offset_s = 30;   ///< how far the search goes to both sides
-  bool refine_lenses = false;  ///< together with the poses
+  double most_offset_s = 30;     ///< how far the search goes to both sides
+  bool refine_lenses = false;    ///< together with the poses
+  bool rolling_shutter = false;  ///< films: the shutters' readout is sought too
 };
 
 /// What is found of one camera.
@@ -55,7 +56,7 @@ struct BoardRigPose {
   Lens lens;
   Rigid3 camera_from_world;  ///< m; the world is the first camera's frame
   double offset_s = 0;       ///< added to its times gives the first camera's
-  double readout_s = 0;      ///< from the exposure of the top row to that of the bottom row; 0 where it does not show
+  double readout_s = 0;      ///< from the exposure of the top row to that of the bottom row; 0 where it was not sought
 
   double offset_deviation_s = 0;                   ///< standard deviation, by the noise seen; 0 where the offset was not sought
   Vector<3> centre_deviation = Vector<3>::Zero();  ///< m
@@ -67,6 +68,7 @@ struct BoardRig {
   std::vector<BoardRigPose> cameras;
   double rms_px = 0, mean_px = 0, noise_px = 0;  ///< over all; noise: each axis, degrees of freedom taken off
   int inliers = 0, observations = 0;
+  double jitter_s = 0;  ///< films: how unevenly pictures were taken, standard deviation; 0 where it does not show
   std::vector<std::string> warnings;
 };
 

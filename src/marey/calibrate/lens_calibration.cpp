@@ -63,12 +63,12 @@ class Solver {
   /// Puts out views that fit far worse than most, and takes back those that, by the lens without them, do not.
   void refuse_bad_views() {
     for (int round = 0; round < kRounds; ++round) {
-      const std::vector<double> rms = view_rms();
-      std::vector<double> sorted = rms;
+      const std::vector<double> misfit = view_misfit();
+      std::vector<double> sorted = misfit;
       std::ranges::sort(sorted);
       const double limit = std::max(kAlwaysGood, kWorseThanOthers * sorted[(sorted.size() - 1) / 2]);
       std::vector<bool> verdict;
-      for (const double here : rms) verdict.push_back(here <= limit);
+      for (const double here : misfit) verdict.push_back(here <= limit);
       if (verdict == used_ || std::ranges::count(verdict, true) < kLeastViews) return;
       for (std::size_t i = 0; i < verdict.size(); ++i) {
         if (verdict[i] && !used_[i]) bundle_.bodies[i] = *board_pose(board_, views_[i].board, bundle_.cameras[0].lens);
@@ -107,14 +107,22 @@ class Solver {
     return last_;
   }
 
-  /// Of every view, used or not, px; 1e6 where the lens as it is gives no pose.
-  std::vector<double> view_rms() const {
+  /// How far corners are off in every view, used or not: the median, px, which single wrong corners do not move. 1e6 where the
+  /// lens as it is gives no pose.
+  std::vector<double> view_misfit() const {
     const Lens& lens = bundle_.cameras[0].lens;
     std::vector<double> all;
     for (std::size_t i = 0; i < views_.size(); ++i) {
       const BoardView& view = views_[i].board;
       const auto pose = used_[i] ? std::optional(std::get<Rigid3>(bundle_.bodies[i])) : board_pose(board_, view, lens);
-      all.push_back(pose ? board_rms(board_, view, lens, *pose).value_or(1e6) : 1e6);
+      std::vector<double> distances;
+      for (const BoardCorner& corner : view.corners) {
+        const auto pixel = pose ? pixel_of(lens, *pose * board_.corner(corner.id)) : std::nullopt;
+        distances.push_back(pixel ? (*pixel - corner.pixel).norm() : 1e6);
+      }
+      const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+      std::nth_element(distances.begin(), middle, distances.end());
+      all.push_back(*middle);
     }
     return all;
   }

@@ -1,7 +1,8 @@
 // Where two edges cross, to a fraction of a pixel: along an edge the gradient stands across the line to the crossing, so the
-// crossing p minimises Σ w (g · (q − p))² over the pixels q around it (Förstner & Gülch 1987; OpenCV's cornerSubPix). A pixel counts
-// the more the nearer it is, and only where its edge leads past the crossing found so far: other edges within the window, such as the
-// border of a board whose outer squares are cut short, would draw it away by several pixels. Cost: the window, some ten times.
+// crossing p minimises Σ w (g · (q − p))² over the pixels q around it (Förstner & Gülch 1987; OpenCV's cornerSubPix). A pixel
+// counts the more the nearer it is, and only where its edge leads past the crossing found so far: other edges within the window,
+// such as the border of a board whose outer squares are cut short, would draw it away by several pixels. Cost: the window, some ten
+// times.
 #include "marey/calibrate/refine_corner.h"
 
 #include <algorithm>

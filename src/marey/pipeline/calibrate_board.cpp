@@ -104,6 +104,7 @@ BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRun
   BoardRigOptions how;
   how.timing = are_stills(rig) ? Timing::stills : options.synced ? Timing::synced : Timing::films;
   how.refine_lenses = options.refine;
+  how.rolling_shutter = options.rolling_shutter;
   how.most_offset_s = options.most_offset_s;
   BoardRun run{rig, {}};
   const BoardDetector detector(board);

@@ -9,9 +9,10 @@
 namespace marey {
 
 struct BoardRunOptions {
-  bool synced = false;        ///< films of cameras in step: their offsets are held as the rig has them
-  bool refine = false;        ///< the lenses too
-  double most_offset_s = 30;  ///< how far cameras are out of step at most
+  bool synced = false;           ///< films of cameras in step: their offsets are held as the rig has them
+  bool refine = false;           ///< the lenses too
+  bool rolling_shutter = false;  ///< films: the shutters' readout is sought too
+  double most_offset_s = 30;     ///< how far cameras are out of step at most
   std::function<void(const std::string&, std::int64_t, std::optional<std::int64_t>)>
       progress;  ///< camera, frames done and in all; may be empty
 };
