@@ -10,6 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/detect/background_kernels.h"
 #include "marey/detect/background_scene_test.h"
+#include "marey/detect/background_shadow.h"
 
 namespace marey {
 namespace {
@@ -268,6 +269,18 @@ TEST(BackgroundKernels, AreTheSameForEveryMachine) {
   }
 }
 #endif
+
+TEST(ShadowFinder, AShadowOnColouredGroundKeepsItsColour) {
+  // A lawn of luma 90 over black, chroma −20 and −12 from grey.
+  const auto is_shadow = [](int luma, int cb, int cr) { return ShadowFinder::is_coloured_shadow(luma, 90, cb, cr, -20, -12); };
+  EXPECT_TRUE(is_shadow(50, -11, -7));
+  EXPECT_TRUE(is_shadow(50, -17, -10)) << "its edge, where chroma still has light in it";
+  EXPECT_FALSE(is_shadow(50, 0, 0)) << "a grey thing";
+  EXPECT_FALSE(is_shadow(50, -7, 14)) << "skin";
+  EXPECT_FALSE(is_shadow(20, -5, -3)) << "too dark";
+  EXPECT_FALSE(is_shadow(110, -22, -13)) << "lighter";
+  EXPECT_FALSE(ShadowFinder::is_coloured_shadow(50, 90, 0, 0, -3, 2)) << "grey ground tells nothing";
+}
 
 }  // namespace
 }  // namespace marey

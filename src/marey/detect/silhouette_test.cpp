@@ -1,5 +1,6 @@
 #include "marey/detect/silhouette.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -7,6 +8,8 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+
+#include "marey/detect/runs.h"
 
 namespace marey {
 namespace {
@@ -138,6 +141,23 @@ TEST(Silhouette, OnePixelIsASquareRoundItsCentre) {
   EXPECT_EQ(outline[1], Vector<2>(5.5, 2.5));
   EXPECT_EQ(outline[2], Vector<2>(5.5, 3.5));
   EXPECT_EQ(outline[3], Vector<2>(4.5, 3.5));
+}
+
+TEST(LargestPart, IsTheLargestRegionOfTheSamePixels) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    cv::RNG random(seed);
+    cv::Mat mask(24, 31, CV_8UC1);
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) mask.at<std::uint8_t>(y, x) = random.uniform(0, 100) < 35 ? 255 : 0;
+    }
+    std::vector<PixelRun> runs;
+    for (int y = 0; y < mask.rows; ++y) append_runs(mask.ptr<std::uint8_t>(y), y, mask.cols, runs);
+    const auto regions = find_regions(mask, {.max_hole = 0});
+    const auto largest =
+        std::max_element(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return a.area < b.area; });
+    EXPECT_EQ(largest_part(runs), largest->runs) << "seed " << seed;
+  }
+  EXPECT_TRUE(largest_part({}).empty());
 }
 
 }  // namespace

@@ -14,22 +14,19 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
-#include "marey/core/error.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/line_search.h"
 #include "marey/track/contour/motion_filter.h"
 #include "marey/track/contour/shape_filter.h"
+#include "marey/track/contour/silhouette_spline.h"
 
 namespace marey {
 namespace {
 
 using Finding = MeasurementLine::Finding;
 
-constexpr int kMostControlPoints = 64, kMostLines = 512;
-constexpr int kFewestControlPoints = 8, kChosenAtMost = 24;  // where the tolerance chooses
 // Noise, in heights of the target (px where it says so); each √second where it is a motion.
 constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part may be hidden
 constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
@@ -42,62 +39,12 @@ constexpr double kLeastReach = 4, kMostReach = 0.25;  // of a line: px; heights
 constexpr double kSeen = 0.6, kPartly = 0.25;         // shares of the lines found
 constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
 constexpr double kShareMemory = 0.05;
-constexpr double kSameBox = 0.5;      // IoU of a silhouette's outline and the detection's box from which on they are the same thing
 constexpr double kMostUnlike = 1.35;  // factor of a silhouette's size over the usual, from which on it is not believed
 constexpr double kLeft = 0.5;         // heights from where the centre is predicted: the motion begins anew
-constexpr double kLeastArea = 0.5;    // px²
 constexpr int kRounds = 3;            // of the fit, in every frame
 constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
 constexpr double kHintScore = 0.3;    // continues a track, begins none
 constexpr double kGrowthDoubt = 0.5;  // 1/s
-
-void check(const OutlineOptions& options) {
-  if (options.order < 2 || options.order > SplineWeights::max_order) {
-    throw Error("an outline of order {} cannot be; give one from 2 to {} (4 is cubic)", options.order, +SplineWeights::max_order);
-  }
-  const int needed = std::max(options.order, 3);
-  if (options.control_points && (*options.control_points < needed || *options.control_points > kMostControlPoints)) {
-    throw Error("{} control points for an outline of order {}; give from {} to {}", *options.control_points, options.order, needed,
-                kMostControlPoints);
-  }
-  if (options.lines < 1 || options.lines > kMostLines) {
-    throw Error("{} measurement lines an outline; give from 1 to {}", options.lines, kMostLines);
-  }
-  if (!(options.tolerance > 0)) throw Error("the tolerance of an outline is {} px; it must be positive", options.tolerance);
-  if (!(options.least_height >= 1))
-    throw Error("the least height of an outline is {} px; it must be 1 or more", options.least_height);
-}
-
-SplineFitOptions fit_options(const OutlineOptions& options) {
-  const int needed = std::max(options.order, 3);
-  if (options.control_points) return {options.order, *options.control_points, *options.control_points, options.tolerance};
-  return {options.order, std::max(needed, kFewestControlPoints), std::max(needed, kChosenAtMost), options.tolerance};
-}
-
-/// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
-bool is_knotted(const ClosedSpline& spline) {
-  constexpr int kPlaces = 4;  // a span
-  const int count = kPlaces * spline.count();
-  double turned = 0;
-  Vector<2> before = spline.derivative(-1.0 / kPlaces);
-  for (int i = 0; i < count; ++i) {
-    const Vector<2> now = spline.derivative(static_cast<double>(i) / kPlaces);
-    turned += std::atan2(before.x() * now.y() - before.y() * now.x(), before.dot(now));
-    before = now;
-  }
-  return std::abs(turned - 2 * std::numbers::pi) > 1;
-}
-
-/// The outline of a silhouette; nothing where it is no simple curve, or not about as large as the detection.
-std::optional<ClosedSpline> outline_of(const Detection& seen, SplineFitOptions options) {
-  for (const int rounds : {options.rounds, 0}) {
-    options.rounds = rounds;
-    auto spline = fit_spline(seen.outline, options);
-    if (!spline || !(spline->area() > kLeastArea) || iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
-    if (!is_knotted(*spline)) return spline;
-  }
-  return std::nullopt;
-}
 
 struct Silhouette {
   ClosedSpline spline;
@@ -328,7 +275,7 @@ class OutlineFollower::Implementation {
   /// swings leaves behind. A silhouette unlike the target (cut, or grown by something else) is left to the lines.
   void take_silhouette(FollowedTarget& target, const Detection& seen) {
     const int count = target.shape.spline().count();
-    const auto spline = outline_of(seen, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
+    const auto spline = fit_silhouette(seen, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
     if (!spline || spline->count() != count) return;
     const double growth = std::sqrt(spline->area() / target.usual_area);
     if (target.state == Outline::State::seen && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return;
@@ -361,7 +308,7 @@ class OutlineFollower::Implementation {
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
   /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
   std::shared_ptr<const Outline> begin(TrackId id, const Detection& seen) {
-    auto spline = outline_of(seen, fit_options(options_));
+    auto spline = fit_silhouette(seen, fit_options(options_));
     if (!spline) return nullptr;
     const auto first = first_seen_.find(id);
     if (first == first_seen_.end()) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "marey/core/detection.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/outline_follower.h"
+
+namespace marey {
+
+/// Throws Error where an option is out of its domain.
+void check(const OutlineOptions& options);
+
+/// How the options want a target's first silhouette fitted.
+SplineFitOptions fit_options(const OutlineOptions& options);
+
+/// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
+bool is_knotted(const ClosedSpline& spline);
+
+/// The outline of a silhouette; nothing where it is no simple curve, or not about as large as the detection.
+std::optional<ClosedSpline> fit_silhouette(const Detection& seen, SplineFitOptions options);
+
+}  // namespace marey
