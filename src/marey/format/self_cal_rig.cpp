@@ -129,8 +129,10 @@ Rig read_self_cal_rig(const std::string& path) {
     farthest = std::max(farthest, set_lens(camera, *decomposed(P), folder.lens(i)));
     camera.camera_from_world->translation *= folder.unit();
   }
-  rig.calibration.emplace().method =
-      fmt::format("MultiCamSelfCal; its matrices and lenses made one lens each, off by up to {:.2f} px RMS", farthest);
+  std::string& method = rig.calibration.emplace().method = "MultiCamSelfCal";
+  constexpr double kWorthTelling = 0.005;  // px
+  if (farthest > kWorthTelling)
+    method += fmt::format("; its matrices and lenses made one lens each, off by up to {:.2f} px RMS", farthest);
   check_imported(rig, path);
   return rig;
 }
