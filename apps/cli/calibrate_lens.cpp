@@ -9,7 +9,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
+#include "marey/draw/coverage_plot.h"
 #include "marey/format/rig_file.h"
+#include "marey/format/whole_file.h"
 
 #include "calibrate_commands.h"
 #include "progress_bar.h"
@@ -87,6 +89,20 @@ Rig rig_of(const CalibrateLens& command, const LensCalibration& found) {
   return rig;
 }
 
+void draw(const CalibrateLens& command, const LensCalibration& found) {
+  CoveragePlot plot;
+  plot.title = fmt::format("{}: {:.3f} px RMS over {} corners, {:.0f} % covered", command.name, found.rms_px, found.inliers,
+                           100 * found.covered);
+  plot.size = found.size;
+  for (const LensCalibration::View& view : found.views) {
+    for (std::size_t i = 0; i < view.pixels.size(); ++i)
+      plot.marks.push_back({view.pixels[i], i < view.errors.size() ? view.errors[i] : Vector<2>::Zero(), view.refused.empty()});
+  }
+  WholeFile file(command.picture);
+  file.write(to_svg(plot));
+  file.finish();
+}
+
 void run(const CalibrateLens& command) {
   const Board board = parse_board(command.board);
   LensRunOptions options = command.run;
@@ -97,6 +113,7 @@ void run(const CalibrateLens& command) {
     found = calibrate_lens_from(command.input, board, options);
   }
   if (!command.out.empty()) write_rig(rig_of(command, found.calibration), command.out);
+  if (!command.picture.empty()) draw(command, found.calibration);
   for (const std::string& sentence : found.calibration.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
     fmt::print("{}\n", as_json(command, found).dump(2));
@@ -129,6 +146,7 @@ void add_calibrate_lens(CLI::App& calibrate) {
   command->add_option("--views", options->run.most_views, "pictures that the solution rests on, at most")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
+  command->add_option("--picture", options->picture, "SVG of where corners were seen, with their errors");
   command->add_flag("--json", options->json, "print JSON instead of a table");
   command->add_flag("-q,--quiet", options->quiet, "no progress");
   command->callback([options] { run(*options); });

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// Where in a camera's picture something was measured, and by how much it was off.
+struct CoveragePlot {
+  std::string title;
+  cv::Size size;  ///< px, of the picture
+  struct Mark {
+    Vector<2> pixel = Vector<2>::Zero();
+    Vector<2> error = Vector<2>::Zero();  ///< px: seen minus predicted
+    bool used = true;
+  };
+  std::vector<Mark> marks;
+};
+
+/// A self-contained SVG: the picture's frame in 10 × 8 fields, darker where more marks are, each mark with its error magnified; the
+/// title says by how much.
+std::string to_svg(const CoveragePlot& plot);
+
+}  // namespace marey
