@@ -196,6 +196,26 @@ class BadInput(unittest.TestCase):
         (self.folder / "det.txt").write_text("1,-1,10,10,20,40,1\n")
         self.assertIn("needs pictures", self.refused("track", "--detections", "det.txt", "--overlay", "out.mp4"))
 
+    def test_outlines_that_cannot_be(self):
+        film(self.folder / "film.avi", seconds=1)
+        for flags, said in ((("--lines", "0"), "--lines 0"), (("--lines", "-4"), "--lines -4"), (("--lines", "100000"), "--lines 100000"),
+                            (("--order", "1"), "--order 1"), (("--order", "9"), "--order 9"),
+                            (("--control-points", "3"), "--control-points 3"), (("--control-points", "0"), "--control-points 0"),
+                            (("--control-points", "5", "--order", "6"), "--control-points 5"),
+                            (("--control-points", "1000"), "--control-points 1000"),
+                            (("--targets", "markers"), "markers are points")):
+            self.assertIn(said, self.refused("track", "film.avi", "--outline", *flags))
+        (self.folder / "det.txt").write_text("1,-1,10,10,20,40,1\n")
+        self.assertIn("searched in pictures", self.refused("track", "--detections", "det.txt", "--outline"))
+        for flags in (("--lines", "many"), ("--order", "4.5"), ("--control-points",)):
+            self.refused("track", "film.avi", "--outline", *flags, code=2)
+        self.refused("track", "film.avi", "--lines", "24", code=2)  # without --outline
+
+    def test_plot_that_cannot_be_written(self):
+        film(self.folder / "film.avi", seconds=1)
+        (self.folder / "file").touch()
+        self.assertIn("cannot be written", self.refused("track", "film.avi", "--plot", "file/out.svg"))
+
     def test_ctrl_c_half_way(self):
         source = self.folder / "long.avi"
         film(source, seconds=600, size="160x120", codec=("-c:v", "mpeg4", "-q:v", "20"))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "marey/geometry/vector.h"
@@ -41,6 +42,7 @@ struct Outline {
   Vector<2> centre_deviation = Vector<2>::Zero();    ///< px
   Vector<2> velocity_deviation = Vector<2>::Zero();  ///< px/s
   double scale_rate_deviation = 0;                   ///< 1/s
+  std::optional<Vector<2>> silhouette;               ///< px; centre of the area that the detector saw of it alone, in this frame
   std::vector<MeasurementLine> lines;                ///< of this frame; empty in a target's first
   State state = State::seen;
 };

@@ -43,6 +43,7 @@ void append_json(std::string& text, const Outline& outline) {
   append_pair(text, "centre", outline.centre);
   append_pair(text, "velocity", outline.velocity);
   fmt::format_to(out, R"("scale_rate":{:.5f},)", outline.scale_rate);
+  if (outline.silhouette) append_pair(text, "silhouette", *outline.silhouette);
   append_pair(text, "centre_deviation", outline.centre_deviation);
   append_pair(text, "velocity_deviation", outline.velocity_deviation);
   fmt::format_to(out, R"("scale_rate_deviation":{:.5f}}})", outline.scale_rate_deviation);

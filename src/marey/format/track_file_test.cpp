@@ -39,6 +39,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   outline->centre = {3, 4};
   outline->velocity = {10, -20};
   outline->scale_rate = 0.125;
+  outline->silhouette = Vector<2>(3.5, 4.25);
   outline->velocity_deviation = {1.5, 2};
   outline->scale_rate_deviation = 0.0625;
   track.outline = outline;
@@ -54,6 +55,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   EXPECT_EQ(json["centre"], nlohmann::json::parse("[3.0,4.0]"));
   EXPECT_EQ(json["velocity"], nlohmann::json::parse("[10.0,-20.0]"));
   EXPECT_EQ(json["scale_rate"], 0.125);
+  EXPECT_EQ(json["silhouette"], nlohmann::json::parse("[3.5,4.25]"));
   EXPECT_EQ(json["centre_deviation"], nlohmann::json::parse("[0.0,0.0]"));
   EXPECT_EQ(json["velocity_deviation"], nlohmann::json::parse("[1.5,2.0]"));
   EXPECT_EQ(json["scale_rate_deviation"], 0.0625);

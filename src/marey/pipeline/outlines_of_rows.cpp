@@ -14,6 +14,7 @@ std::shared_ptr<const Outline> carried(const Outline& outline, const Vector<2>& 
   for (Vector<2>& deviation : result->deviations) deviation *= scale;
   result->centre = move(outline.centre);
   result->lines.clear();
+  result->silhouette.reset();
   result->state = Outline::State::held;
   return result;
 }

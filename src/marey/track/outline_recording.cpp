@@ -26,9 +26,10 @@ struct OutlineHead {
   std::int32_t state;
   std::int32_t control_points;
   std::int32_t lines;
+  std::int32_t has_silhouette;
 };
 
-constexpr std::size_t kMotion = 10, kPoint = 4, kLine = 8;  // numbers each
+constexpr std::size_t kMotion = 12, kPoint = 4, kLine = 8;  // numbers each
 
 std::FILE* make_unnamed_file(const fs::path& folder) {
   std::string name = (folder / "marey-outlines-XXXXXX").string();
@@ -50,6 +51,7 @@ void put_all(std::vector<float>& numbers, const Outline& outline, bool with_line
   put(numbers, outline.centre_deviation);
   put(numbers, outline.velocity_deviation);
   numbers.push_back(static_cast<float>(outline.scale_rate_deviation));
+  put(numbers, outline.silhouette.value_or(Vector<2>::Zero()));
   for (std::size_t i = 0; i < outline.control_points.size(); ++i) {
     put(numbers, outline.control_points[i]);
     put(numbers, outline.deviations[i]);
@@ -78,6 +80,8 @@ std::shared_ptr<const Outline> outline_from(const OutlineHead& head, const float
   outline->centre_deviation = pair();
   outline->velocity_deviation = pair();
   outline->scale_rate_deviation = next();
+  const Vector<2> silhouette = pair();
+  if (head.has_silhouette != 0) outline->silhouette = silhouette;
   for (int i = 0; i < head.control_points; ++i) {
     outline->control_points.push_back(pair());
     outline->deviations.push_back(pair());
@@ -131,9 +135,12 @@ void OutlineRecording::add(std::int64_t frame, std::span<const Track<2>> tracks)
   for (const Track<2>& track : tracks) {
     if (!track.outline) continue;
     const Outline& outline = *track.outline;
-    const OutlineHead one{number(track.id), outline.order, static_cast<std::int32_t>(outline.state),
+    const OutlineHead one{number(track.id),
+                          outline.order,
+                          static_cast<std::int32_t>(outline.state),
                           static_cast<std::int32_t>(outline.control_points.size()),
-                          with_lines_ ? static_cast<std::int32_t>(outline.lines.size()) : 0};
+                          with_lines_ ? static_cast<std::int32_t>(outline.lines.size()) : 0,
+                          outline.silhouette ? 1 : 0};
     append(&one, sizeof one);
     numbers_.clear();
     put_all(numbers_, outline, with_lines_);

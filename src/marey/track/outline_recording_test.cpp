@@ -22,6 +22,7 @@ Track<2> track_with_outline(int id, int seed) {
   outline->centre_deviation = {0.5, 0.25};
   outline->velocity_deviation = {2, 4};
   outline->scale_rate_deviation = 0.0625;
+  if (seed % 2 == 0) outline->silhouette = Vector<2>(seed, 0.5);
   for (int i = 0; i < 5 + seed % 3; ++i) {
     outline->control_points.emplace_back(10.0 * i, seed + 0.75);
     outline->deviations.emplace_back(0.5 * i, 1.5);
@@ -49,6 +50,7 @@ void expect_equal(const Outline& a, const Outline& b, bool with_lines) {
   EXPECT_EQ(a.centre_deviation, b.centre_deviation);
   EXPECT_EQ(a.velocity_deviation, b.velocity_deviation);
   EXPECT_EQ(a.scale_rate_deviation, b.scale_rate_deviation);
+  EXPECT_EQ(a.silhouette, b.silhouette);
   EXPECT_EQ(a.control_points, b.control_points);
   EXPECT_EQ(a.deviations, b.deviations);
   ASSERT_EQ(with_lines ? a.lines.size() : 0, b.lines.size());

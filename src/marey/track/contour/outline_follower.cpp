@@ -112,7 +112,7 @@ class OutlineFollower::Implementation {
         if (seen != nullptr) take_silhouette(*target, *seen);
         if (track.box) bring_back(*target, track);
         if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
-        track.outline = report(*target);
+        track.outline = report(*target, seen);
       } else if (seen != nullptr) {
         track.outline = begin(track.id, *seen);
       }
@@ -330,10 +330,10 @@ class OutlineFollower::Implementation {
                         .height = height,
                         .usual_area = area});
     first_seen_.erase(first);
-    return report(targets_.back());
+    return report(targets_.back(), &seen);
   }
 
-  std::shared_ptr<const Outline> report(FollowedTarget& target) const {
+  std::shared_ptr<const Outline> report(FollowedTarget& target, const Detection* seen) const {
     auto slot = std::find_if(target.slots.begin(), target.slots.end(),
                              [](const std::shared_ptr<Outline>& one) { return one && one.use_count() == 1; });
     if (slot == target.slots.end()) {
@@ -353,6 +353,7 @@ class OutlineFollower::Implementation {
     outline.centre_deviation = target.motion.centre_deviation();
     outline.velocity_deviation = target.motion.velocity_deviation();
     outline.scale_rate_deviation = target.motion.growth_deviation();
+    outline.silhouette = seen != nullptr ? std::optional(seen->centre) : std::nullopt;
     outline.lines = target.lines;
     outline.state = target.state;
     return *slot;

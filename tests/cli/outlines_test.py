@@ -1,0 +1,86 @@
+"""The commands of docs/outlines.md, as written there, on simulated people; and what their files hold.
+
+Usage: outlines_test.py MAREY [unittest options]
+"""
+
+import json
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+MAREY = ""
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "outlines.md"
+
+
+def commands_of(page):
+    """Lines of the page's code blocks that begin with marey."""
+    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.S | re.M)
+    return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
+
+
+class Outlines(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_outlines_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        for command in commands_of(PAGE):
+            done = subprocess.run([MAREY, *shlex.split(command)[1:]], capture_output=True, text=True, cwd=cls.folder, timeout=600)
+            if done.returncode != 0:
+                raise AssertionError(f"{command}\n{done.stdout}\n{done.stderr}")
+
+    def rows(self, name):
+        return [json.loads(line) for line in (self.folder / name).read_text().splitlines()]
+
+    def test_every_outline_is_whole(self):
+        for name in ("match.jsonl", "live.jsonl"):
+            rows = self.rows(name)
+            outlined = [row for row in rows if "outline" in row]
+            self.assertGreater(len(outlined), 0.7 * len(rows), name)
+            for row in outlined:
+                outline = row["outline"]
+                self.assertIn(outline["state"], ("seen", "partly", "held"))
+                self.assertGreaterEqual(len(outline["control_points"]), outline["order"])
+                self.assertEqual(len(outline["control_points"]), len(outline["deviations"]))
+                for x, y in outline["deviations"]:
+                    self.assertGreaterEqual(min(x, y), 0)
+                for name_of_pair in ("centre", "velocity", "centre_deviation", "velocity_deviation"):
+                    self.assertEqual(len(outline[name_of_pair]), 2)
+
+    def test_an_outline_belongs_to_its_box(self):
+        near = count = 0
+        for row in self.rows("match.jsonl"):
+            if "outline" not in row:
+                continue
+            count += 1
+            x, y = row["outline"]["centre"]
+            near += abs(x - row["x"]) < row["width"] and abs(y - row["y"]) < row["height"] / 2
+        self.assertGreater(near, 0.97 * count)
+
+    def test_what_was_asked_of_the_spline(self):
+        outlines = [row["outline"] for row in self.rows("quadratic.jsonl") if "outline" in row]
+        self.assertGreater(len(outlines), 20)
+        for outline in outlines:
+            self.assertEqual(outline["order"], 3)
+            self.assertEqual(len(outline["control_points"]), 16)
+
+    def test_the_plot_has_a_way_for_each_person(self):
+        svg = xml.etree.ElementTree.parse(self.folder / "match.svg").getroot()
+        people = {row["id"] for row in self.rows("match.jsonl")}
+        circles = svg.findall("{http://www.w3.org/2000/svg}circle")
+        self.assertEqual(len(circles), len(people))
+
+    def test_the_film_is_there_and_nothing_else_is_left(self):
+        names = {path.name for path in self.folder.iterdir()}
+        self.assertIn("match_tracks.mp4", names)
+        self.assertFalse([name for name in names if name.endswith(".part") or "outlines-" in name])
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
