@@ -163,25 +163,31 @@ bool SelfCalFolder::has_points() const {
 }
 
 std::vector<SelfCalFolder::Point> SelfCalFolder::points() const {
+  return fs::exists(file("points.dat")) ? points_of_table() : points_of_lists();
+}
+
+std::vector<SelfCalFolder::Point> SelfCalFolder::points_of_table() const {
   std::vector<Point> result;
-  if (fs::exists(file("points.dat"))) {
-    const Eigen::MatrixXd places = read_number_table(file("points.dat"));
-    if (places.rows() != 3 * cameras_)
-      throw Error("{}: {} rows for {} cameras; there must be three for each", file("points.dat"), places.rows(), cameras_);
-    Eigen::MatrixXd seen = Eigen::MatrixXd::Ones(cameras_, places.cols());
-    if (fs::exists(file("IdMat.dat"))) seen = read_number_table(file("IdMat.dat"));
-    if (seen.cols() != places.cols()) {
-      throw Error("{}: {} columns, and {} in points.dat; they must agree", file("IdMat.dat"), seen.cols(), places.cols());
-    }
-    for (Eigen::Index frame = 0; frame < places.cols(); ++frame) {
-      for (int camera = 0; camera < cameras_; ++camera) {
-        const Vector<3> place = places.block<3, 1>(3 * camera, frame);
-        if (!(seen(camera, frame) > 0) || !place.allFinite() || place.z() == 0) continue;
-        result.push_back({camera, frame, place.head<2>()});
-      }
-    }
-    return result;
+  const Eigen::MatrixXd places = read_number_table(file("points.dat"));
+  if (places.rows() != 3 * cameras_)
+    throw Error("{}: {} rows for {} cameras; there must be three for each", file("points.dat"), places.rows(), cameras_);
+  Eigen::MatrixXd seen = Eigen::MatrixXd::Ones(cameras_, places.cols());
+  if (fs::exists(file("IdMat.dat"))) seen = read_number_table(file("IdMat.dat"));
+  if (seen.cols() != places.cols()) {
+    throw Error("{}: {} columns, and {} in points.dat; they must agree", file("IdMat.dat"), seen.cols(), places.cols());
   }
+  for (Eigen::Index frame = 0; frame < places.cols(); ++frame) {
+    for (int camera = 0; camera < cameras_; ++camera) {
+      const Vector<3> place = places.block<3, 1>(3 * camera, frame);
+      if (!(seen(camera, frame) > 0) || !place.allFinite() || place.z() == 0) continue;
+      result.push_back({camera, frame, place.head<2>()});
+    }
+  }
+  return result;
+}
+
+std::vector<SelfCalFolder::Point> SelfCalFolder::points_of_lists() const {
+  std::vector<Point> result;
   std::vector<std::vector<SpacePoint>> rows(static_cast<std::size_t>(cameras_));
   for (int camera = 0; camera < cameras_; ++camera) {
     const auto path = first_of("cam", camera + 1, ".points4cal.dat");

@@ -45,6 +45,8 @@ class SelfCalFolder {
   double unit() const;
 
  private:
+  std::vector<Point> points_of_table() const;
+  std::vector<Point> points_of_lists() const;
   std::string file(const std::string& name) const;
   std::optional<std::string> first_of(const std::string& before, int number, const std::string& after) const;
 
