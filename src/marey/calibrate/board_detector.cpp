@@ -26,7 +26,8 @@ namespace marey {
 namespace {
 
 constexpr int kLeastCorners = 4;
-constexpr double kSearchWidth = 1600;  // px: larger pictures are searched at a smaller scale; corners are refined at full size
+constexpr double kLeastLikeness = 0.6;  // of opposite points round a corner that nothing hides
+constexpr double kSearchWidth = 1600;   // px: larger pictures are searched at a smaller scale; corners are refined at full size
 
 cv::Mat grey_of(const Picture& picture, bool inverted) {
   cv::Mat grey = picture.luma();
@@ -159,7 +160,8 @@ std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
   cv::Mat small = grey;
   if (factor < 1) cv::resize(grey, small, {}, factor, factor, cv::INTER_AREA);
   std::vector<cv::Point2f> found;
-  const int usual = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  const int usual = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  if (!cv::checkChessboard(small, board_.corners)) return std::nullopt;
   if (!cv::findChessboardCorners(small, board_.corners, found, usual) &&
       !cv::findChessboardCornersSB(small, board_.corners, found, cv::CALIB_CB_NORMALIZE_IMAGE))
     return std::nullopt;
@@ -222,8 +224,8 @@ std::optional<BoardView> BoardDetector::charuco(const cv::Mat& grey) const {
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
       spacing = std::min(spacing, cv::norm(mapped(h, place.x + dx, place.y + dy) - start));
     const double reach = 0.5 * (board_.square_m - board_.marker_m) / board_.square_m;  // up to the markers' black
-    if (const auto pixel = refine_corner(grey, {start.x, start.y}, spacing * std::min(1.0, 2 * std::numbers::sqrt2 * reach + 0.35)))
-      view.corners.push_back({id, *pixel});
+    const auto pixel = refine_corner(grey, {start.x, start.y}, spacing * std::min(1.0, 2 * std::numbers::sqrt2 * reach + 0.35));
+    if (pixel && opposite_likeness(grey, *pixel, 0.25 * spacing) > kLeastLikeness) view.corners.push_back({id, *pixel});
   }
   if (static_cast<int>(view.corners.size()) < kLeastCorners) return std::nullopt;
   return view;

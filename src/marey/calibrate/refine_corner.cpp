@@ -73,4 +73,30 @@ std::optional<Vector<2>> refine_corner(const cv::Mat& grey, const Vector<2>& sta
   return p;
 }
 
+double opposite_likeness(const cv::Mat& grey, const Vector<2>& pixel, double radius) {
+  const int half = std::max(kLeastHalf, static_cast<int>(std::lround(radius)));
+  if (!within(grey, pixel, half)) return 0;
+  const auto at = [&](double x, double y) {
+    const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+    const double right = x - column, down = y - row;
+    const auto* above = grey.ptr<unsigned char>(row) + column;
+    const auto* below = grey.ptr<unsigned char>(row + 1) + column;
+    return (1 - down) * ((1 - right) * above[0] + right * above[1]) + down * ((1 - right) * below[0] + right * below[1]);
+  };
+  double sum = 0, square = 0, product = 0;
+  int count = 0;
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
+      if (x * x + y * y > half * half) continue;
+      const double here = at(pixel.x() + x, pixel.y() + y), opposite = at(pixel.x() - x, pixel.y() - y);
+      sum += here;
+      square += here * here;
+      product += here * opposite;
+      ++count;
+    }
+  }
+  const double mean = sum / count, variance = square / count - mean * mean;
+  return variance > 1 ? (product / count - mean * mean) / variance : 0;
+}
+
 }  // namespace marey
