@@ -246,9 +246,13 @@ class FilterTracker final : public Tracker<F::dimension> {
 
   double worth_of_reappearing(const Target<F>& target, const Observation<D>& observation, double unseen) const {
     const Matrix<D> S = target.filter.innovation_covariance(noise_of(observation, target));
-    const Vector<D> residual = place_of(observation, target) - target.filter.position();
-    const double distance = residual.dot(S.inverse() * residual);
     const double farthest = target.unit * (reappears_within + reappearing_speed * unseen);
+    const Vector<D> place = place_of(observation, target);
+    Vector<D> residual = place - target.filter.position();
+    if (const auto cruised = target.cruise.place_at(*now_); cruised && (place - *cruised).norm() < residual.norm()) {
+      residual = place - *cruised;
+    }
+    const double distance = residual.dot(S.inverse() * residual);
     if (!(distance <= gate_) || residual.norm() > farthest) return 0;
     if (target.size->distance(*observation.box, size_options_) > gate_) return 0;
     return 1 + gate_ - distance;
@@ -281,6 +285,10 @@ class FilterTracker final : public Tracker<F::dimension> {
           target.size->correct(*observation.box, size_options_);
           target.unit = target.size->height();
         }
+      }
+      if (options_.reclaim && observation.box) {
+        const bool sure = !merged && !observation.shared && observation.score >= options_.confident;
+        target.cruise.see(now, dt_, target.filter.position(), target.filter.velocity(), observation.box->height, sure);
       }
       target.last_seen = now;
       target.score = observation.score;

@@ -5,6 +5,7 @@
 #include "marey/core/ids.h"
 #include "marey/core/time.h"
 #include "marey/track/box_size.h"
+#include "marey/track/cruise.h"
 
 namespace marey {
 
@@ -23,6 +24,7 @@ struct Target {
   int observation = -1;  ///< its index in this frame; -1 for none
   bool crowded = false;  ///< its box meets another target's
   bool hidden = false;   ///< not seen, and another target or a shared region explains why
+  Cruise<F::dimension> cruise{};
 };
 
 }  // namespace marey
