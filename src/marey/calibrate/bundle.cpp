@@ -6,6 +6,7 @@
 
 #include <ceres/ceres.h>
 #include <ceres/normal_prior.h>
+#include <glog/logging.h>
 
 #include "marey/calibrate/bundle_deviations.h"
 #include "marey/calibrate/bundle_residual.h"
@@ -69,7 +70,8 @@ class Problem {
     how.function_tolerance = options.tolerance;
     how.parameter_tolerance = 1e-12;
     how.gradient_tolerance = 1e-12;
-    how.num_threads = 1;  // sums in one order: the same bits from run to run
+    how.num_threads = 1;                // sums in one order: the same bits from run to run
+    how.max_trust_region_radius = 1e8;  // damped a little always: a single light's scale is free
     how.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(how, &problem_, &summary);
@@ -253,8 +255,10 @@ std::vector<std::optional<Vector<2>>> errors_of(const Bundle& bundle) {
 }
 
 BundleResult adjust(Bundle& bundle, const BundleOptions& options) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres tells of every step that it has to shorten; a library prints nothing
   BundleResult result;
-  const std::vector<BundleCamera> start = bundle.cameras;  // what was known beforehand stays what it was in every round
+  std::vector<BundleCamera> start = bundle.cameras;  // what was known beforehand stays what it was in every round
+  for (BundleCamera& camera : start) camera.lens = camera.known.value_or(camera.lens);
   const auto errors = errors_of(bundle);
   for (const auto& error : errors) result.inlier.push_back(error.has_value());
   drop_loose_bodies(bundle, result.inlier);

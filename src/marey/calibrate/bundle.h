@@ -37,6 +37,7 @@ struct BundleCamera {
   LensFreedom freedom = {};
   bool refine_pose = true;
   bool refine_offset = false;
+  std::optional<Lens> known = std::nullopt;  ///< where `freedom` counts from; nothing: from where the lens starts
 };
 
 /// Where a wand is: marker i at origin + distance i · direction.

@@ -27,7 +27,9 @@ double median(std::vector<double> values) {
 class Grower {
  public:
   Grower(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed)
-      : at_(cameras, wand, table), markers_(wand.markers()), seed_(seed) {}
+      : at_(cameras, wand, table), markers_(wand.markers()), seed_(seed) {
+    for (const WandCamera& camera : cameras) known_.push_back(camera.lens);
+  }
 
   Growth run() {
     begin();
@@ -65,6 +67,7 @@ class Grower {
   }
 
   WandPlacement at_;
+  std::vector<Lens> known_;  // as they were given or guessed
   std::size_t markers_;
   std::uint64_t seed_;
   std::string cause_;  // why the first of the pairs that failed did
@@ -212,6 +215,7 @@ std::vector<int> Grower::fill(Bundle& bundle) const {
     if (!at_.poses[c]) continue;
     place_in_bundle[c] = static_cast<int>(bundle.cameras.size());
     BundleCamera camera{at_.camera(c).lens, *at_.poses[c], 0, lens_shows ? at_.camera(c).freedom : LensFreedom{}};
+    camera.known = known_[c];
     camera.refine_pose = !bundle.cameras.empty();
     bundle.cameras.push_back(camera);
   }

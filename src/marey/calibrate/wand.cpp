@@ -10,6 +10,7 @@
 #include "marey/calibrate/wand_checks.h"
 #include "marey/calibrate/wand_fit.h"
 #include "marey/calibrate/wand_lens.h"
+#include "marey/calibrate/wand_offsets.h"
 #include "marey/calibrate/wand_table.h"
 #include "marey/calibrate/world_frame.h"
 #include "marey/core/error.h"
@@ -22,7 +23,8 @@ constexpr std::size_t kGrowPerCamera = 60;                            // instant
 constexpr std::size_t kGuessPerCamera = 30;                           // where several focal lengths are tried
 constexpr double kKnownLensSigma = 1, kUnknownLensSigma = 3;          // px in a picture of 1280 columns
 constexpr std::array kFocalGuesses = {0.5, 0.8, 1.2, 1.8, 2.7, 4.0};  // of the longer side
-constexpr double kRefinedIsBetter = 0.97;                             // of the noise with the given lenses
+constexpr double kLikelyFocal = 1.2;
+constexpr double kRefinedIsBetter = 0.97;  // of the noise with the given lenses
 
 /// Instants from which the cameras can be related: for each camera, spread over time, those that most others share.
 std::vector<std::size_t> spread_instants(const WandTable& table, std::size_t cameras, std::size_t per_camera) {
@@ -60,7 +62,6 @@ class WandCalibration {
     check_wand_input(in_, options_);
     find();
     grow();
-    decide_lenses();
     fit();
     return std::move(result_);
   }
@@ -78,18 +79,23 @@ class WandCalibration {
       tracks_.push_back({find_marks(in_.seen[c], in_.wand, camera.lens, *camera.size), period_of(in_.seen[c]), camera.offset_s});
     }
     check_tracks(in_, tracks_);
+    if (options_.find_offsets) {
+      options_.step("comparing the clocks");
+      const double sigma_px = any_unknown_lens() ? kUnknownLensSigma : kKnownLensSigma;
+      settle_offsets(tracks_, grown_cameras(kLikelyFocal, sigma_px, false), in_.wand, options_.seed);
+    }
     table_ = table_of(tracks_, instants_of(tracks_), in_.wand.markers());
     std::vector<std::string> names;
     for (const RigCamera& camera : in_.rig.cameras) names.push_back(camera.name);
     require_connected(names, shared_views(table_, cameras()), kLeastShared);
   }
 
-  std::vector<WandCamera> grown_cameras(double guess, double sigma_px) const {
+  std::vector<WandCamera> grown_cameras(double guess, double sigma_px, bool free) const {
     std::vector<WandCamera> cameras;
     for (const RigCamera& camera : in_.rig.cameras) {
       const double scale = std::max(1.0, camera.size->width / 1280.0);
       cameras.push_back({camera.name, starting_lens(camera, guess), *camera.size,
-                         camera.lens ? LensFreedom{} : growing_lens(*camera.size), sigma_px * scale});
+                         camera.lens && !free ? LensFreedom{} : growing_lens(), sigma_px * scale});
     }
     return cameras;
   }
@@ -119,9 +125,9 @@ class WandCalibration {
     }
     std::string cause;
     double best = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](double focal, double sigma_px) {
+    const auto attempt = [&](double focal, double sigma_px, bool free) {
       try {
-        Growth growth = grow_rig(grown_cameras(focal, sigma_px), in_.wand, some, options_.seed);
+        Growth growth = grow_rig(grown_cameras(focal, sigma_px, free), in_.wand, some, options_.seed);
         const double cost = cost_of(growth, wanted);
         if (cost >= best) return;
         best = cost;
@@ -131,67 +137,60 @@ class WandCalibration {
       }
     };
     if (guess) {
-      for (const double focal : kFocalGuesses) attempt(focal, kUnknownLensSigma);
+      for (const double focal : kFocalGuesses) attempt(focal, kUnknownLensSigma, false);
     } else {
-      attempt(1, kKnownLensSigma);
-      if (!std::isfinite(best)) attempt(1, kUnknownLensSigma);
+      attempt(1, kKnownLensSigma, false);
+      if (!std::isfinite(best)) attempt(1, kUnknownLensSigma, false);
+      if (!std::isfinite(best) && options_.lens != LensUse::fixed) attempt(1, kUnknownLensSigma, true);
     }
     if (!std::isfinite(best)) throw Error("{}", cause);
   }
 
-  /// Holds or frees the lenses of the growth's bundle.
-  void decide_lenses() {
-    const auto adjusted = [&](bool refine) {
-      Bundle bundle = growth_.bundle;
-      for (std::size_t c = 0; c < cameras(); ++c) {
-        const RigCamera& camera = in_.rig.cameras[c];
-        bundle.cameras[c].freedom = !camera.lens ? estimated_lens(*camera.size)
-                                    : refine     ? refined_lens(*camera.size)
-                                                 : LensFreedom{};
-      }
-      BundleOptions options;
-      options.noise_px = std::max(0.05, growth_.fit.noise_px);
-      options.deviations = false;
-      const BundleResult fit = adjust(bundle, options);
-      return std::pair(std::move(bundle), fit);
-    };
-    auto [refined, refined_fit] = adjusted(true);
-    auto [held, held_fit] = adjusted(false);
-    bool refine = options_.lens == LensUse::refined;
-    if (options_.lens == LensUse::automatic) {
-      refine = refined_fit.noise_px < kRefinedIsBetter * held_fit.noise_px || refined_fit.inliers > 1.02 * held_fit.inliers;
-      const bool any_known =
-          std::any_of(in_.rig.cameras.begin(), in_.rig.cameras.end(), [](const auto& c) { return c.lens.has_value(); });
-      if (any_known && refine) {
-        result_.notes.push_back(
-            fmt::format("the lenses as given leave {:.2f} px where refined ones leave {:.2f} px: they were refined",
-                        held_fit.noise_px, refined_fit.noise_px));
-      }
-    }
-    start_ = refine ? std::move(refined) : std::move(held);
-    noise_px_ = refine ? refined_fit.noise_px : held_fit.noise_px;
-  }
-
   void fit() {
     options_.step("looking again");
-    WandFit fit(in_, tracks_, start_, noise_px_);
+    WandFit fit(in_, tracks_, growth_.bundle, growth_.fit.noise_px);
+    fit.free_lenses(options_.lens == LensUse::refined);
     fit.claim();
     options_.step("adjusting everything");
     std::optional<HeldOutReport> held_out;
     fit.adjust_held_out(options_.find_offsets, held_out);
+    if (options_.lens == LensUse::automatic && refining_helps(fit)) {
+      fit.free_lenses(true);
+      fit.claim();
+      fit.adjust_held_out(options_.find_offsets, held_out);
+    }
     const BundleResult result = fit.adjust_all();
     Bundle& bundle = fit.bundle();
     check_fitted_rig(in_, bundle, result);
     put_into_world(bundle, in_, options_, result_.notes);
+    report(bundle, result);
+    result_.report.held_out = held_out;
+    grade_it();
+    store(bundle);
+  }
+
+  bool refining_helps(const WandFit& fit) {
+    const bool any_known = std::any_of(in_.rig.cameras.begin(), in_.rig.cameras.end(),
+                                       [](const RigCamera& camera) { return camera.lens.has_value(); });
+    if (!any_known) return false;
+    const auto [held, refined] = fit.noise_held_and_refined();
+    if (refined >= kRefinedIsBetter * held) return false;
+    result_.notes.push_back(
+        fmt::format("the lenses as given leave {:.2f} px where refined ones leave {:.2f} px: they were refined", held, refined));
+    return true;
+  }
+
+  void report(const Bundle& bundle, const BundleResult& fit) {
     std::vector<std::string> names;
     std::vector<cv::Size> sizes;
     for (const RigCamera& camera : in_.rig.cameras) names.push_back(camera.name), sizes.push_back(*camera.size);
-    result_.report = report_on(bundle, result, names, sizes);
-    result_.report.held_out = held_out;
+    result_.report = report_on(bundle, fit, names, sizes);
+  }
+
+  void grade_it() {
     int columns = 0;
-    for (const cv::Size size : sizes) columns = std::max(columns, size.width);
+    for (const RigCamera& camera : in_.rig.cameras) columns = std::max(columns, camera.size->width);
     grade(result_.report, columns, in_.wand.length());
-    store(bundle);
   }
 
   void store(const Bundle& bundle) {
@@ -217,8 +216,6 @@ class WandCalibration {
   std::vector<MarkTrack> tracks_;
   WandTable table_;
   Growth growth_;
-  Bundle start_;
-  double noise_px_ = 1;
 };
 
 }  // namespace

@@ -1,13 +1,13 @@
 // A rig from a wand, or a single light, that was waved before its cameras.
 //
 //   1. find the wand in each view (wand_marks)
-//   2. relate the cameras by a few hundred moments (grow_rig); where lenses are not known, for several guesses of their focal
-//   length
-//   3. decide whether the lenses, as given, explain what is seen, or have to be refined with the rest
-//   4. look again in every view for what the first step could not tell, now that it is known where the wand must be
-//   5. adjust everything, outliers put out; on most of the frames first, to be judged on the others, then on all
+//   2. compare the clocks (wand_offsets), relate the cameras by a few hundred moments (grow_rig); where lenses are not known, for
+//   several guesses of their focal length
+//   3. look again in every view for what the first step could not tell, now that it is known where the wand must be
+//   4. adjust everything, time offsets too, outliers put out; on most of the frames first, to be judged on the others, then on all
+//   5. where the lenses as given explain less than refined ones would, free them and do 3 and 4 again
 //   6. report, and put the world where the given poses have it, or upright as the cameras stand
-// Cost: dominated by 5, linear in the views of markers.
+// Cost: dominated by 4, linear in the views of markers.
 #pragma once
 
 #include <cstdint>

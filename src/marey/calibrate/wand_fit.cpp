@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "marey/calibrate/wand_checks.h"
+#include "marey/calibrate/wand_lens.h"
 #include "marey/calibrate/wand_placement.h"
 #include "marey/geometry/camera.h"
 
@@ -68,6 +69,18 @@ WandFit::WandFit(const WandInput& input, std::vector<MarkTrack>& tracks, const B
     : in_(input), tracks_(tracks), noise_px_(noise_px) {
   bundle_.cameras = start.cameras;
   bundle_.wand = input.wand.distances;
+}
+
+void WandFit::free_lenses(bool given_too) {
+  for (std::size_t c = 0; c < bundle_.cameras.size(); ++c) {
+    const RigCamera& camera = in_.rig.cameras[c];
+    bundle_.cameras[c].freedom = !camera.lens ? estimated_lens(*camera.size)
+                                 : given_too  ? refined_lens(*camera.size)
+                                              : LensFreedom{};
+    bundle_.cameras[c].known =
+        starting_lens(camera, focal_of(bundle_.cameras[c].lens).x() / std::max(camera.size->width, camera.size->height));
+    if (camera.lens && !given_too) bundle_.cameras[c].lens = *camera.lens;
+  }
 }
 
 void WandFit::claim() {
@@ -170,6 +183,22 @@ void WandFit::adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& r
     if (!find_offsets || !moving || !take_over_offsets(fit)) return;
     claim();
   }
+}
+
+WandFit::Noise WandFit::noise_held_and_refined() const {
+  constexpr std::size_t bodies = 400;
+  Bundle some = bundle_;
+  const std::size_t every = std::max<std::size_t>(1, some.bodies.size() / bodies);
+  std::erase_if(some.observations, [&](const BundleObservation& seen) { return static_cast<std::size_t>(seen.body) % every != 0; });
+  BundleOptions options;
+  options.noise_px = std::max(0.02, noise_px_);
+  options.tolerance = 1e-7;
+  options.deviations = false;
+  Bundle refined = some;
+  for (std::size_t c = 0; c < refined.cameras.size(); ++c) {
+    if (in_.rig.cameras[c].lens) refined.cameras[c].freedom = refined_lens(*in_.rig.cameras[c].size);
+  }
+  return {adjust(some, options).noise_px, adjust(refined, options).noise_px};
 }
 
 BundleResult WandFit::adjust_all() {

@@ -12,7 +12,7 @@ Lens starting_lens(const RigCamera& camera, double guess) {
   return lens;
 }
 
-LensFreedom growing_lens(cv::Size) {
+LensFreedom growing_lens() {
   return {0.3, 0, 0, {0.1}};
 }
 
