@@ -8,6 +8,7 @@ void add_calibrate(CLI::App& app) {
   calibrate->require_subcommand(1);
   add_calibrate_lens(*calibrate);
   add_calibrate_wand(*calibrate);
+  add_calibrate_ground(*calibrate);
   add_calibrate_board(*calibrate);
   add_calibrate_pitch(*calibrate);
 }

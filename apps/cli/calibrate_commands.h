@@ -8,6 +8,7 @@ namespace marey::cli {
 void add_calibrate_lens(CLI::App& calibrate);
 void add_calibrate_pitch(CLI::App& calibrate);
 void add_calibrate_wand(CLI::App& calibrate);
+void add_calibrate_ground(CLI::App& calibrate);
 void add_calibrate_board(CLI::App& calibrate);
 
 }  // namespace marey::cli

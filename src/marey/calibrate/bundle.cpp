@@ -24,30 +24,48 @@ Vector<3> site_of(const Bundle& bundle, const BundleObservation& seen) {
   return Vector<3>::Zero();
 }
 
-/// The numbers that Ceres moves, and the way back into the bundle.
+/// The numbers that Ceres moves, and the way back into the bundle. All lie in one piece of memory: Ceres orders by address, and
+/// so results are the same from run to run.
 class Numbers {
  public:
   explicit Numbers(const Bundle& bundle) {
+    std::vector<std::size_t> begins;
+    const auto add = [&](const std::vector<double>& some) {
+      begins.push_back(memory_.size());
+      memory_.insert(memory_.end(), some.begin(), some.end());
+    };
+    for (const Body& body : bundle.bodies) add(bundle::numbers_of(body));
     for (const BundleCamera& camera : bundle.cameras) {
-      poses.push_back(bundle::numbers_of(camera.camera_from_world));
-      lenses.push_back(bundle::numbers_of(camera.lens));
-      offsets.push_back(camera.offset_s);
+      add(bundle::numbers_of(camera.camera_from_world));
+      add(bundle::numbers_of(camera.lens));
+      add({camera.offset_s});
     }
-    for (const Body& body : bundle.bodies) bodies.push_back(bundle::numbers_of(body));
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+      double* at = memory_.data() + begins[i];
+      if (i < bundle.bodies.size()) {
+        bodies.push_back(at);
+      } else {
+        std::array{&poses, &lenses, &offsets}[(i - bundle.bodies.size()) % 3]->push_back(at);
+      }
+    }
   }
+  Numbers(const Numbers&) = delete;
+  Numbers& operator=(const Numbers&) = delete;
 
   void store(Bundle& bundle) const {
     for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
       BundleCamera& camera = bundle.cameras[c];
-      if (camera.refine_pose) camera.camera_from_world = bundle::pose_from(poses[c].data());
-      bundle::set_numbers(camera.lens, lenses[c].data());
-      camera.offset_s = offsets[c];
+      if (camera.refine_pose) camera.camera_from_world = bundle::pose_from(poses[c]);
+      bundle::set_numbers(camera.lens, lenses[c]);
+      camera.offset_s = *offsets[c];
     }
-    for (std::size_t b = 0; b < bundle.bodies.size(); ++b) bundle::set_numbers(bundle.bodies[b], bodies[b].data());
+    for (std::size_t b = 0; b < bundle.bodies.size(); ++b) bundle::set_numbers(bundle.bodies[b], bodies[b]);
   }
 
-  std::vector<std::vector<double>> poses, lenses, bodies;
-  std::vector<double> offsets;
+  std::vector<double*> poses, lenses, offsets, bodies;
+
+ private:
+  std::vector<double> memory_;
 };
 
 /// Ceres's problem over the inliers. The order of elimination, bodies first, is the ordering's.
@@ -92,15 +110,15 @@ class Problem {
     const BundleCamera& camera = bundle_.cameras[c];
     const Body& body = bundle_.bodies[b];
     ceres::CostFunction* cost = bundle::make_reprojection(camera.lens, body, site_of(bundle_, seen), seen, camera.refine_offset);
-    std::vector<double*> blocks = {numbers_.poses[c].data(), numbers_.lenses[c].data(), numbers_.bodies[b].data()};
-    if (camera.refine_offset) blocks.push_back(&numbers_.offsets[c]);
+    std::vector<double*> blocks = {numbers_.poses[c], numbers_.lenses[c], numbers_.bodies[b]};
+    if (camera.refine_offset) blocks.push_back(numbers_.offsets[c]);
     problem_.AddResidualBlock(cost, &loss_, blocks);
     if (std::holds_alternative<WandPose>(body)) problem_.SetManifold(blocks[2], &wand_manifold_);
   }
 
   void hold_and_weigh(std::size_t c, const Lens& start, double noise_px) {
-    double* pose = numbers_.poses[c].data();
-    double* lens = numbers_.lenses[c].data();
+    double* pose = numbers_.poses[c];
+    double* lens = numbers_.lenses[c];
     if (!problem_.HasParameterBlock(pose)) return;
     if (!bundle_.cameras[c].refine_pose) problem_.SetParameterBlockConstant(pose);
     const std::vector<double> sigma = bundle::lens_sigmas(start, bundle_.cameras[c].freedom);
@@ -129,11 +147,11 @@ class Problem {
 
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering() {
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (auto& body : numbers_.bodies) {
-      if (problem_.HasParameterBlock(body.data())) order->AddElementToGroup(body.data(), 0);
+    for (double* body : numbers_.bodies) {
+      if (problem_.HasParameterBlock(body)) order->AddElementToGroup(body, 0);
     }
     for (std::size_t c = 0; c < numbers_.poses.size(); ++c) {
-      for (double* block : {numbers_.poses[c].data(), numbers_.lenses[c].data(), &numbers_.offsets[c]}) {
+      for (double* block : {numbers_.poses[c], numbers_.lenses[c], numbers_.offsets[c]}) {
         if (problem_.HasParameterBlock(block)) order->AddElementToGroup(block, 1);
       }
     }

@@ -106,7 +106,7 @@ bool Grower::relate_pair(Start& pair) {
                     a, b, views ? fmt::format(" (only {:.0f} % of {} views do)", 100 * views->share, sights.size()) : ""));
     return false;
   }
-  if (views->one_place || views->parallax < kLeastParallax) {
+  if (views->one_place || (!views->plane && views->parallax < kLeastParallax)) {
     blame(
         fmt::format("cameras \"{}\" and \"{}\" stand in one place (or are the same recording): they see everything under the same "
                     "directions, and no depth follows; move them apart",

@@ -78,6 +78,20 @@ Matrix<3> rotation_of(std::span<const Match> matches) {
 
 constexpr double kGate = 3;  // standard deviations within which a match is one
 
+double angle_between(const Vector<3>& a, const Vector<3>& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Share of matches that `map` carries from a to b within the noise.
+double explained(std::span<const Match> matches, const Matrix<3>& map, double sigma) {
+  std::size_t count = 0;
+  for (const Match& match : matches) {
+    const double off = angle_between(map * match.a, match.b);
+    count += std::min(off, std::acos(-1.0) - off) < kGate * sigma ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(matches.size());
+}
+
 class Relation {
  public:
   Relation(std::span<const WandPair> pairs, const TwoViewOptions& options) : pairs_(pairs), options_(options) {}
@@ -127,6 +141,7 @@ class Relation {
 
   std::optional<Matrix<3>> search() const;
   TwoViews describe(const Matrix<3>& E) const;
+  double share_of_a_plane() const;
 
  private:
   std::span<const WandPair> pairs_;
@@ -136,7 +151,7 @@ class Relation {
 /// RANSAC over whole wands, each best model refitted to its inliers.
 std::optional<Matrix<3>> Relation::search() const {
   constexpr std::size_t judges = 300;
-  constexpr int most_draws = 3000;
+  const int most_draws = options_.most_draws;
   std::vector<std::size_t> sample;
   const std::size_t step = std::max<std::size_t>(1, pairs_.size() / judges);
   for (std::size_t i = 0; i < pairs_.size(); i += step) sample.push_back(i);
@@ -174,6 +189,41 @@ std::optional<Matrix<3>> Relation::search() const {
   return best;
 }
 
+/// The largest share of wands that one homography explains.
+double Relation::share_of_a_plane() const {
+  constexpr int draws = 200;
+  const std::size_t wands = std::max<std::size_t>(2, (4 + options_.markers - 1) / options_.markers);
+  const double sigma = std::hypot(options_.sigma_a, options_.sigma_b);
+  std::mt19937_64 engine(options_.seed);
+  std::size_t most = 0;
+  for (int i = 0; i < draws; ++i) {
+    std::vector<Match> drawn;
+    for (std::size_t w = 0; w < wands; ++w) {
+      const std::size_t pair = draw(engine, pairs_.size());
+      const bool turned = options_.reversible && draw(engine, 2) == 1;
+      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
+    }
+    Matrix<3> H = homography_of(drawn);
+    for (int refit = 0; refit < 2; ++refit) {
+      std::vector<Match> near;
+      for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+        for (const bool turned : {false, true}) {
+          std::vector<Match> wand;
+          for (std::size_t m = 0; m < options_.markers; ++m) wand.push_back(match(pair, m, turned));
+          if ((turned && !options_.reversible) || explained(wand, H, sigma) < 1) continue;
+          near.insert(near.end(), wand.begin(), wand.end());
+          break;
+        }
+      }
+      most = std::max(most, near.size() / options_.markers);
+      if (near.size() < 2 * drawn.size()) break;
+      H = homography_of(near);
+    }
+    if (most > 0.95 * static_cast<double>(pairs_.size())) break;
+  }
+  return static_cast<double>(most) / static_cast<double>(pairs_.size());
+}
+
 /// Depths along both rays where they are nearest, baseline `t` from a's frame turned into b's.
 Vector<2> depths(const Rigid3& b_from_a, const Match& match) {
   const Vector<3> a = b_from_a.rotation * match.a;
@@ -198,20 +248,6 @@ Rigid3 pose_of(const Matrix<3>& E, std::span<const Match> matches) {
     }
   }
   return best;
-}
-
-double angle_between(const Vector<3>& a, const Vector<3>& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// Share of matches that `map` carries from a to b within the noise.
-double explained(std::span<const Match> matches, const Matrix<3>& map, double sigma) {
-  std::size_t count = 0;
-  for (const Match& match : matches) {
-    const double off = angle_between(map * match.a, match.b);
-    count += std::min(off, std::acos(-1.0) - off) < kGate * sigma ? 1 : 0;
-  }
-  return static_cast<double>(count) / static_cast<double>(matches.size());
 }
 
 TwoViews Relation::describe(const Matrix<3>& E) const {
@@ -246,10 +282,15 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
 
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options) {
   const Relation relation(pairs, options);
+  constexpr double good = 0.5, least = 0.25, plane = 0.8;
   const auto E = relation.search();
-  if (!E) return std::nullopt;
-  TwoViews views = relation.describe(*E);
-  if (views.share < 0.25) return std::nullopt;
+  std::optional<TwoViews> views;
+  if (E) views = relation.describe(*E);
+  if ((!views || views->share < good) && pairs.size() * options.markers >= 8) {
+    const double share = relation.share_of_a_plane();
+    if (share > plane) return TwoViews{{}, {}, {}, share, 0, true, false};
+  }
+  if (views && views->share < least) return std::nullopt;
   return views;
 }
 

@@ -29,6 +29,7 @@ struct TwoViewOptions {
   bool reversible = false;                ///< the order of b's markers is not known
   double sigma_a = 1e-3, sigma_b = 1e-3;  ///< rad: noise of a bearing
   std::uint64_t seed = 1;
+  int most_draws = 3000;  ///< of RANSAC, where little fits
 };
 
 struct TwoViews {
@@ -41,7 +42,8 @@ struct TwoViews {
   bool one_place = false;    ///< a rotation does
 };
 
-/// Nothing where too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them.
+/// Nothing where too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them. Of a plane,
+/// where no essential matrix is determined, `plane` and `share` alone are told.
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options);
 
 }  // namespace marey

@@ -74,14 +74,19 @@ void check_lengths(const std::vector<double>& lengths, const WandShape& wand) {
   constexpr std::size_t parts = 8, least = 5;
   if (wand.markers() < 2 || lengths.size() < parts * least) return;
   const double all = median(lengths);
-  std::vector<double> off;
-  for (const double length : lengths) off.push_back(std::abs(length - all));
-  const double spread = 1.4826 * median(off);
+  std::vector<std::vector<double>> by_part(parts);
+  std::vector<double> spreads;  // within the parts: a wand that changes has two lengths, each sharp
+  for (std::size_t i = 0; i < lengths.size(); ++i) by_part[i * parts / lengths.size()].push_back(lengths[i]);
+  for (const auto& part : by_part) {
+    const double middle = median(part);
+    std::vector<double> off;
+    for (const double length : part) off.push_back(std::abs(length - middle));
+    spreads.push_back(1.4826 * median(off));
+  }
+  const double spread = median(spreads);
   for (std::size_t part = 0; part < parts; ++part) {
-    const auto begin = lengths.begin() + static_cast<std::ptrdiff_t>(part * lengths.size() / parts);
-    const auto end = lengths.begin() + static_cast<std::ptrdiff_t>((part + 1) * lengths.size() / parts);
-    const double here = median({begin, end});
-    const double noise = 5 * spread / std::sqrt(static_cast<double>(end - begin));
+    const double here = median(by_part[part]);
+    const double noise = 5 * spread / std::sqrt(static_cast<double>(by_part[part].size()));
     if (std::abs(here - all) <= std::max(kLengthChange * all, noise)) continue;
     throw Error(
         "the wand measures {:.1f} mm in part {} of {} of the recording and {:.1f} mm over all: it was another wand, or a marker "

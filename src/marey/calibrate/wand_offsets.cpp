@@ -15,6 +15,7 @@ constexpr double kLeastOverlap = 0.4;     // of the shorter recording, that two 
 constexpr std::size_t kLeastPairs = 50;   // views, to relate two cameras: few fit to anything
 constexpr std::size_t kMostPairs = 200;   // views by which a shift is judged
 constexpr std::size_t kPeaks = 6;         // shifts whose geometry is tried
+constexpr int kDraws = 300;               // of RANSAC: where the shift is right nearly all fits
 constexpr double kFits = 0.85;            // share of views that fit when a shift is right
 constexpr double kBetter = 0.1;           // by which the share must exceed that of the offsets as given
 
@@ -119,7 +120,7 @@ double Offsets::share(std::size_t a, std::size_t b, double shift_s) const {
     pairs = std::move(some);
   }
   const auto sigma = [&](std::size_t c) { return cameras_[c].sigma_px / focal_of(cameras_[c].lens).x(); };
-  const auto views = relate(pairs, {wand_.markers(), wand_.reversible(), sigma(a), sigma(b), seed_});
+  const auto views = relate(pairs, {wand_.markers(), wand_.reversible(), sigma(a), sigma(b), seed_, kDraws});
   return views ? views->share : 0;
 }
 

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/calibrate/ground.h"
+#include "marey/core/error.h"
+#include "marey/format/rig_file.h"
+#include "marey/pipeline/board_on_ground.h"
+#include "marey/pipeline/camera_blobs.h"
+
+#include "calibrate_commands.h"
+#include "progress_bar.h"
+#include "rig_inputs.h"
+
+namespace marey::cli {
+namespace {
+
+struct CalibrateGround {
+  RigInputs inputs;
+  std::string frame = "0,0;0.2,0;0.6,0;0,0.4";
+  std::string board, out;
+  MarkerOptions markers;
+  bool scale = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::vector<Vector<3>> frame_of(const std::string& text) {
+  constexpr const char* form = "the markers' places on the ground in m, X,Y or X,Y,Z, with ; between them";
+  std::vector<Vector<3>> frame;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::string part = text.substr(at, text.find(';', at) - at);
+    const auto numbers = numbers_in(part, "--frame", form);
+    if (numbers.size() != 2 && numbers.size() != 3) throw Error("--frame {}: write {}", part, form);
+    frame.emplace_back(numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0);
+    at += part.size() + 1;
+  }
+  return frame;
+}
+
+GroundFound ground_of(const CalibrateGround& command, Rig& rig, ProgressBar& bar) {
+  if (!command.board.empty()) return board_on_ground(rig, parse_board(command.board));
+  CameraBlobs blobs;
+  if (!command.inputs.observations.empty()) {
+    blobs = read_blobs(command.inputs.observations, rig);
+  } else {
+    blobs = find_blobs(rig, command.markers, [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
+  }
+  for (const std::string& sentence : blobs.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  std::vector<std::vector<Vector<2>>> still;
+  for (const auto& frames : blobs.seen) still.push_back(still_blobs(frames));
+  return find_ground(rig, still, frame_of(command.frame), command.scale);
+}
+
+void run(const CalibrateGround& command) {
+  Rig rig = rig_of(command.inputs);
+  GroundFound found;
+  {
+    ProgressBar bar(command.quiet);
+    found = ground_of(command, rig, bar);
+  }
+  write_rig(moved_to_ground(rig, found.ground_from_world, found.scale), command.out);
+  if (command.json) {
+    fmt::print("{}\n", nlohmann::json{{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.seen_by}}.dump(2));
+  } else if (!command.quiet) {
+    fmt::print("the ground fits to {:.2f} mm rms; its {} seen by {} to {} cameras\n", found.rms_mm,
+               command.board.empty() ? "markers are" : "board is", *std::min_element(found.seen_by.begin(), found.seen_by.end()),
+               *std::max_element(found.seen_by.begin(), found.seen_by.end()));
+    if (command.scale) fmt::print("the rig is {:.4f} times as large as it was\n", found.scale);
+    fmt::print("rig: {}\n", command.out);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_ground(CLI::App& calibrate) {
+  auto options = std::make_shared<CalibrateGround>();
+  CLI::App* command =
+      calibrate.add_subcommand("ground", "Origin and axes of a calibrated rig, from an L-frame of markers or a board on the floor");
+  add_rig_inputs(*command, options->inputs);
+  auto* frame =
+      command->add_option("--frame", options->frame, "where the L-frame's markers lie: X,Y;X,Y;… in m")->capture_default_str();
+  command
+      ->add_option("--board", options->board, "in place of an L-frame, a board that lies on the floor: see `marey calibrate lens`")
+      ->excludes(frame);
+  command->add_flag("--scale", options->scale, "the L-frame's size sets the rig's, as for a rig by a single light");
+  command->add_option("-o,--out", options->out, "the rig file that is written")->required();
+  command->add_option("--threshold", options->markers.threshold,
+                      "grey level that a marker's pixels pass (default: from the picture's noise)");
+  command->add_flag("--json", options->json, "print JSON instead of a sentence");
+  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,35 @@
+// Where the floor is, by an L-frame of markers that lies on it.
+//
+// Blobs that stand still in each view are averaged, rays that meet are made points in space (those that most cameras agree on
+// first, each blob used once), and the points are searched for the frame by the distances between its markers. Cost: blobs² a pair
+// of cameras, and points to the power of markers, cut short by the distances.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "marey/calibrate/wand_marks.h"
+#include "marey/core/rig.h"
+
+namespace marey {
+
+struct GroundFound {
+  Rigid3 ground_from_world;  ///< ground = scale · (rotation · world + translation)
+  double scale = 1;
+  double rms_mm = 0;         ///< of the markers' places about the frame's
+  std::vector<int> seen_by;  ///< for each marker, how many cameras
+};
+
+/// Blobs that stand still, averaged: those in half of the frames at least. px.
+std::vector<Vector<2>> still_blobs(std::span<const BlobFrame> frames);
+
+/// `frame`: the markers' places on the ground, m, three at least, not on a line, their distances all of their own. `blobs` by
+/// camera of the rig; cameras without a pose are passed over. Where `free_scale`, the frame's size sets the rig's. Throws Error,
+/// with the cause and what to do.
+GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> blobs, std::span<const Vector<3>> frame,
+                        bool free_scale);
+
+/// The rig with its world moved to the ground.
+Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale);
+
+}  // namespace marey

@@ -1,0 +1,66 @@
+#include "marey/pipeline/board_on_ground.h"
+
+#include <cmath>
+
+#include <Eigen/SVD>
+
+#include "marey/calibrate/board_detector.h"
+#include "marey/calibrate/board_pose.h"
+#include "marey/core/error.h"
+#include "marey/source/open_source.h"
+
+namespace marey {
+namespace {
+
+constexpr int kMostPictures = 50;     // of a source that are searched for the board
+constexpr double kDisagree_m = 0.05;  // between cameras
+
+std::optional<Rigid3> camera_from_board(const RigCamera& camera, const Board& board) {
+  const auto source = open_source(camera.source, camera.rate_hz);
+  const BoardDetector detector(board);
+  for (int i = 0; i < kMostPictures; ++i) {
+    const auto frame = source->next();
+    if (!frame) break;
+    const Picture picture = camera.region ? Picture(frame->picture.luma()(*camera.region)) : frame->picture;
+    const auto view = detector.detect(picture);
+    if (!view) continue;
+    if (const auto pose = board_pose(board, *view, *camera.lens)) return pose;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+GroundFound board_on_ground(const Rig& rig, const Board& board) {
+  // A board's z runs away from who looks at it: into the floor.
+  const Rigid3 board_from_ground{Vector<3>(1, -1, -1).asDiagonal(), Vector<3>::Zero()};
+  std::vector<Rigid3> found;
+  for (const RigCamera& camera : rig.cameras) {
+    if (camera.source.empty() || !camera.camera()) continue;
+    const auto pose = camera_from_board(camera, board);
+    if (pose) found.push_back(camera.camera_from_world->inverse() * *pose * board_from_ground);
+  }
+  if (found.empty())
+    throw Error("{}", "no camera that has a source, a lens and a pose sees the board: lay it where one does, and check --board");
+  Matrix<3> turn = Matrix<3>::Zero();
+  Vector<3> origin = Vector<3>::Zero();
+  for (const Rigid3& one : found) {
+    turn += one.rotation;
+    origin += one.translation / static_cast<double>(found.size());
+  }
+  const Eigen::JacobiSVD<Matrix<3>> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  GroundFound ground;
+  ground.ground_from_world = Rigid3{svd.matrixU() * svd.matrixV().transpose(), origin}.inverse();
+  double square = 0;
+  for (const Rigid3& one : found) square += (one.translation - origin).squaredNorm();
+  ground.rms_mm = 1000 * std::sqrt(square / static_cast<double>(found.size()));
+  ground.seen_by = {static_cast<int>(found.size())};
+  if (ground.rms_mm > 1000 * kDisagree_m) {
+    throw Error(
+        "the cameras place the board {:.0f} mm apart: it was moved between their pictures, or the rig is not of these cameras",
+        ground.rms_mm);
+  }
+  return ground;
+}
+
+}  // namespace marey

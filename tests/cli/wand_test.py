@@ -1,0 +1,68 @@
+"""`marey calibrate wand` and `ground` as docs/wand.md tells them, on a simulated room, and on input that cannot be used.
+
+Usage: wand_test.py MAREY [unittest options]. Nothing else is needed.
+"""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+
+
+class Wand(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_wand_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.marey("simulate", "room", "--motion", "wand", "--frames", 400, "--cameras", 5, "-o", "room", "-q")
+        cls.marey("simulate", "room", "--motion", "ground", "--frames", 20, "--cameras", 5, "-o", "floor", "-q")
+
+    @classmethod
+    def marey(cls, *arguments, code=0):
+        done = subprocess.run([MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=cls.folder, timeout=300)
+        assert done.returncode == code, f"{arguments}\n{done.stdout}\n{done.stderr}"
+        return done
+
+    def refused(self, *arguments):
+        said = self.marey("calibrate", *arguments, "-o", "never.toml", code=1).stderr.strip()
+        self.assertFalse((self.folder / "never.toml").exists())
+        self.assertEqual(len(said.splitlines()), 1, said)
+        self.assertTrue(said.startswith("marey: "), said)
+        return said
+
+    def test_wand_then_floor(self):
+        wand = ("calibrate", "wand", "room/start.toml", "--observations", "room/observations.csv", "--wand", "0,0.12,0.30")
+        report = json.loads(self.marey(*wand, "-o", "rig.toml", "--json").stdout)
+        self.assertEqual(set(report["cameras"]), {f"cam{i}" for i in range(1, 6)})
+        for part in [report["all"], *report["cameras"].values()]:
+            self.assertLess(part["mean_px"], 0.14)
+            self.assertLessEqual(part["mean_px"], part["rms_px"])
+            self.assertLessEqual(part["inliers"], part["observations"])
+        table = self.marey(*wand, "-o", "again.toml").stdout
+        self.assertIn("grade: ", table)
+        self.assertEqual((self.folder / "rig.toml").read_text(), (self.folder / "again.toml").read_text(), "the same twice")
+        ground = self.marey("calibrate", "ground", "rig.toml", "--observations", "floor/observations.csv", "-o", "ground.toml", "--json")
+        self.assertLess(json.loads(ground.stdout)["rms_mm"], 2)
+
+    def test_what_cannot_be_used(self):
+        seen = ("--observations", "room/observations.csv")
+        self.assertIn("no number", self.refused("wand", "room/start.toml", *seen, "--wand", "0,a"))
+        self.assertIn("single light", self.refused("wand", "room/start.toml", *seen, "--wand", "0"))
+        self.assertIn("grow from 0", self.refused("wand", "room/start.toml", *seen, "--wand", "0,0.3,0.1"))
+        self.assertIn("CAM1,CAM2=METRES", self.refused("wand", "room/start.toml", *seen, "--wand", "led", "--distance", "3"))
+        self.assertIn("no source", self.refused("wand", "room/start.toml", "--wand", "0,0.12,0.30"))
+        self.assertIn("no camera", self.refused("wand", "room/start.toml", "nobody=a.mp4", "--wand", "0,0.12,0.30"))
+        self.assertIn("--wand", self.refused("wand", "room/start.toml", *seen, "--wand", "0,0.20,0.30"))
+        self.assertIn("calibrate them first", self.refused("ground", "room/start.toml", "--observations", "floor/observations.csv"))
+        self.assertIn("on a line", self.refused("ground", "room/rig.toml", "--observations", "floor/observations.csv", "--frame", "0,0;1,0;2,0"))
+        self.assertIn("not found", self.refused("ground", "room/rig.toml", *seen))
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
