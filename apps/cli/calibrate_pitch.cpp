@@ -1,6 +1,5 @@
 #include "marey/pipeline/calibrate_pitch.h"
 
-#include <charconv>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 
 #include "calibrate_commands.h"
 #include "known.h"
+#include "pitch_size.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -27,21 +27,6 @@ struct CalibratePitch {
   bool json = false;
   bool quiet = false;
 };
-
-PitchSize parse_size(const std::string& text) {
-  PitchSize size;
-  const auto cross = text.find('x');
-  const auto read = [](std::string_view part, double& value) {
-    const auto [stop, failed] = std::from_chars(part.data(), part.data() + part.size(), value);
-    return failed == std::errc() && stop == part.data() + part.size();
-  };
-  const std::string_view all = text;
-  if (cross == std::string::npos || !read(all.substr(0, cross), size.length) || !read(all.substr(cross + 1), size.width))
-    throw Error("\"{}\" is no size of a pitch; it must read LENGTHxWIDTH in m, as 105x68", text);
-  if (!(size.length >= 40 && size.length <= 130 && size.width >= 42 && size.width <= 100))
-    throw Error("a pitch of {} x {} m is none: the areas need 40 to 130 m by 42 to 100 m", size.length, size.width);
-  return size;
-}
 
 std::map<std::string, std::string> parse_points(const std::vector<std::string>& pairs) {
   std::map<std::string, std::string> result;
@@ -123,7 +108,7 @@ void run(const CalibratePitch& command) {
   Rig rig = read_rig(command.rig);
   set_sources(rig, command.sources);
   PitchRunOptions options;
-  options.pitch.size = parse_size(command.size);
+  options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;
   PitchRun found;
   {
@@ -153,7 +138,7 @@ void add_calibrate_pitch(CLI::App& calibrate) {
   command->add_option("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera")
       ->required();
   command->add_option("--size", options->size, "of the pitch, LENGTHxWIDTH in m")
-      ->check(known([](const std::string& text) { parse_size(text); }))
+      ->check(known([](const std::string& text) { parse_pitch_size(text); }))
       ->capture_default_str();
   command->add_option("-o,--out", options->out, "rig file to write")->required();
   command->add_option("--pictures", options->pictures,

@@ -13,6 +13,7 @@ void add_simulate_people(CLI::App& simulate);  ///< below `simulate`
 void add_simulate_room(CLI::App& simulate);    ///< below `simulate`
 void add_reconstruct(CLI::App& app);
 void add_experiment(CLI::App& app);
+void add_measure(CLI::App& app);
 void add_experiment_outlines(CLI::App& experiment);  ///< below `experiment`
 void add_calibrate(CLI::App& app);
 void add_convert(CLI::App& app);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   marey::cli::add_track(app);
   marey::cli::add_evaluate(app);
+  marey::cli::add_measure(app);
   marey::cli::add_simulate(app);
   marey::cli::add_calibrate(app);
   marey::cli::add_convert(app);

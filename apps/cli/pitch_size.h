@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "marey/geometry/pitch.h"
+
+namespace marey::cli {
+
+/// LENGTHxWIDTH in m. Throws Error for what is none, or no pitch.
+PitchSize parse_pitch_size(const std::string& text);
+
+}  // namespace marey::cli

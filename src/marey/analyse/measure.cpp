@@ -1,0 +1,168 @@
+#include "marey/analyse/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace marey {
+namespace {
+
+/// How often `fast(i)` holds without a break for at least `least` steps.
+template <typename Fast>
+int bouts(std::size_t count, double least, Fast&& fast) {
+  int found = 0;
+  std::size_t length = 0;
+  for (std::size_t i = 0; i <= count; ++i) {
+    if (i < count && fast(i)) {
+      ++length;
+      continue;
+    }
+    found += length > 0 && static_cast<double>(length) >= least;
+    length = 0;
+  }
+  return found;
+}
+
+/// Change of speed, not of direction: who turns does not brake. m/s².
+double along(const Vector<2>& acceleration, const Vector<2>& velocity) {
+  const double speed = velocity.norm();
+  return speed > 0.1 ? acceleration.dot(velocity) / speed : acceleration.norm();
+}
+
+HeatMap empty_map(const MeasureOptions& options) {
+  HeatMap heat;
+  heat.cell_m = options.cell_m;
+  heat.columns = static_cast<int>(std::ceil(options.pitch.length / options.cell_m));
+  heat.rows = static_cast<int>(std::ceil(options.pitch.width / options.cell_m));
+  heat.seconds.assign(static_cast<std::size_t>(heat.columns * heat.rows), 0);
+  return heat;
+}
+
+void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& person) {
+  const auto fast = [&](std::size_t i) { return path.velocity[i].norm(); };
+  for (std::size_t i = 0; i < path.place.size(); ++i) {
+    const double speed = fast(i);
+    person.top_mps = std::max(person.top_mps, speed);
+    person.average_place += path.place[i] * path.step_s;
+    const int column = static_cast<int>(std::floor(path.place[i].x() / options.cell_m));
+    const int row = static_cast<int>(std::floor(path.place[i].y() / options.cell_m));
+    if (column >= 0 && row >= 0 && column < person.heat.columns && row < person.heat.rows)
+      person.heat.at(column, row) += path.step_s;
+    if (i == 0) continue;
+    const double step = (path.place[i] - path.place[i - 1]).norm();
+    const auto zone =
+        std::upper_bound(options.zones.begin(), options.zones.end(), (speed + fast(i - 1)) / 2) - options.zones.begin();
+    person.zone_s[static_cast<std::size_t>(zone)] += path.step_s;
+    person.zone_m[static_cast<std::size_t>(zone)] += step;
+    person.distance_m += step;
+  }
+  person.seconds += path.seconds();
+  const std::size_t count = path.place.size();
+  person.sprints += bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return fast(i) >= options.sprint_mps; });
+  const double effort = options.effort_s / path.step_s;
+  const auto change = [&](std::size_t i) { return along(path.acceleration[i], path.velocity[i]); };
+  person.accelerations += bouts(count, effort, [&](std::size_t i) { return change(i) >= options.effort_mps2; });
+  person.decelerations += bouts(count, effort, [&](std::size_t i) { return change(i) <= -options.effort_mps2; });
+}
+
+/// Area of the convex hull (Andrew's monotone chain), m².
+double hull_area(std::vector<Vector<2>> points) {
+  std::sort(points.begin(), points.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
+  std::vector<Vector<2>> hull;
+  const auto cross = [](const Vector<2>& o, const Vector<2>& a, const Vector<2>& b) {
+    return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+  };
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t start = hull.size();
+    for (const Vector<2>& point : points) {
+      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  double twice = 0;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vector<2>&a = hull[i], &b = hull[(i + 1) % hull.size()];
+    twice += a.x() * b.y() - b.x() * a.y();
+  }
+  return twice / 2;
+}
+
+std::vector<TeamMeasure> measure_teams(const GroundRecording& recording, const std::vector<PersonMeasure>& people) {
+  constexpr std::size_t fewest = 3;
+  std::map<std::string, TeamMeasure> teams;
+  for (const PersonMeasure& person : people) {
+    if (person.team.empty()) continue;
+    TeamMeasure& team = teams[person.team];
+    team.team = person.team;
+    ++team.people;
+    team.distance_m += person.distance_m;
+  }
+  std::map<std::string, std::vector<Vector<2>>> standing;
+  const auto close_instant = [&] {
+    for (auto& [name, places] : standing) {
+      if (places.size() >= fewest) {
+        TeamMeasure& team = teams[name];
+        Vector<2> low = places.front(), high = low, sum = Vector<2>::Zero();
+        for (const Vector<2>& place : places) low = low.cwiseMin(place), high = high.cwiseMax(place), sum += place;
+        team.length_m += high.x() - low.x();
+        team.width_m += high.y() - low.y();
+        team.hull_m2 += hull_area(places);
+        team.average_place += sum / static_cast<double>(places.size());
+        ++team.instants;
+      }
+      places.clear();
+    }
+  };
+  std::int32_t frame = -1;
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    if (sample.frame != frame) close_instant();
+    frame = sample.frame;
+    const std::string& team = recording.people[static_cast<std::size_t>(sample.person)].team;
+    if (teams.contains(team)) standing[team].push_back(sample.place);
+  }
+  close_instant();
+  std::vector<TeamMeasure> result;
+  for (auto& [name, team] : teams) {
+    const double instants = std::max(1, team.instants);
+    team.length_m /= instants, team.width_m /= instants, team.hull_m2 /= instants, team.average_place /= instants;
+    result.push_back(team);
+  }
+  return result;
+}
+
+}  // namespace
+
+Measurement measure(const GroundRecording& recording, const MeasureOptions& options) {
+  std::vector<std::vector<TimedPlace>> measured(recording.people.size());
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    auto& way = measured[static_cast<std::size_t>(sample.person)];
+    if (way.empty() || sample.time > way.back().time) way.push_back({sample.time, sample.place});
+  }
+  Measurement result;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const GroundRecording::Person& who = recording.people[i];
+    PersonMeasure person;
+    person.id = who.id, person.label = who.label, person.team = who.team;
+    person.zone_s.assign(options.zones.size() + 1, 0);
+    person.zone_m = person.zone_s;
+    person.heat = empty_map(options);
+    person.paths = smooth_paths(measured[i], options.path);
+    double weight = 0;
+    for (const Path& path : person.paths) {
+      add_path(path, options, person);
+      weight += path.step_s * static_cast<double>(path.place.size());
+    }
+    if (person.paths.empty()) continue;
+    person.average_place /= weight;
+    person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
+    result.people.push_back(std::move(person));
+  }
+  std::sort(result.people.begin(), result.people.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  result.teams = measure_teams(recording, result.people);
+  return result;
+}
+
+}  // namespace marey

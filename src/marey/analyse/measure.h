@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/analyse/smooth_path.h"
+#include "marey/core/ground_recording.h"
+#include "marey/geometry/pitch.h"
+
+namespace marey {
+
+struct MeasureOptions {
+  PathOptions path;
+  /// Borders between speed zones, m/s, growing: standing and walking, jogging, running, high-speed running, sprinting.
+  std::vector<double> zones = {2, 4, 5.5, 7};
+  double sprint_mps = 7, sprint_s = 1;       ///< a sprint is at least so fast for at least so long
+  double effort_mps2 = 2.5, effort_s = 0.5;  ///< the same of accelerations and decelerations
+  PitchSize pitch;                           ///< for heat maps
+  double cell_m = 2;                         ///< of heat maps
+};
+
+/// Seconds spent in each cell of the pitch, by rows along x.
+struct HeatMap {
+  int columns = 0, rows = 0;
+  double cell_m = 2;
+  std::vector<double> seconds;
+
+  double& at(int column, int row) { return seconds[static_cast<std::size_t>(row * columns + column)]; }
+};
+
+struct PersonMeasure {
+  int id = 0;
+  std::string label, team;
+  double seconds = 0;  ///< on some way
+  double distance_m = 0;
+  double mean_mps = 0;
+  double top_mps = 0;
+  int sprints = 0;
+  int accelerations = 0, decelerations = 0;
+  std::vector<double> zone_s, zone_m;  ///< one more than borders
+  Vector<2> average_place = Vector<2>::Zero();
+  HeatMap heat;
+  std::vector<Path> paths;
+};
+
+/// How a team stood, averaged over the instants at which at least three of its people are known.
+struct TeamMeasure {
+  std::string team;
+  int people = 0;
+  double distance_m = 0;
+  double length_m = 0, width_m = 0;  ///< extent along x and y
+  double hull_m2 = 0;                ///< area of the convex hull
+  Vector<2> average_place = Vector<2>::Zero();
+  int instants = 0;
+};
+
+struct Measurement {
+  std::vector<PersonMeasure> people;  ///< by id; those without two places are left out
+  std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
+};
+
+/// Distances, speeds, efforts and places of everyone, from smoothed ways (`smooth_paths`). Cost: linear in the samples.
+Measurement measure(const GroundRecording& recording, const MeasureOptions& options = {});
+
+}  // namespace marey

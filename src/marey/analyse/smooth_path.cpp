@@ -1,0 +1,198 @@
+#include "marey/analyse/smooth_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+/// The places of one piece at an even rate: the median of its steps.
+Path evenly(std::span<const TimedPlace> piece) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < piece.size(); ++i) steps.push_back(piece[i].time - piece[i - 1].time);
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  Path path;
+  path.start_s = piece.front().time;
+  path.step_s = steps[steps.size() / 2];
+  const double span = piece.back().time - path.start_s;
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(span / path.step_s))) + 1;
+  path.step_s = span / static_cast<double>(count - 1);
+  std::size_t after = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time = path.start_s + path.step_s * static_cast<double>(i);
+    while (after + 1 < piece.size() && piece[after].time < time) ++after;
+    const TimedPlace &a = piece[after - 1], &b = piece[after];
+    const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+    path.place.emplace_back(a.place + share * (b.place - a.place));
+  }
+  return path;
+}
+
+/// Central differences; one-sided at the ends.
+std::vector<Vector<2>> slope(const std::vector<Vector<2>>& values, double step) {
+  std::vector<Vector<2>> result(values.size(), Vector<2>::Zero());
+  const std::size_t last = values.size() - 1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t before = i > 0 ? i - 1 : 0, after = std::min(i + 1, last);
+    if (after > before) result[i] = (values[after] - values[before]) / (step * static_cast<double>(after - before));
+  }
+  return result;
+}
+
+// --- Butterworth, both ways ---------------------------------------------------------------------------------------------------
+
+struct Butterworth {
+  double b0, b1, b2, a1, a2;
+};
+
+/// Order 2; the bilinear transform with its frequency put right.
+Butterworth butterworth(double cutoff_hz, double rate_hz) {
+  const double w = std::tan(std::numbers::pi * cutoff_hz / rate_hz);
+  const double n = 1 / (1 + std::numbers::sqrt2 * w + w * w);
+  return {w * w * n, 2 * w * w * n, w * w * n, 2 * (w * w - 1) * n, (1 - std::numbers::sqrt2 * w + w * w) * n};
+}
+
+/// Begins as if the first value had been there for ever.
+void filter(const Butterworth& f, std::vector<Vector<2>>& values) {
+  Vector<2> x1 = values.front(), x2 = x1, y1 = x1, y2 = x1;
+  for (Vector<2>& value : values) {
+    const Vector<2> y = f.b0 * value + f.b1 * x1 + f.b2 * x2 - f.a1 * y1 - f.a2 * y2;
+    x2 = x1, x1 = value, y2 = y1, y1 = y;
+    value = y;
+  }
+}
+
+/// The ends are continued point-symmetrically, so that a person in motion is so beyond them too.
+void low_pass(std::vector<Vector<2>>& values, double cutoff_hz, double rate_hz) {
+  // Two passes let half of the power through at (√2 − 1)^¼ of each one's cut-off.
+  const double each = std::min(cutoff_hz / std::pow(std::numbers::sqrt2 - 1, 0.25), 0.45 * rate_hz);
+  const auto margin = std::min(values.size() - 1, static_cast<std::size_t>(std::ceil(2 * rate_hz / cutoff_hz)));
+  std::vector<Vector<2>> wide;
+  wide.reserve(values.size() + 2 * margin);
+  for (std::size_t i = margin; i > 0; --i) wide.emplace_back(2 * values.front() - values[i]);
+  wide.insert(wide.end(), values.begin(), values.end());
+  for (std::size_t i = 1; i <= margin; ++i) wide.emplace_back(2 * values.back() - values[values.size() - 1 - i]);
+  const Butterworth f = butterworth(each, rate_hz);
+  for (int pass = 0; pass < 2; ++pass) {
+    filter(f, wide);
+    std::reverse(wide.begin(), wide.end());
+  }
+  std::copy_n(wide.begin() + static_cast<std::ptrdiff_t>(margin), values.size(), values.begin());
+}
+
+// --- Savitzky-Golay
+// ---------------------------------------------------------------------------------------------------------------
+
+void savitzky_golay(Path& path, double window_s) {
+  const auto half = std::max<std::ptrdiff_t>(1, std::lround(window_s / path.step_s / 2));
+  const auto count = static_cast<std::ptrdiff_t>(path.place.size());
+  std::vector<Vector<2>> place(path.place.size()), velocity(path.place.size()), acceleration(path.place.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Matrix<3> N = Matrix<3>::Zero();
+    Eigen::Matrix<double, 3, 2> v = Eigen::Matrix<double, 3, 2>::Zero();
+    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, i - half); j <= std::min(count - 1, i + half); ++j) {
+      const double t = path.step_s * static_cast<double>(j - i);
+      const Vector<3> basis(1, t, t * t / 2);
+      N += basis * basis.transpose();
+      v += basis * path.place[static_cast<std::size_t>(j)].transpose();
+    }
+    const Eigen::Matrix<double, 3, 2> fit = N.completeOrthogonalDecomposition().solve(v);
+    place[static_cast<std::size_t>(i)] = fit.row(0);
+    velocity[static_cast<std::size_t>(i)] = fit.row(1);
+    acceleration[static_cast<std::size_t>(i)] = fit.row(2);
+  }
+  path.place = std::move(place);
+  path.velocity = std::move(velocity);
+  path.acceleration = std::move(acceleration);
+}
+
+// --- Kalman, from both ends -----------------------------------------------------------------------------------------------------
+
+/// Position and velocity of one axis; both axes share their covariance.
+struct Moment {
+  Eigen::Matrix2d mean;  // rows: position, velocity; columns: x, y
+  Matrix<2> P;
+};
+
+void rauch_tung_striebel(Path& path, double place_noise, double acceleration) {
+  const double dt = path.step_s, q = acceleration * acceleration;
+  Matrix<2> A, Q;
+  A << 1, dt, 0, 1;
+  Q << q * dt * dt * dt / 3, q * dt * dt / 2, q * dt * dt / 2, q * dt;
+  const double R = place_noise * place_noise;
+  constexpr double unknown_speed = 5;  // m/s
+  std::vector<Moment> ahead(path.place.size()), corrected(path.place.size());
+  Moment now;
+  now.mean.row(0) = path.place.front();
+  now.mean.row(1).setZero();
+  now.P = Vector<2>(R, unknown_speed * unknown_speed).asDiagonal();
+  ahead[0] = corrected[0] = now;
+  for (std::size_t i = 1; i < path.place.size(); ++i) {
+    now.mean = A * now.mean;
+    now.P = A * now.P * A.transpose() + Q;
+    ahead[i] = now;
+    const Vector<2> K = now.P.col(0) / (now.P(0, 0) + R);
+    now.mean += K * (path.place[i].transpose() - now.mean.row(0));
+    now.P -= K * now.P.row(0);
+    corrected[i] = now;
+  }
+  path.velocity.resize(path.place.size());
+  for (std::size_t i = path.place.size(); i-- > 0;) {
+    if (i + 1 < path.place.size()) {
+      const Matrix<2> G = corrected[i].P * A.transpose() * ahead[i + 1].P.inverse();
+      corrected[i].mean += G * (corrected[i + 1].mean - ahead[i + 1].mean);
+      corrected[i].P += G * (corrected[i + 1].P - ahead[i + 1].P) * G.transpose();
+    }
+    path.place[i] = corrected[i].mean.row(0);
+    path.velocity[i] = corrected[i].mean.row(1);
+  }
+}
+
+void smooth(Path& path, const PathOptions& options) {
+  switch (options.method) {
+    case PathOptions::Method::lowpass:
+      low_pass(path.place, options.cutoff_hz, 1 / path.step_s);
+      break;
+    case PathOptions::Method::savgol:
+      savitzky_golay(path, options.window_s);
+      break;
+    case PathOptions::Method::kalman:
+      rauch_tung_striebel(path, options.place_noise, options.acceleration);
+      break;
+    case PathOptions::Method::raw:
+      break;
+  }
+  if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
+  if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
+}
+
+}  // namespace
+
+PathOptions::Method parse_path_method(std::string_view name) {
+  if (name == "lowpass") return PathOptions::Method::lowpass;
+  if (name == "savgol") return PathOptions::Method::savgol;
+  if (name == "kalman") return PathOptions::Method::kalman;
+  if (name == "raw") return PathOptions::Method::raw;
+  throw Error("\"{}\" is no way to smooth; these are: lowpass, savgol, kalman, raw", name);
+}
+
+std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathOptions& options) {
+  std::vector<Path> paths;
+  for (std::size_t begin = 0; begin < measured.size();) {
+    std::size_t end = begin + 1;
+    while (end < measured.size() && measured[end].time - measured[end - 1].time <= options.longest_gap_s) ++end;
+    if (end - begin >= 2) {
+      paths.push_back(evenly(measured.subspan(begin, end - begin)));
+      smooth(paths.back(), options);
+    }
+    begin = end;
+  }
+  return paths;
+}
+
+}  // namespace marey

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "marey/geometry/pitch.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// One page that a browser shows without anything else: who ran how far and how fast, where everybody was. Steps do not know each
+/// other, so that the caller says what stands in the table, and how the ways went.
+struct MatchReport {
+  struct Person {
+    std::string name, team;
+    std::vector<std::string> cells;                              ///< of its row, after name and team
+    std::vector<std::vector<Vector<2>>> ways;                    ///< m on the pitch
+    std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a way
+    int heat_columns = 0, heat_rows = 0;                         ///< cells along x and y
+    double heat_cell_m = 2;
+    std::vector<double> heat;  ///< seconds in each, by rows
+  };
+  struct Table {
+    std::string title;
+    std::vector<std::string> head;
+    std::vector<std::vector<std::string>> rows;
+  };
+
+  std::string title;
+  PitchSize pitch;
+  Vector<2> corner = Vector<2>::Zero();  ///< m: the pitch's, in the frame of the ways
+  std::vector<std::string> columns;      ///< of the table of people, after name and team
+  std::vector<Person> people;
+  std::vector<Table> tables;  ///< others, such as of teams
+};
+
+std::string to_html(const MatchReport& report);
+
+}  // namespace marey

@@ -1,0 +1,173 @@
+#include "marey/format/ground_file.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/read_file.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/whole_file.h"
+
+namespace marey {
+namespace {
+
+enum Column { frame, time_s, id, label, team, x, y, vx, vy, state, cameras, columns };
+constexpr std::array<std::string_view, columns> kNames = {"frame", "time", "id", "label", "team",   "x",
+                                                          "y",     "vx",   "vy", "state", "cameras"};
+constexpr std::array kNeeded = {frame, time_s, id, x, y};
+constexpr double kFarthest = 1e5;  // m
+constexpr std::size_t kMostCameras = 64;
+
+class Reader {
+ public:
+  explicit Reader(const std::string& name) : name_(name) {}
+
+  GroundRecording read(std::string_view text) {
+    TextLines lines(text);
+    std::string_view line;
+    if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
+    read_header(line);
+    while (lines.next(line)) {
+      line_ = lines.number();
+      if (line.empty()) continue;
+      split_fields(line, ',', fields_);
+      add();
+    }
+    sort();
+    return std::move(recording_);
+  }
+
+ private:
+  void read_header(std::string_view line) {
+    split_fields(line, ',', fields_);
+    where_.fill(std::nullopt);
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const auto known = std::find(kNames.begin(), kNames.end(), fields_[i]);
+      if (known != kNames.end()) where_[static_cast<std::size_t>(known - kNames.begin())] = i;
+    }
+    for (const Column needed : kNeeded) {
+      if (!where_[needed])
+        throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kNames[needed], fmt::join(kNames, ","));
+    }
+  }
+
+  /// The column's field; nothing where it is missing or empty.
+  std::optional<std::string_view> field(Column column) const {
+    if (!where_[column] || *where_[column] >= fields_.size() || fields_[*where_[column]].empty()) return std::nullopt;
+    return fields_[*where_[column]];
+  }
+
+  double number(Column column, double least, double most) const {
+    const auto text = field(column);
+    const auto value = text ? number_of(*text) : std::nullopt;
+    if (!value || !(*value >= least && *value <= most))
+      throw Error("{}:{}: {} is {}; a number from {:g} to {:g} is wanted", name_, line_, kNames[column],
+                  text ? shown(*text) : std::string("missing"), least, most);
+    return *value;
+  }
+
+  std::string text(Column column) const {
+    const auto found = field(column);
+    return found ? unquoted(*found) : std::string();
+  }
+
+  void add() {
+    GroundRecording::Sample sample;
+    sample.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
+    sample.time = number(time_s, -1e7, 1e7);
+    sample.person = person(static_cast<int>(number(id, 1, 1e9)));
+    sample.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
+    if (field(vx) && field(vy)) sample.velocity = {number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest)};
+    const std::string how = text(state);
+    if (!how.empty() && how != "observed" && how != "predicted")
+      throw Error("{}:{}: state is {}; it must be observed or predicted", name_, line_, shown(how));
+    sample.observed = how != "predicted";
+    sample.cameras = cameras_of(text(cameras));
+    recording_.samples.push_back(sample);
+  }
+
+  std::int32_t person(int number) {
+    const auto [entry, is_new] = people_.try_emplace(number, static_cast<std::int32_t>(recording_.people.size()));
+    if (is_new) recording_.people.push_back({number, {}, {}});
+    GroundRecording::Person& one = recording_.people[static_cast<std::size_t>(entry->second)];
+    if (one.label.empty()) one.label = text(label);
+    if (one.team.empty()) one.team = text(team);
+    return entry->second;
+  }
+
+  std::uint64_t cameras_of(const std::string& names) {
+    std::uint64_t mask = 0;
+    split_fields(names, ' ', names_);
+    for (const std::string_view one : names_) {
+      if (one.empty()) continue;
+      auto known = std::find(recording_.cameras.begin(), recording_.cameras.end(), one);
+      if (known == recording_.cameras.end()) {
+        if (recording_.cameras.size() == kMostCameras) throw Error("{}:{}: more than {} cameras", name_, line_, kMostCameras);
+        known = recording_.cameras.insert(known, std::string(one));
+      }
+      mask |= std::uint64_t{1} << (known - recording_.cameras.begin());
+    }
+    return mask;
+  }
+
+  void sort() {
+    auto& samples = recording_.samples;
+    const auto order = [&](const GroundRecording::Sample& one) {
+      return std::pair(one.frame, recording_.people[static_cast<std::size_t>(one.person)].id);
+    };
+    std::stable_sort(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
+    const auto twice =
+        std::adjacent_find(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) == order(b); });
+    if (twice != samples.end())
+      throw Error("{}: person {} is twice in frame {}", name_, recording_.people[static_cast<std::size_t>(twice->person)].id,
+                  twice->frame);
+  }
+
+  const std::string& name_;
+  std::size_t line_ = 1;
+  GroundRecording recording_;
+  std::map<int, std::int32_t> people_;
+  std::array<std::optional<std::size_t>, columns> where_;
+  std::vector<std::string_view> fields_, names_;
+};
+
+}  // namespace
+
+GroundRecording parse_ground(std::string_view text, const std::string& name) {
+  return Reader(name).read(text);
+}
+
+GroundRecording read_ground(const std::string& path) {
+  const std::string text = read_file(path);
+  return parse_ground(text, path == "-" ? "standard input" : path);
+}
+
+void write_ground(const GroundRecording& recording, const std::string& path) {
+  WholeFile file(path);
+  file.write(fmt::format("{}\n", fmt::join(kNames, ",")));
+  std::string text, seen_by;
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    const GroundRecording::Person& person = recording.people[static_cast<std::size_t>(sample.person)];
+    seen_by.clear();
+    for (std::size_t i = 0; i < recording.cameras.size(); ++i) {
+      if ((sample.cameras >> i & 1) == 0) continue;
+      if (!seen_by.empty()) seen_by += ' ';
+      seen_by += recording.cameras[i];
+    }
+    fmt::format_to(std::back_inserter(text), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
+                   person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
+                   sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by));
+    if (text.size() > (std::size_t{1} << 20)) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.finish();
+}
+
+}  // namespace marey

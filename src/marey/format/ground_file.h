@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "marey/core/ground_recording.h"
+
+namespace marey {
+
+/// People on the ground as CSV: frame,time,id,label,team,x,y,vx,vy,state,cameras. Frames count from 0; s, m, m/s; one row a person
+/// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
+/// between.
+///
+/// Reading asks for frame, time, id, x and y only, found by the header in any order, so that other tools' files may be brought.
+/// Velocities that are missing are 0. Throws Error, with the line, where something is not as it should be.
+GroundRecording read_ground(const std::string& path);
+
+/// The same from text; `name` is what messages call it.
+GroundRecording parse_ground(std::string_view text, const std::string& name);
+
+/// Writes the file, whole or not at all. Throws Error where that cannot be.
+void write_ground(const GroundRecording& recording, const std::string& path);
+
+}  // namespace marey
