@@ -15,9 +15,10 @@
 #include <Eigen/Geometry>
 #include <ceres/ceres.h>
 
+#include "marey/calibrate/board_motion_errors.h"
 #include "marey/calibrate/bundle_deviations.h"
 #include "marey/calibrate/bundle_residual.h"
-#include "marey/calibrate/pose_spline.h"
+#include "marey/calibrate/rough_path.h"
 
 namespace marey {
 namespace {
@@ -26,75 +27,11 @@ using Control = std::array<double, 7>;
 
 constexpr int kRounds = 6;  // of judging outliers and clocks
 
-struct SeenCorner {
-  int id = 0;
-  Vector<3> place = Vector<3>::Zero();  // on the board, m
-  Vector<2> pixel = Vector<2>::Zero();
-  double row = 0;  // share of the picture's height from its middle: -0.5 at the top, 0.5 at the bottom
-  bool inlier = true;
-};
-
 struct View {
   std::size_t camera = 0;
   double time_s = 0;  // by the camera's clock
   std::vector<SeenCorner> corners;
   double jitter_s = 0;  // its clock's own error
-};
-
-/// A view's errors, predicted minus seen. Blocks: four control poses, the camera's pose, its lens, its offset and readout.
-template <typename Model>
-struct ViewError {
-  std::vector<SeenCorner> corners;
-  double time_s = 0;  // by the camera's clock, less the segment's begin
-  double knot_s = 0;
-
-  template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, const T* d, const T* pose, const T* lens, const T* timing, const T* jitter,
-                  T* errors) const {
-    const T middle = (T(time_s) + timing[0] + jitter[0]) / T(knot_s), half = timing[1] / T(2 * knot_s);
-    const SplinePose<T> top = spline_pose(a, b, c, d, T(middle - half));
-    const SplinePose<T> bottom = spline_pose(a, b, c, d, T(middle + half));
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const SeenCorner& corner = corners[i];
-      const Eigen::Matrix<T, 3, 1> place = corner.place.template cast<T>();
-      const T share(0.5 + corner.row);
-      const Eigen::Matrix<T, 3, 1> world = (T(1) - share) * (top * place) + share * (bottom * place);
-      Eigen::Matrix<T, 3, 1> in_camera;
-      ceres::AngleAxisRotatePoint(pose, world.data(), in_camera.data());
-      for (int k = 0; k < 3; ++k) in_camera[k] += pose[3 + k];
-      if (!(in_camera.z() > T(1e-6))) return false;
-      const Eigen::Matrix<T, 2, 1> at = Model::distort(in_camera, lens + bundle::kLensBase);
-      errors[2 * i] = lens[2] + lens[0] * at.x() - T(corner.pixel.x());
-      errors[2 * i + 1] = lens[3] + lens[0] * lens[1] * at.y() - T(corner.pixel.y());
-    }
-    return true;
-  }
-};
-
-/// A picture's own error of time, in standard deviations.
-struct Jitter {
-  double weight = 1;  // 1/s
-
-  template <typename T>
-  bool operator()(const T* jitter, T* error) const {
-    error[0] = jitter[0] * T(weight);
-    return true;
-  }
-};
-
-/// Second differences of three neighbouring control poses, in what a hand does in that time.
-struct Smoothness {
-  double metres = 1, radians = 1;
-
-  template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, T* errors) const {
-    const std::array<T, 3> before = rotation_between(a, b), after = rotation_between(b, c);
-    for (int k = 0; k < 3; ++k) {
-      errors[k] = (after[static_cast<std::size_t>(k)] - before[static_cast<std::size_t>(k)]) / T(radians);
-      errors[3 + k] = (a[4 + k] - T(2) * b[4 + k] + c[4 + k]) / T(metres);
-    }
-    return true;
-  }
 };
 
 std::vector<View> views_of(const Board& board, std::span<const BoardRigCamera> cameras) {
@@ -111,33 +48,6 @@ std::vector<View> views_of(const Board& board, std::span<const BoardRigCamera> c
   }
   return views;
 }
-
-/// The board's path as its views alone have it: for the start of the control poses.
-class RoughPath {
- public:
-  RoughPath(const std::vector<std::vector<PosedView>>& poses, const std::vector<BoardRigPose>& cameras) {
-    for (std::size_t c = 0; c < poses.size(); ++c) {
-      const Rigid3 world_from_camera = cameras[c].camera_from_world.inverse();
-      for (const PosedView& view : poses[c])
-        path_.emplace(view.time_s + cameras[c].offset_s, world_from_camera * view.camera_from_board);
-    }
-  }
-
-  double begin() const { return path_.begin()->first; }
-
-  Rigid3 at(double time_s) const {
-    const auto after = path_.lower_bound(time_s);
-    if (after == path_.end()) return path_.rbegin()->second;
-    if (after == path_.begin()) return after->second;
-    const auto before = std::prev(after);
-    const double share = (time_s - before->first) / (after->first - before->first);
-    const Eigen::Quaterniond from(before->second.rotation), to(after->second.rotation);
-    return {from.slerp(share, to).toRotationMatrix(), (1 - share) * before->second.translation + share * after->second.translation};
-  }
-
- private:
-  std::map<double, Rigid3> path_;
-};
 
 class Motion {
  public:
