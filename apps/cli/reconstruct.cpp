@@ -100,7 +100,7 @@ void add_reconstruct(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reconstruct", "Place and follow the markers that several calibrated cameras see");
   add_rig_inputs(*command, options->inputs);
   ReconstructOptions& how = options->options;
-  command->add_option("-o,--out", options->out, "the take that is written: NAME.marey")->required();
+  command->add_option("-o,--out", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")->required();
   command->add_option("--labels", options->labels,
                       "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");
   command->add_option("--rate", how.rate_hz, "frames a second, where sources and the rig do not tell")->check(CLI::PositiveNumber);
@@ -120,6 +120,10 @@ void add_reconstruct(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--threshold", how.markers.threshold,
                       "grey level that a marker's pixels pass (default: from the picture's noise)");
+  command
+      ->add_option("--widest", how.markers.widest,
+                   "px: markers are no wider and may lie on anything that is; else they lie on a plain ground")
+      ->check(CLI::Range(2.0, 200.0));
   command->add_flag("--dark", how.markers.dark, "markers are darker than what is around them");
   command->add_flag("--json", options->json, "print the summary as JSON on standard output");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary; warnings stay");

@@ -52,6 +52,13 @@ double rim_level(const cv::Mat& luma, const cv::Rect& frame, double otherwise) {
   return *middle;
 }
 
+/// How far each pixel stands out from what is wider than a marker: the picture less its morphological opening (a dark one: its
+/// closing less the picture). What is wider than `widest` px leaves nothing, edges neither (Serra 1982: the top-hat).
+void spot_heights(const cv::Mat& luma, double widest, bool dark, cv::Mat& heights) {
+  const int side = 2 * static_cast<int>(std::ceil(widest / 2)) + 1;
+  cv::morphologyEx(luma, heights, dark ? cv::MORPH_BLACKHAT : cv::MORPH_TOPHAT, cv::Mat::ones(side, side, CV_8U));
+}
+
 bool inside(const Box& box, double x, double y) {
   return x >= box.left - 0.5 && y >= box.top - 0.5 && x < box.right() - 0.5 && y < box.bottom() - 0.5;
 }
@@ -63,6 +70,7 @@ class MarkerDetector::Impl {
   explicit Impl(MarkerOptions options)
       : options_(std::move(options)),
         levels_(options_.dark && !options_.colour, options_.threshold),
+        spot_levels_(false, std::nullopt),
         finder_(kMostRuns),
         auto_mask_(options_.auto_mask_s) {
     if (!options_.mask.empty()) CV_Assert(options_.mask.type() == CV_8UC1);
@@ -87,7 +95,10 @@ class MarkerDetector::Impl {
   void learn_from(std::vector<double>& contrasts);
 
   MarkerOptions options_;
+  bool looks_close_by() const { return options_.widest > 0 && !options_.colour && !options_.threshold; }
+
   MarkerLevels levels_;
+  MarkerLevels spot_levels_;  // of the picture less what is wider than a marker
   MarkerRunFinder finder_;
   MarkerAutoMask auto_mask_;
   MarkerMask mask_;
@@ -125,7 +136,11 @@ const cv::Mat& MarkerDetector::Impl::prepare(const Picture& picture) {
   }
   levels_.learn(luma);
   if (options_.colour) colour_heights(picture, *options_.colour, heights_);
-  const cv::Mat& searched = options_.colour ? heights_ : luma;
+  if (looks_close_by()) {
+    spot_heights(luma, options_.widest, options_.dark, heights_);
+    spot_levels_.learn(heights_);
+  }
+  const cv::Mat& searched = options_.colour || looks_close_by() ? heights_ : luma;
   if (searched.size() == searched_size_) return searched;
   searched_size_ = searched.size();
   const int tiles = (searched.cols + 63) / 64 * ((searched.rows + 63) / 64);
@@ -144,10 +159,11 @@ const cv::Mat& MarkerDetector::Impl::prepare(const Picture& picture) {
 /// Blobs in pixels of the full picture, whatever they were found in.
 std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) {
   if (!options_.colour) {
-    const auto blobs = finder_.find(searched, levels_.thresholds(), mask_);
+    MarkerLevels& levels = looks_close_by() ? spot_levels_ : levels_;
+    const auto blobs = finder_.find(searched, levels.thresholds(), mask_);
     if (!finder_.cut_at()) return blobs;
-    levels_.learn(searched, true);  // the light may have changed at once
-    return finder_.find(searched, levels_.thresholds(), mask_);
+    levels.learn(searched, true);  // the light may have changed at once
+    return finder_.find(searched, levels.thresholds(), mask_);
   }
   full_size_.clear();
   for (MarkerBlob blob : finder_.find(searched, colour_thresholds_, mask_)) {
@@ -239,7 +255,7 @@ MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const
   around.white = levels_.white();
   around.dark = options_.dark;
   around.blur = blur_;
-  if (!options_.colour && !options_.threshold) return around;
+  if (!options_.colour && !options_.threshold && !looks_close_by()) return around;
   // A coloured marker may be brighter or darker than what is around it, and beside a fixed threshold a tile may be mostly of
   // something else than what lies round the marker.
   const cv::Rect within({}, luma.size());
@@ -302,7 +318,8 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   detection.area = shape.fitted ? std::numbers::pi * shape.radius * shape.radius : static_cast<double>(blob.area);
   detection.box = Box::from_centre(shape.centre, 2 * shape.radius + 1, 2 * shape.radius + 1);
   if (options_.colour || options_.threshold) return detection;
-  const double least = levels_.least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
+  const double least =
+      (looks_close_by() ? spot_levels_ : levels_).least_contrast(static_cast<int>(blob.mean_x), static_cast<int>(blob.mean_y));
   detection.score = std::clamp(shape.contrast / (2 * least), 0.1, 1.0);
   return detection;
 }
@@ -334,7 +351,9 @@ void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
     cubes += contrast * contrast * contrast;
     squares += contrast * contrast;
   }
-  levels_.learn_contrast(squares > 0 ? std::optional(cubes / squares) : std::nullopt);
+  for (MarkerLevels* levels : {&levels_, &spot_levels_}) {
+    levels->learn_contrast(squares > 0 ? std::optional(cubes / squares) : std::nullopt);
+  }
   if (blurs_.empty()) return;
   const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>(blurs_.size() / 2);
   std::nth_element(blurs_.begin(), middle, blurs_.end());

@@ -18,7 +18,8 @@ constexpr int kTile = MarkerThresholds::kTile;
 constexpr int kGrid = 8;             // samples a tile, each way
 constexpr int kShare = 32;           // frames in which every tile is looked at once
 constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kLeast = 0.03;      // of white
+constexpr double kLeast = 0.03;      // of white; of what was compressed or rounded to 8 bits
+constexpr double kLeastRaw = 0.01;   // of a picture of more bits
 constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
 constexpr int kMostChange = 1023;
 
@@ -110,7 +111,7 @@ double MarkerLevels::smooth_median(int tile) const {
 
 double MarkerLevels::needed(int tile) const {
   const double sigma = std::max<double>(noise_, raw_[tile].spread);
-  return std::max({kSigmas * sigma, kLeast * white_, kOfContrast * contrast_});
+  return std::max({kSigmas * sigma, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, kOfContrast * contrast_});
 }
 
 void MarkerLevels::set_threshold(int tile) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/motion.h"
 #include "marey/format/take_file.h"
 #include "marey/pipeline/blob_feed.h"
 #include "marey/pipeline/gap_filler.h"
@@ -231,6 +233,24 @@ class Reconstruction {
   std::vector<Observation<3>> points_;
 };
 
+/// A file that is gone with its owner.
+struct ForAWhile {
+  std::string path;
+  ~ForAWhile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+/// Most formats begin with what is known only at the end: the take is read twice.
+void rewrite(const std::string& take, const std::string& out, MotionFormat format) {
+  const MotionPlan plan = plan_of(*open_motion(take, MotionFormat::take), take);
+  const auto reader = open_motion(take, MotionFormat::take);
+  const auto writer = create_motion(out, format, plan);
+  while (const auto frame = reader->next()) writer->write(*frame);
+  writer->finish();
+}
+
 }  // namespace
 
 RosterTrackerOptions space_tracker_options() {
@@ -244,7 +264,13 @@ RosterTrackerOptions space_tracker_options() {
 
 ReconstructSummary reconstruct(Rig rig, const std::string& observations, const std::string& out, const ReconstructOptions& options,
                                const RunHooks& hooks) {
-  return Reconstruction(std::move(rig), observations, out, options, hooks)();
+  const auto format = motion_format_of_name(out);
+  if (!format) throw Error("{}: its ending is of no format; .marey is a take, {} are others", out, ".c3d, .trc and .csv");
+  if (*format == MotionFormat::take) return Reconstruction(std::move(rig), observations, out, options, hooks)();
+  const ForAWhile take{out + ".part.marey"};
+  ReconstructSummary summary = Reconstruction(std::move(rig), observations, take.path, options, hooks)();
+  rewrite(take.path, out, *format);
+  return summary;
 }
 
 }  // namespace marey

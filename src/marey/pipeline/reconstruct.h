@@ -57,9 +57,11 @@ struct ReconstructSummary {
   std::vector<std::string> warnings;
 };
 
-/// Places and follows the markers that a calibrated rig sees, and writes them into a take at `out`. `observations` names what
-/// another program saw, in place of the rig's sources; empty for none. Cameras without a calibration are left out, with a warning.
-/// Memory does not grow with the recording. Throws Error where an input cannot be read or the take cannot be written.
+/// Places and follows the markers that a calibrated rig sees, and writes them to `out`: NAME.marey is a take, written as it grows;
+/// other endings that format/motion.h knows (.c3d, .trc, .csv) are written at the end, out of a take that is then removed.
+/// `observations` names what another program saw, in place of the rig's sources; empty for none. Cameras without a calibration are
+/// left out, with a warning. Memory does not grow with the recording. Throws Error where an input cannot be read or the take cannot
+/// be written.
 ReconstructSummary reconstruct(Rig rig, const std::string& observations, const std::string& out,
                                const ReconstructOptions& options = {}, const RunHooks& hooks = {});
 

@@ -1,0 +1,319 @@
+#include "marey/pipeline/reconstruct.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/format/rig_file.h"
+#include "marey/format/take_file.h"
+#include "marey/pipeline/gap_filler.h"
+#include "marey/pipeline/instants.h"
+#include "marey/pipeline/room_files.h"
+#include "marey/reconstruct/layout.h"
+#include "marey/simulate/room.h"
+
+#include "support/data.h"
+#include "support/files.h"
+
+namespace marey {
+namespace {
+
+struct Score {
+  std::int64_t points = 0, far = 0;
+  std::vector<double> errors;             // m, of measured points
+  std::vector<double> of_filled;          // m
+  std::map<int, std::map<int, int>> ids;  // frames by marker and track
+
+  double median() { return middle(errors); }
+  static double middle(std::vector<double>& list) {
+    if (list.empty()) return 0;
+    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
+    return list[list.size() / 2];
+  }
+};
+
+/// Every point of a take against the nearest true marker at its time.
+Score score_of(const std::string& path, const RoomScene& scene) {
+  Score score;
+  TakeReader reader(path);
+  while (const auto frame = reader.next()) {
+    const auto truth = scene.points(seconds(frame->time));
+    for (const TakePoint& point : frame->points) {
+      int nearest = 0;
+      for (int m = 0; m < std::ssize(truth); ++m) {
+        if ((truth[m] - point.position).norm() < (truth[nearest] - point.position).norm()) nearest = m;
+      }
+      const double error = (truth[nearest] - point.position).norm();
+      ++score.points;
+      score.far += error > 0.01;
+      if (point.provenance == Provenance::measured) {
+        score.errors.push_back(error);
+        ++score.ids[nearest][number(point.track)];
+      } else {
+        score.of_filled.push_back(error);
+      }
+    }
+  }
+  return score;
+}
+
+TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
+  const test::TemporaryFolder folder;
+  RoomOptions room{.markers = 30, .frames = 600, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.02, .bump = {}};
+  const RoomScene scene(room);
+  write_room(scene, folder.path());
+  const auto summary = reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  EXPECT_EQ(summary.frames, 600);
+  EXPECT_NEAR(summary.noise_px, 0.1, 0.02);
+  EXPECT_EQ(summary.stages.size(), 6);
+  Score score = score_of(folder / "walk.marey", scene);
+  EXPECT_GT(score.points, 0.95 * 600 * 30);
+  EXPECT_LT(static_cast<double>(score.far), 0.002 * static_cast<double>(score.points));
+  EXPECT_LT(score.median(), 0.0006);
+  ASSERT_FALSE(score.of_filled.empty());
+  EXPECT_LT(Score::middle(score.of_filled), 0.006);
+  EXPECT_EQ(score.ids.size(), 30);
+  for (const auto& [marker, ids] : score.ids) {
+    int most = 0, all = 0;
+    for (const auto& [id, frames] : ids) most = std::max(most, frames), all += frames;
+    EXPECT_GT(most, 0.98 * all) << "marker " << marker;
+  }
+}
+
+TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
+  const test::TemporaryFolder folder;
+  const RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .offset_s = 0.02, .bump = {}});
+  write_room(scene, folder.path());
+  reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  Score score = score_of(folder / "walk.marey", scene);
+  EXPECT_GT(score.points, 0.85 * 240 * 20);
+  EXPECT_LT(score.median(), 0.001);
+}
+
+TEST(Reconstruct, ACameraThatStopsCostsOnlyItsRays) {
+  const test::TemporaryFolder folder;
+  const RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .bump = {}});
+  write_room(scene, folder.path());
+  {
+    std::ifstream all(folder / "observations.csv");
+    std::ofstream some(folder / "some.csv");
+    for (std::string line; std::getline(all, line);) {
+      if (line.starts_with("cam3,") && std::stoi(line.substr(5)) > 60) continue;
+      some << line << '\n';
+    }
+  }
+  reconstruct(read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.marey");
+  reconstruct(read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.c3d");
+  EXPECT_GT(std::filesystem::file_size(folder / "walk.c3d"), 240 * 20 * 16);
+  EXPECT_FALSE(std::filesystem::exists(folder / "walk.c3d.part.marey"));
+  Score score = score_of(folder / "walk.marey", scene);
+  EXPECT_GT(score.points, 0.97 * 240 * 20);
+  EXPECT_EQ(score.far, 0);
+}
+
+TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
+  const test::TemporaryFolder folder;
+  const RoomScene scene({.motion = RoomMotion::still, .markers = 20, .frames = 60, .occlusion = false, .bump = {}});
+  write_room(scene, folder.path());
+  ReconstructOptions options;
+  options.set.labels = scene.labels();
+  const Rigid3 turned{rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
+  for (const Vector<3>& place : scene.points(0)) options.set.places.push_back(turned * place);
+  const auto summary = reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "still.marey", options);
+  EXPECT_EQ(summary.labelled, 20);
+  TakeReader reader(folder / "still.marey");
+  const auto frame = reader.next().value();
+  const auto tracks = reader.tracks();
+  const auto truth = scene.points(0);
+  for (const TakePoint& point : frame.points) {
+    const auto track = std::find_if(tracks.begin(), tracks.end(), [&](const TakeTrack& one) { return one.id == point.track; });
+    ASSERT_NE(track, tracks.end());
+    const auto label = std::find(scene.labels().begin(), scene.labels().end(), track->label);
+    ASSERT_NE(label, scene.labels().end()) << track->label;
+    EXPECT_LT((truth[static_cast<std::size_t>(label - scene.labels().begin())] - point.position).norm(), 0.005);
+  }
+}
+
+TEST(Reconstruct, RefusesWhatCannotBe) {
+  const test::TemporaryFolder folder;
+  const RoomScene scene({.cameras = 2, .markers = 4, .frames = 3, .bump = {}});
+  write_room(scene, folder.path());
+  Rig rig = read_rig(folder / "rig.toml");
+  EXPECT_THROW(reconstruct(rig, "", folder / "a.marey"), Error) << "no sources";
+  EXPECT_THROW(reconstruct(rig, folder / "observations.csv", folder / "a.docx"), Error);
+  EXPECT_THROW(reconstruct(rig, folder / "nothing.csv", folder / "a.marey"), Error);
+  rig.cameras[1].lens.reset();
+  EXPECT_THROW(reconstruct(rig, folder / "observations.csv", folder / "a.marey"), Error) << "one calibrated camera";
+}
+
+TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
+  GapFiller filler(10, 2);
+  const auto at = [](double t) { return Vector<3>(t * t * t, 1 - t * t, 2 * t); };
+  const auto speed = [](double t) { return Vector<3>(3 * t * t, -2 * t, 2); };
+  Vector<3> place, velocity;
+  for (int i = 0; i < 20; ++i) {
+    const double t = 0.1 * i;
+    const bool seen = i < 5 || i > 9;
+    if (seen) place = at(t), velocity = speed(t);
+    Track<3> track;
+    track.id = TrackId{1};
+    track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
+    track.velocity = velocity;
+    track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
+    TakeFrame frame{.index = i, .time = timestamp_from_seconds(t), .observations = {}, .points = {}};
+    if (seen) {
+      frame.points.emplace_back();
+      frame.points.back().track = track.id;
+      frame.points.back().position = track.position;
+    }
+    filler.add(frame, std::span(&track, 1));
+  }
+  filler.finish();
+  for (int i = 0; i < 20; ++i) {
+    const auto frame = filler.next();
+    ASSERT_TRUE(frame);
+    ASSERT_EQ(frame->points.size(), 1) << i;
+    EXPECT_EQ(frame->points[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
+    EXPECT_LT((frame->points[0].position - at(0.1 * i)).norm(), 1e-9) << i;
+  }
+}
+
+/// The wing's calibration, as its author gives it.
+Rig rig_of_wing(const std::string& folder) {
+  Rig rig;
+  std::ifstream file(folder + "/cameras.toml");
+  const auto numbers = [](std::string line) {
+    std::erase_if(line, [](char c) { return c == '[' || c == ']'; });
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream text(line.substr(line.find('=') + 1));
+    std::vector<double> list;
+    for (double value = 0; text >> value;) list.push_back(value);
+    return list;
+  };
+  BrownLens lens;
+  Rigid3 pose;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("focal_px")) lens.focal = Vector<2>::Constant(numbers(line)[0]);
+    if (line.starts_with("principal_px")) lens.principal = Vector<2>(numbers(line)[0], numbers(line)[1]);
+    if (line.starts_with("R =")) {
+      const auto values = numbers(line);
+      for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
+    }
+    if (!line.starts_with("t_mm")) continue;
+    const auto values = numbers(line);
+    pose.translation = Vector<3>(values[0], values[1], values[2]) / 1000;
+    RigCamera camera;
+    const int number = static_cast<int>(rig.cameras.size());
+    camera.name = "cam" + std::to_string(number + 1);
+    camera.source = folder + "/pitching_wing_5hz";
+    camera.region = cv::Rect(0, 1024 * number, 1024, 1024);
+    camera.rate_hz = 50;
+    camera.size = cv::Size(1024, 1024);
+    camera.lens = lens;
+    camera.camera_from_world = pose;
+    rig.cameras.push_back(camera);
+  }
+  return rig;
+}
+
+/// Root mean square, of all and of what is left when each group's mean is taken away.
+struct Spread {
+  std::map<int, std::vector<Eigen::VectorXd>> groups;
+
+  double all() const {
+    double sum = 0, count = 0;
+    for (const auto& [key, list] : groups) {
+      for (const auto& value : list) sum += value.squaredNorm(), ++count;
+    }
+    return std::sqrt(sum / count);
+  }
+  double random() const {
+    double sum = 0, count = 0;
+    for (const auto& [key, list] : groups) {
+      Eigen::VectorXd mean = Eigen::VectorXd::Zero(list.front().size());
+      for (const auto& value : list) mean += value / static_cast<double>(list.size());
+      for (const auto& value : list) sum += (value - mean).squaredNorm();
+      count += static_cast<double>(list.size()) - 1;
+    }
+    return std::sqrt(sum / count);
+  }
+};
+
+TEST(Reconstruct, TheWingFromItsRawPictures) {
+  const std::string data = test::data("wing");
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not here";
+  const test::TemporaryFolder folder;
+  ReconstructOptions options;
+  options.markers.dark = true;
+  options.markers.widest = 9;
+  std::ifstream layout(data + "/marker_layout_mm.csv");
+  std::string line;
+  for (std::getline(layout, line); std::getline(layout, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream text(line);
+    std::string label;
+    Vector<3> place;
+    text >> label >> place.x() >> place.y() >> place.z();
+    options.set.labels.push_back(label);
+    options.set.places.push_back(place / 1000);
+  }
+  ASSERT_EQ(options.set.labels.size(), 16);
+  const Rig rig = rig_of_wing(data);
+  const auto summary = reconstruct(rig, "", folder / "wing.marey", options);
+  EXPECT_EQ(summary.frames, 6);
+  EXPECT_EQ(summary.labelled, 16);
+
+  TakeReader reader(folder / "wing.marey");
+  std::map<TrackId, int> marker_of;
+  for (const TakeTrack& track : reader.tracks()) {
+    if (!track.label.empty()) marker_of[track.id] = std::stoi(track.label) - 1;
+  }
+  Spread pixels, places;
+  double sum_px = 0;
+  int count_px = 0;
+  while (const auto frame = reader.next()) {
+    std::vector<Vector<3>> from, to;
+    std::vector<int> markers;
+    for (const TakePoint& point : frame->points) {
+      if (!marker_of.contains(point.track)) continue;
+      markers.push_back(marker_of[point.track]);
+      from.push_back(options.set.places[static_cast<std::size_t>(markers.back())]);
+      to.push_back(point.position);
+      for (const TakeObservation& seen : frame->observations) {
+        if (seen.track != point.track) continue;
+        const int camera = number(seen.camera);
+        const Vector<2> error =
+            rig.cameras[static_cast<std::size_t>(camera)].camera()->project(point.position).value() - seen.pixel;
+        sum_px += error.norm();
+        ++count_px;
+        pixels.groups[16 * camera + markers.back()].push_back(error);
+      }
+    }
+    ASSERT_EQ(markers.size(), 16) << "at " << frame->index;
+    const Rigid3 fit = rigid_fit(from, to);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
+    }
+  }
+  RecordProperty("mean_px", std::to_string(sum_px / count_px));
+  RecordProperty("rigid_mm", std::to_string(1000 * places.all()));
+  RecordProperty("random_px", std::to_string(pixels.random()));
+  RecordProperty("random_mm", std::to_string(1000 * places.random()));
+  EXPECT_GE(count_px, 3 * 16 * 6 - 6);
+  EXPECT_LE(sum_px / count_px, 0.25);
+  EXPECT_LE(places.all(), 0.60e-3);
+  EXPECT_LE(pixels.random(), 0.10);
+  EXPECT_LE(places.random(), 0.13e-3);
+}
+
+}  // namespace
+}  // namespace marey
