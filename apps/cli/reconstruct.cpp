@@ -124,6 +124,11 @@ void add_reconstruct(CLI::App& app) {
       ->add_option("--widest", how.markers.widest,
                    "px: markers are no wider and may lie on anything that is; else they lie on a plain ground")
       ->check(CLI::Range(2.0, 200.0));
+  command->add_option("--min-area", how.markers.min_area, "smallest marker, in pixels above the threshold")->capture_default_str();
+  command->add_option("--max-area", how.markers.max_area, "largest marker, likewise")->capture_default_str();
+  command->add_option("--min-roundness", how.markers.min_roundness, "from 0, anything, to 1, a disc")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_flag("--dark", how.markers.dark, "markers are darker than what is around them");
   command->add_flag("--json", options->json, "print the summary as JSON on standard output");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary; warnings stay");

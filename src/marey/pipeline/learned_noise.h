@@ -35,8 +35,12 @@ class LearnedNoise {
     for (const double ratio : ratios_) {
       if (ratio < kFarOff * median) sum += ratio, ++count;
     }
+    // Where a calibration errs more in one place than in another, its tail tells more than its mean.
+    const auto tail = ratios_.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(ratios_.size()));
+    std::nth_element(ratios_.begin(), tail, ratios_.end());
+    const double ratio = std::max(sum / count, *tail / kTail);
     // The sums of squares hold the blobs' own noise too; where that is small, as it is, their root is the factor to be applied.
-    const double wanted = std::clamp(px_ * std::sqrt(sum / count), kLeast, kMost);
+    const double wanted = std::clamp(px_ * std::sqrt(ratio), kLeast, kMost);
     const double share = learned_ ? kShare : 1;
     learned_ = true;
     const double before = px_;
@@ -48,7 +52,8 @@ class LearnedNoise {
   static constexpr double kFirst = 0.5, kLeast = 0.03, kMost = 2;  // px
   static constexpr int kFewest = 4;                                // points
   static constexpr double kFarOff = 6;                             // times the median
-  static constexpr double kShare = 0.02;                           // a frame
+  static constexpr double kTail = 2.08;   // what 90 % of three rays' ratios stay below, of a plain Gaussian
+  static constexpr double kShare = 0.02;  // a frame
 
   double px_;
   bool given_;

@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
 
+constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
+
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) {
@@ -92,7 +94,7 @@ class Reconstruction {
     seen_.clear();
     for (Observation<2> blob : instant.seen) {
       const int number = number_of_[static_cast<std::size_t>(marey::number(blob.camera))];
-      if (number < 0) continue;
+      if (number < 0 || blob.covariance.trace() > 2 * kVaguest * kVaguest) continue;
       blob.camera = CameraId{number};
       seen_.push_back(blob);
     }
@@ -254,7 +256,7 @@ void rewrite(const std::string& take, const std::string& out, MotionFormat forma
 }  // namespace
 
 RosterTrackerOptions space_tracker_options() {
-  return {.filter = KalmanOptions{.acceleration_noise = 3, .initial_speed = 2, .gate_sigmas = 4},
+  return {.filter = KalmanOptions{.acceleration_noise = 3, .initial_speed = 0.7, .gate_sigmas = 4},
           .labels = {},
           .max_speed = 15,
           .marker_width = 0.02,

@@ -9,6 +9,7 @@ namespace marey {
 namespace {
 
 constexpr int kNobody = -1;
+constexpr int kMostCandidates = 3;  // blobs for a prediction in one picture
 
 }  // namespace
 
@@ -39,13 +40,16 @@ void TrackClaims::claim_in(const FrameRays& frame, int camera, std::span<const T
     const Matrix<2> information = S.inverse();
     const double radius = sigmas_ * std::sqrt(S.trace());
     int found = 0;
+    const std::size_t before = pairs_.size();
     frame.for_each_near(camera, at->pixel, radius, [&](int ray) {
       const Vector<2> error = frame.pixel(ray) - at->pixel;
       const double distance = error.dot(information * error);
       if (distance >= gate) return;
       pairs_.push_back({i, ray - first, 1 + gate - distance});
-      contested |= ++claimants_[ray - first] > 1 || ++found > 1;
+      ++found;
+      contested |= ++claimants_[ray - first] > 1 || found > 1;
     });
+    if (found > kMostCandidates) pairs_.resize(before);  // a guess among so many would take what is another's
   }
   const auto cameras = static_cast<std::size_t>(frame.cameras());
   const auto give = [&](int row, int column) { claimed_[static_cast<std::size_t>(row) * cameras + camera] = first + column; };

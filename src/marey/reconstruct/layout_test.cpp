@@ -27,7 +27,8 @@ TEST(Layout, IsFoundAmongOtherPointsWithACornerHidden) {
     EXPECT_EQ(match->matched, 11);
     int next = 5;
     for (int i = 0; i < 12; ++i) {
-      if (i != hidden) EXPECT_EQ(match->point_of[static_cast<std::size_t>(i)], next++) << "seed " << seed;
+      if (i == hidden) continue;
+      EXPECT_EQ(match->point_of[static_cast<std::size_t>(i)], next++) << "seed " << seed;
     }
     EXPECT_FALSE(match->point_of[static_cast<std::size_t>(hidden)]);
   }

@@ -56,6 +56,10 @@ class RosterAdoption {
       }
     }
     if (target.guided > 0) return false;  // the search area has been looked through
+    if (options_.companions) {            // who is not known yet does not jump onto what may be his neighbour's
+      const double reach = kUnknownReach * std::sqrt(target.filter.covariance().trace() / D) + target.width / 2;
+      return (place - target.filter.position()).norm() <= reach;
+    }
     return (place - target.last_place).norm() <= options_.max_speed * target.unseen + target.width;
   }
 
@@ -124,6 +128,7 @@ class RosterAdoption {
   }
 
   static constexpr double kGentleJump = 1;           // gates
+  static constexpr double kUnknownReach = 3.5;       // standard deviations
   static constexpr double kMostMisfit = 4;           // variances
   static constexpr double kFar = 1e6;                // px
   static constexpr long kMostLostPairs = 1'000'000;  // glare: nobody is looked for in it

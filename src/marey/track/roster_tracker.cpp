@@ -100,7 +100,8 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (!target.member || target.observation != kNone) return;
       const auto place = companions_.place_of(*target.member);
       if (!place) return;
-      target.filter.correct(place->position, Matrix<D>::Identity() * place->variance);
+      // Followed closely: how unsure the place is, `guided` says.
+      target.filter.correct(place->position, Matrix<D>::Identity() * (kFollowed * place->variance));
       target.guided = place->variance;
     }
   }
@@ -378,6 +379,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   static double square(double value) { return value * value; }
 
   static constexpr double kCoast = 0.5;           // s that a lost target drifts on
+  static constexpr double kFollowed = 0.04;       // of the variance of what companions say, when it is followed
   static constexpr double kProof = 1;             // s: who was seen for less and is gone was never there
   static constexpr double kForeign = 9;           // variances of its distances from which companions find a target changed
   static constexpr int kMostDoubts = 8;           // frames that they do
