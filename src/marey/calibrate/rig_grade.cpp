@@ -19,7 +19,7 @@ struct Grade {
 
 constexpr std::array kGrades = {Grade{"excellent", 0.25, 0.002, 0.30, 0.03, "fit for measuring"},
                                 Grade{"good", 0.5, 0.005, 0.20, 0.08, "fit for motion capture"},
-                                Grade{"fair", 1.0, 0.015, 0.10, 0.20, "usable, but tracks will be lost where cameras disagree"},
+                                Grade{"fair", 1.0, 0.015, 0.00, 0.20, "usable, but tracks will be lost where cameras disagree"},
                                 Grade{"poor", 1e9, 1e9, 0, 1, "calibrate again before relying on it"}};
 
 /// The first grade that a measure passes.
