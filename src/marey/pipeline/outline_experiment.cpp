@@ -199,7 +199,7 @@ FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExpe
   std::vector<Frame> samples;
   for (int i = 0; i < kPrimed; ++i) {
     const int index = i * film.frames() / kPrimed;
-    samples.push_back(frame_of(film, index, film.render(index).picture));
+    samples.push_back(frame_of(film, index, film.render_empty(index)));
   }
   for (const auto& method : methods) method->prime(samples);
   samples.clear();

@@ -132,6 +132,12 @@ RenderedFrame PeopleFilm::render(int index) const {
   return renderer_->render(people_[i], conditions_[i]);
 }
 
+Picture PeopleFilm::render_empty(int index) const {
+  FrameConditions conditions = conditions_[static_cast<std::size_t>(index)];
+  conditions.seed = ~conditions.seed;  // other noise than that of the frame itself
+  return renderer_->render({}, conditions).picture;
+}
+
 std::unique_ptr<Source> make_source(std::shared_ptr<const PeopleFilm> film) {
   return std::make_unique<FilmSource>(std::move(film));
 }

@@ -68,6 +68,8 @@ class PeopleFilm {
 
   /// Frame 0 ≤ `index` < frames(): picture and truth. Safe to call from several threads.
   RenderedFrame render(int index) const;
+  /// The same frame with nobody in it: what a camera has seen that filmed the place before.
+  Picture render_empty(int index) const;
 
  private:
   PeopleSituation situation_;
