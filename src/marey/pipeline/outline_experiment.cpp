@@ -23,7 +23,6 @@ namespace {
 constexpr double kSeen = 0.5;          // share of a person that must be visible for him to count
 constexpr int kLeastFrames = 25;       // who can be seen for less does not count at all
 constexpr double kReachHeights = 0.5;  // a name farther than this from the person is not on him
-constexpr int kPrimed = 20;            // pictures that a detector is primed with
 constexpr std::array<const char*, 4> kMethods{"silhouettes", "boxes (Xu et al.)", "published (Arnaut & Costa)", "Marey"};
 
 /// Sums of one method over one or more films; what OutlineScore tells as means.
@@ -197,10 +196,7 @@ FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExpe
   std::array<std::unique_ptr<OutlineMethod>, kMethods.size()> methods{
       silhouette_method(), box_method(), published_method(options.published), marey_method(options.outlines)};
   std::vector<Frame> samples;
-  for (int i = 0; i < kPrimed; ++i) {
-    const int index = i * film.frames() / kPrimed;
-    samples.push_back(frame_of(film, index, film.render_empty(index)));
-  }
+  for (int i = 0; i < PeopleFilm::kEarlier; ++i) samples.push_back(frame_of(film, i, film.render_earlier(i)));
   for (const auto& method : methods) method->prime(samples);
   samples.clear();
 

@@ -61,8 +61,8 @@ struct OutlineExperimentOptions {
 ///   published    the coupled filters of Arnaut & Costa, after De Bem
 ///   Marey        the tracker with OutlineFollower
 /// Boxes and published filters have no birth of their own: each begins with the first two detections in a row that are on its
-/// person, and is then alone. Everybody knows the past alone; the detector has seen the empty scene before, as one that has run
-/// for a while.
+/// person, and is then alone. Everybody knows the past alone; the detector has seen the scene before,
+/// with other people in it, as one that has run for a while.
 OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options);
 
 /// A table a case.

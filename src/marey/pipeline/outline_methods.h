@@ -26,7 +26,7 @@ class OutlineMethod {
  public:
   virtual ~OutlineMethod() = default;
 
-  /// Pictures of the empty scene, before the first frame: what a detector is primed with.
+  /// Pictures of the scene from before the first frame: what a detector is primed with.
   virtual void prime(std::span<const Frame> /*samples*/) {}
 
   /// What the method says of a frame. `detections` are those of the first method, for methods that have no detector of their own;

@@ -59,6 +59,12 @@ std::vector<double> lights(LightChange change, int frames, Random& random) {
   return values;
 }
 
+std::vector<PosedFigure> posed(const std::vector<PeopleMotion::Placed>& placed, const std::vector<Figure>& figures) {
+  std::vector<PosedFigure> people;
+  for (const auto& one : placed) people.push_back({one.id, &figures[static_cast<std::size_t>(one.id - 1)], one.stance});
+  return people;
+}
+
 Picture scaled(const Picture& picture, cv::Size size) {
   if (picture.size() == size) return picture;
   cv::Mat bgr;
@@ -108,16 +114,22 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   Random random(seed);
   PeopleMotion motion = move_people(situation, camera_, options_, random);
   figures_ = std::move(motion.figures);
-  for (const auto& frame : motion.frames) {
-    auto& people = people_.emplace_back();
-    for (const auto& one : frame) people.push_back({one.id, &figures_[static_cast<std::size_t>(one.id - 1)], one.stance});
-  }
+  for (const auto& frame : motion.frames) people_.push_back(posed(frame, figures_));
   const std::vector<double> light = lights(options_.light, *options_.frames, random);
   for (std::size_t i = 0; i < people_.size(); ++i) {
     FrameConditions& now = conditions_.emplace_back();
     now.light = light[i];
     now.seed = seed * 1'000'003 + i;
     if (options_.shake_px > 0) now.shift = options_.shake_px * Vector<2>(random.gaussian(), random.gaussian());
+  }
+  PeopleFilmOptions before = options_;
+  before.people = 6;
+  const int second = std::max(1, static_cast<int>(std::lround(options_.rate_hz)));
+  before.frames = kEarlier * second;
+  PeopleMotion earlier = move_people(PeopleSituation::apart, camera_, before, random);
+  earlier_figures_ = std::move(earlier.figures);
+  for (int i = 0; i < kEarlier; ++i) {
+    earlier_.push_back(posed(earlier.frames[static_cast<std::size_t>(i * second)], earlier_figures_));
   }
   RenderOptions render;
   render.samples = options_.samples;
@@ -132,10 +144,10 @@ RenderedFrame PeopleFilm::render(int index) const {
   return renderer_->render(people_[i], conditions_[i]);
 }
 
-Picture PeopleFilm::render_empty(int index) const {
-  FrameConditions conditions = conditions_[static_cast<std::size_t>(index)];
+Picture PeopleFilm::render_earlier(int index) const {
+  FrameConditions conditions = conditions_[static_cast<std::size_t>(index * frames() / kEarlier)];
   conditions.seed = ~conditions.seed;  // other noise than that of the frame itself
-  return renderer_->render({}, conditions).picture;
+  return renderer_->render(earlier_[static_cast<std::size_t>(index)], conditions).picture;
 }
 
 std::unique_ptr<Source> make_source(std::shared_ptr<const PeopleFilm> film) {

@@ -68,8 +68,10 @@ class PeopleFilm {
 
   /// Frame 0 ≤ `index` < frames(): picture and truth. Safe to call from several threads.
   RenderedFrame render(int index) const;
-  /// The same frame with nobody in it: what a camera has seen that filmed the place before.
-  Picture render_empty(int index) const;
+  /// What the camera saw before the film began, in the light of the film: other people who keep apart, moments apart. To learn the
+  /// scene from. 0 ≤ `index` < kEarlier.
+  Picture render_earlier(int index) const;
+  static constexpr int kEarlier = 20;
 
  private:
   PeopleSituation situation_;
@@ -78,6 +80,8 @@ class PeopleFilm {
   std::vector<Figure> figures_;
   std::vector<std::vector<PosedFigure>> people_;  ///< by frame; their figures are ours
   std::vector<FrameConditions> conditions_;       ///< by frame
+  std::vector<Figure> earlier_figures_;
+  std::vector<std::vector<PosedFigure>> earlier_;
   std::unique_ptr<PeopleRenderer> renderer_;
 };
 

@@ -166,6 +166,19 @@ TEST(PeopleFilm, LightChangesAsAsked) {
   EXPECT_EQ(jumps, 2);
 }
 
+TEST(PeopleFilm, WhatWasSeenEarlierIsTheSameSceneWithOthersInIt) {
+  PeopleFilmOptions options = small(25);
+  options.people = 0;
+  options.noise = 0;
+  const PeopleFilm film(PeopleSituation::apart, 1, options);
+  const cv::Mat empty = film.render(0).picture.luma();
+  for (int i = 0; i < PeopleFilm::kEarlier; ++i) {
+    const int differ = cv::countNonZero(film.render_earlier(i).luma() != empty);
+    EXPECT_GT(differ, 100) << i;
+    EXPECT_LT(differ, empty.rows * empty.cols / 8) << i;
+  }
+}
+
 TEST(PeopleFilm, IsASource) {
   PeopleFilmOptions options = small();
   options.frames = 5;
