@@ -14,16 +14,18 @@
 namespace marey {
 namespace {
 
-constexpr double kGapAcross = 0.15;                 // of a person's width: pieces of one person are no further apart
-constexpr double kGapDown = 0.5;                    // of a person's height
-constexpr double kLowest = 0.78, kHighest = 1.28;   // height of one whole person, of the one learned
-constexpr double kNarrowest = 0.55, kWidest = 1.7;  // width, the same
-constexpr double kPlainlyOne = 1.25;                // width up to which nobody asks whether there are two
-constexpr double kLeastFilled = 0.3;                // of its box
-constexpr double kLeastColumn = 0.15;               // of the height, filled: less is a shadow or a hand
-constexpr double kSameBody = 0.6;                   // overlap of the body fitted with the one measured, which is then the better
-constexpr double kBelieved = 0.4;                   // share of a body seen, from which on the rest of it tells what hides people
-constexpr double kOverlapExpected = 0.3;            // of the smaller of the two boxes
+constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
+constexpr double kGapDown = 0.5;                               // of a person's height
+constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
+constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
+constexpr double kPlainlyOne = 1.25;                           // width up to which nobody asks whether there are two
+constexpr double kLeastFilled = 0.3;                           // of its box
+constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
+constexpr double kOutgrownAcross = 1.6, kOutgrownDown = 1.15;  // a region so much larger than one body holds another
+constexpr double kMerged = 0.6;                                // share of an expected box that lies within a region with others
+constexpr double kSameBody = 0.6;         // overlap of the body fitted with the one measured, which is then the better
+constexpr double kBelieved = 0.4;         // share of a body seen, from which on the rest of it tells what hides people
+constexpr double kOverlapExpected = 0.3;  // of the smaller of the two boxes
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
 
@@ -107,6 +109,10 @@ Detection detection_of(const Box& box, std::span<const PixelRun> runs, double sc
   detection.centre = detection.area > 0 ? Vector<2>(sum / detection.area) : detection.box.centre();
   detection.outline = outline_within(part, foreground);
   return detection;
+}
+
+bool outgrows(const Box& region, const Box& body) {
+  return region.width > kOutgrownAcross * body.width || region.height > kOutgrownDown * body.height;
 }
 
 }  // namespace
@@ -260,6 +266,16 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   }
   if (placed.size() == 1 && looks_whole(cluster, image, kWidest) && iou(placed[0].box, cluster.body) > kSameBody) {
     found.push_back(whole(cluster, foreground));
+    return;
+  }
+  const auto within = std::count_if(known.begin(), known.end(),
+                                    [&](const Box& box) { return intersection(box, cluster.body).area() > kMerged * box.area(); });
+  if (placed.size() == 1 && within > 1 && outgrows(cluster.body, placed[0].box)) {
+    // One body cannot be all of this, and two do not stand out: the region is theirs together.
+    Detection together = whole(cluster, foreground);
+    together.group = groups_++;
+    counts_.shared += within;
+    found.push_back(std::move(together));
     return;
   }
   if (placed.empty()) ++counts_.misfits;

@@ -22,7 +22,7 @@ enum class PeopleSituation {
   apart,     ///< each walks and runs in a lane of the picture's own: nobody is hidden
   crossing,  ///< two players pass, the farther one partly hidden for some twenty frames (Arnaut & Costa, Figure 6)
   post,      ///< each passes behind a board of his own, which hides him wholly for a while
-  abrupt,    ///< apart, but they stop, start, turn round, squat and throw up their arms from one frame to the next
+  abrupt,    ///< apart, but they stop, start, turn round, squat and throw up their arms as abruptly as people can
   border,    ///< each walks out of the picture and in again at its sides, in a lane of his own
   crowd,     ///< everybody goes anywhere: every kind of occlusion, entering and leaving
 };

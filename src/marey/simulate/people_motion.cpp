@@ -10,8 +10,12 @@
 namespace marey {
 namespace {
 
-constexpr double kGain = 3.0;         // m/s²
-constexpr double kTurn = 3.5;         // rad/s
+constexpr double kGain = 3.0;  // m/s²
+constexpr double kTurn = 3.5;  // rad/s
+// As abruptly as people can: they stop from a run within two steps, turn round in a quarter of a second, squat in a fifth.
+constexpr double kAbruptGain = 12;    // m/s²
+constexpr double kAbruptTurn = 12;    // rad/s
+constexpr double kAbruptShape = 5;    // share of the whole change, 1/s
 constexpr double kWide = 0.36;        // of a person from the side in mid stride, in heights
 constexpr double kLaneHeights = 1.9;  // a lane, in heights of the people in it
 
@@ -23,7 +27,7 @@ double wrapped(double angle) {
 struct Walker {
   int id = 0;
   Stance stance;
-  double wished_speed = 0;
+  double wished_speed = 0, wished_crouch = 0, wished_reach = 0;
   Vector<2> goal = Vector<2>::Zero();
   double rests_until = 0;  // s
 
@@ -33,13 +37,12 @@ struct Walker {
     const double wished_heading = std::atan2(way.y(), way.x());
     const double turn = wrapped(wished_heading - stance.heading);
     const double wish = now < rests_until ? 0 : wished_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
-    if (abrupt) {
-      stance.speed = now < rests_until ? 0 : wished_speed;
-      stance.heading = now < rests_until ? stance.heading : wished_heading;
-    } else {
-      stance.speed += std::clamp(wish - stance.speed, -kGain * dt, kGain * dt);
-      if (now >= rests_until) stance.heading += std::clamp(turn, -kTurn * dt, kTurn * dt);
-    }
+    const double gain = abrupt ? kAbruptGain : kGain;
+    const double most = (abrupt ? kAbruptTurn : kTurn) * dt;
+    stance.speed += std::clamp(wish - stance.speed, -gain * dt, gain * dt);
+    if (now >= rests_until) stance.heading += std::clamp(turn, -most, most);
+    stance.crouch += std::clamp(wished_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
+    stance.reach += std::clamp(wished_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
     step(dt, stature);
     return way.norm() < std::max(0.4, 0.35 * stance.speed);
   }
@@ -123,8 +126,8 @@ void Director::begin(Walker& walker, const Vector<2>& place, const Vector<2>& go
 
 void Director::change_shape(Walker& walker, bool abrupt) {
   if (!abrupt || !random_.chance(0.9 * dt_)) return;
-  walker.stance.crouch = random_.chance(0.5) ? random_.uniform(0.4, 1) : 0;
-  walker.stance.reach = random_.chance(0.5) ? random_.uniform(0.5, 1) : 0;
+  walker.wished_crouch = random_.chance(0.5) ? random_.uniform(0.4, 1) : 0;
+  walker.wished_reach = random_.chance(0.5) ? random_.uniform(0.5, 1) : 0;
 }
 
 void Director::in_lanes(bool abrupt, bool over_border) {
