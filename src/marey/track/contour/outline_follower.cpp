@@ -83,6 +83,7 @@ class OutlineFollower::Implementation {
   std::span<const Observation<2>> look(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
     const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;
     now_ = frame.time;
+    luma_ = frame.picture.luma();
     hints_.clear();
     for (FollowedTarget& target : targets_) {
       predict(target, dt);
@@ -275,7 +276,7 @@ class OutlineFollower::Implementation {
   /// swings leaves behind. A silhouette unlike the target (cut, or grown by something else) is left to the lines.
   void take_silhouette(FollowedTarget& target, const Detection& seen) {
     const int count = target.shape.spline().count();
-    const auto spline = fit_silhouette(seen, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
+    const auto spline = fit_silhouette(seen, luma_, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
     if (!spline || spline->count() != count) return;
     const double growth = std::sqrt(spline->area() / target.usual_area);
     if (target.state == Outline::State::seen && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return;
@@ -308,7 +309,7 @@ class OutlineFollower::Implementation {
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
   /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
   std::shared_ptr<const Outline> begin(TrackId id, const Detection& seen) {
-    auto spline = fit_silhouette(seen, fit_options(options_));
+    auto spline = fit_silhouette(seen, luma_, fit_options(options_));
     if (!spline) return nullptr;
     const auto first = first_seen_.find(id);
     if (first == first_seen_.end()) {
@@ -361,6 +362,7 @@ class OutlineFollower::Implementation {
 
   OutlineOptions options_;
   std::optional<Timestamp> now_;
+  cv::Mat luma_;  // of the frame last looked at
   Timestamp before_{};  // of the last frame attached
   std::vector<FollowedTarget> targets_;
   std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame

@@ -1,5 +1,6 @@
-// How a silhouette becomes an outline: a spline is fitted, with its parameter corrected (geometry/bspline_fit.cpp). That can tie a
-// loop where the silhouette is thin; then the plain fit by arc length is taken, and where that has a loop too, none.
+// How a silhouette becomes an outline: its edge is moved to the edge of light beside it, and a spline is fitted, with its parameter
+// corrected (geometry/bspline_fit.cpp). That can tie a loop where the silhouette is thin; then the plain fit by arc length is
+// taken, and where that has a loop too, none.
 #include "marey/track/contour/silhouette_spline.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <numbers>
 
 #include "marey/core/error.h"
+#include "marey/track/contour/light_edge.h"
 
 namespace marey {
 namespace {
@@ -54,10 +56,11 @@ bool is_knotted(const ClosedSpline& spline) {
   return std::abs(turned - 2 * std::numbers::pi) > 1;
 }
 
-std::optional<ClosedSpline> fit_silhouette(const Detection& seen, SplineFitOptions options) {
+std::optional<ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma, SplineFitOptions options) {
+  const std::vector<Vector<2>> edge = moved_to_light_edges(seen.outline, luma);
   for (const int rounds : {options.rounds, 0}) {
     options.rounds = rounds;
-    auto spline = fit_spline(seen.outline, options);
+    auto spline = fit_spline(edge, options);
     if (!spline || !(spline->area() > kLeastArea) || iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
     if (!is_knotted(*spline)) return spline;
   }

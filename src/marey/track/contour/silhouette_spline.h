@@ -17,7 +17,8 @@ SplineFitOptions fit_options(const OutlineOptions& options);
 /// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
 bool is_knotted(const ClosedSpline& spline);
 
-/// The outline of a silhouette; nothing where it is no simple curve, or not about as large as the detection.
-std::optional<ClosedSpline> fit_silhouette(const Detection& seen, SplineFitOptions options);
+/// The outline of a silhouette, its edge made exact by `luma` (light_edge.h; may be empty); nothing where it is no simple curve, or
+/// not about as large as the detection.
+std::optional<ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma, SplineFitOptions options);
 
 }  // namespace marey
