@@ -88,7 +88,7 @@ void place_leg(BodyPose& pose, const Joints& joints, int side) {
   foot.rotation = shank.rotation;
 }
 
-BodyPose pose_of(const Stance& stance, const Joints& joints) {
+BodyPose pose_of(const BodyStance& stance, const Joints& joints) {
   BodyPose pose;
   pose[pelvis].translation = {stance.x, stance.y, kHipHeight + joints.bob};
   pose[pelvis].rotation = turn_left(stance.heading);
@@ -170,7 +170,7 @@ const std::array<LimbShape, kLimbs>& limb_shapes() {
   return kShapes;
 }
 
-BodyPose walking_pose(const Stance& stance, double phase) {
+BodyPose walking_pose(const BodyStance& stance, double phase) {
   Joints joints;
   joints.bob = 0.02 * std::cos(2 * phase);
   joints.lean = 0.06;
@@ -186,7 +186,7 @@ BodyPose walking_pose(const Stance& stance, double phase) {
   return pose_of(stance, joints);
 }
 
-BodyPose waving_pose(const Stance& stance, double time_s) {
+BodyPose waving_pose(const BodyStance& stance, double time_s) {
   Joints joints;
   joints.yaw = 0.15 * std::sin(1.1 * time_s);
   for (const int side : {0, 1}) {
@@ -201,7 +201,7 @@ BodyPose waving_pose(const Stance& stance, double time_s) {
   return pose_of(stance, joints);
 }
 
-BodyPose standing_pose(const Stance& stance) {
+BodyPose standing_pose(const BodyStance& stance) {
   Joints joints;
   for (const int side : {0, 1}) {
     joints.aside[side] = 1.2;

@@ -25,16 +25,16 @@ const std::array<LimbShape, kLimbs>& limb_shapes();
 using BodyPose = std::array<Rigid3, kLimbs>;
 
 /// Somebody of 1.75 m, his pelvis over (x, y), who looks along `heading` (rad from the x axis).
-struct Stance {
+struct BodyStance {
   double x = 0, y = 0, heading = 0;
 };
 
 /// `phase` in rad, one double step a turn.
-BodyPose walking_pose(const Stance& stance, double phase);
+BodyPose walking_pose(const BodyStance& stance, double phase);
 /// Both arms wave beside the head; `time_s` counts.
-BodyPose waving_pose(const Stance& stance, double time_s);
+BodyPose waving_pose(const BodyStance& stance, double time_s);
 /// Upright, the arms spread aside.
-BodyPose standing_pose(const Stance& stance);
+BodyPose standing_pose(const BodyStance& stance);
 
 /// A marker on the body: its centre lies a little outside the limb.
 struct BodyMarker {
