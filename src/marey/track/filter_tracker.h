@@ -229,7 +229,7 @@ class FilterTracker final : public Tracker<F::dimension> {
       for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
         const Target<F>& target = targets_[row];
         const double unseen = seconds(*now_ - target.last_seen);
-        if (!target.confirmed || target.observation >= 0 || target.hidden || !target.size || unseen <= recently) continue;
+        if (!target.confirmed || target.observation >= 0 || target.hidden || !target.size) continue;
         for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
           if (claimed_[i] || !seen[i].box || seen[i].shared || seen[i].score < options_.confident) continue;
           const double worth = worth_of_reappearing(target, seen[i], unseen);
@@ -244,18 +244,14 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
+  /// Also of one who was seen a moment ago, and turned so sharply that he left his gate.
   double worth_of_reappearing(const Target<F>& target, const Observation<D>& observation, double unseen) const {
-    const Matrix<D> S = target.filter.innovation_covariance(noise_of(observation, target));
     const double farthest = target.unit * (reappears_within + reappearing_speed * unseen);
     const Vector<D> place = place_of(observation, target);
-    Vector<D> residual = place - target.filter.position();
-    if (const auto cruised = target.cruise.place_at(*now_); cruised && (place - *cruised).norm() < residual.norm()) {
-      residual = place - *cruised;
-    }
-    const double distance = residual.dot(S.inverse() * residual);
-    if (!(distance <= gate_) || residual.norm() > farthest) return 0;
-    if (target.size->distance(*observation.box, size_options_) > gate_) return 0;
-    return 1 + gate_ - distance;
+    double distance = (place - target.filter.position()).norm();
+    if (const auto cruised = target.cruise.place_at(*now_)) distance = std::min(distance, (place - *cruised).norm());
+    if (distance > farthest || target.size->distance(*observation.box, size_options_) > gate_) return 0;
+    return 1 + farthest - distance;
   }
 
   static Vector<D> centre_of(const Observation<D>& observation) {
