@@ -43,7 +43,7 @@ struct WandInput {
 
 struct WandOptions {
   LensUse lens = LensUse::automatic;
-  bool find_offsets = true;               ///< whether cameras may have been started at other times than their offsets say
+  bool find_offsets = true;                    ///< whether cameras may have been started at other times than their offsets say
   std::optional<KnownDistance> distance = {};  ///< of two cameras: what a single light's scale comes from
   std::uint64_t seed = 1;
   std::function<void(std::string_view)> step = [](std::string_view) {};  ///< told what is done now

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
 
-constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
+constexpr double kVaguest = 1;  // px; a blob whose centre is known no better would widen every gate
 
 using Clock = std::chrono::steady_clock;
 

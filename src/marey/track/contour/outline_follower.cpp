@@ -362,7 +362,7 @@ class OutlineFollower::Implementation {
 
   OutlineOptions options_;
   std::optional<Timestamp> now_;
-  cv::Mat luma_;  // of the frame last looked at
+  cv::Mat luma_;        // of the frame last looked at
   Timestamp before_{};  // of the last frame attached
   std::vector<FollowedTarget> targets_;
   std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame
