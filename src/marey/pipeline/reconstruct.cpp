@@ -256,7 +256,7 @@ void rewrite(const std::string& take, const std::string& out, MotionFormat forma
 }  // namespace
 
 RosterTrackerOptions space_tracker_options() {
-  return {.filter = KalmanOptions{.acceleration_noise = 3, .initial_speed = 0.7, .gate_sigmas = 4},
+  return {.filter = KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4},
           .labels = {},
           .max_speed = 15,
           .marker_width = 0.02,

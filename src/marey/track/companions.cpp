@@ -11,16 +11,17 @@ namespace marey {
 namespace {
 
 constexpr std::size_t kMostMembers = 600;  // 180,000 pairs
-constexpr std::size_t kShare = 4;          // frames in which every pair is learned from once
+constexpr std::size_t kShare = 2;          // frames in which every pair is learned from once
 constexpr int kMemory = 1000;              // samples that a mean is taken over
 constexpr int kEnough = 8;                 // samples from which a spread is believed
-constexpr int kEnoughToName = 30;          // samples from which it is told who somebody is
+constexpr int kEnoughToName = 12;          // samples from which it is told who somebody is
 constexpr double kOpening = 0.02;          // m, of spread that a distance may yet show, fading with the samples
 constexpr double kLeastSpread = 0.001;     // m
 constexpr double kSteady = 0.05;           // m; markers whose distance varies by more say nothing of each other
 constexpr std::size_t kFewest = 3;         // companions
 constexpr std::size_t kRanked = 14;        // companions that are asked who somebody is; those that are seen count
 constexpr std::size_t kAsked = 9;
+constexpr double kUnseen = 0.06;  // m, of spread that a distance may yet show, fading with the samples
 constexpr double kDoubt = 0.004;  // m, added to every spread: poses that were not seen yet
 
 }  // namespace
@@ -82,7 +83,7 @@ std::optional<double> Companions::misfit(int number, const Vector<3>& place) con
     if (!other.seen) continue;
     const Distance& distance = between(number, i);
     const double change = (place - other.position).norm() - distance.mean;
-    off[asked++] = change * change / (distance.variance + kDoubt * kDoubt);
+    off[asked++] = change * change / (distance.variance + kDoubt * kDoubt + kUnseen * kUnseen / distance.count);
     if (asked == kAsked) break;
   }
   if (asked < kFewest) return std::nullopt;

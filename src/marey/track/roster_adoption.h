@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,19 +50,27 @@ class RosterAdoption {
     return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
   }
 
-  /// Whether a target that was lost can be at a place. Where enough of those that move with it are seen, their word counts.
-  bool may_be_at(const Target& target, const Vector<D>& place, const Companions& companions) const {
+  /// What it costs to believe that a target that was lost is at a place; nothing where it cannot be. Where enough of those that
+  /// move with it are seen, their word counts; else the way. Of who has `stayed` there for a while less is asked: somebody he must
+  /// be.
+  std::optional<double> cost(const Target& target, const Vector<D>& place, const Companions& companions, bool stayed) const {
     if constexpr (D == 3) {
       if (target.member) {
-        if (const auto misfit = companions.misfit(*target.member, place)) return *misfit < kMostMisfit;
+        if (const auto misfit = companions.misfit(*target.member, place)) {
+          return *misfit < (stayed ? kMostOfStayed : kMostMisfit) ? misfit : std::nullopt;
+        }
       }
     }
-    if (target.guided > 0) return false;  // the search area has been looked through
-    if (options_.companions) {            // who is not known yet does not jump onto what may be his neighbour's
+    const bool jumps = !options_.companions || stayed;
+    if (!jumps && target.guided > 0) return std::nullopt;  // the search area has been looked through
+    if (!jumps) {                                          // who is not known yet does not jump onto what may be his neighbour's
       const double reach = kUnknownReach * std::sqrt(target.filter.covariance().trace() / D) + target.width / 2;
-      return (place - target.filter.position()).norm() <= reach;
+      if ((place - target.filter.position()).norm() > reach) return std::nullopt;
+      return kUnknown + way_to(target, place);
     }
-    return (place - target.last_place).norm() <= options_.max_speed * target.unseen + target.width;
+    if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
+    if (options_.companions && way_to(target, place) > kShortWay * target.width) return std::nullopt;
+    return (options_.companions ? kUnknown : 0) + way_to(target, place);
   }
 
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
@@ -71,10 +81,10 @@ class RosterAdoption {
       const Target& target = targets[lost_[row]];
       for (int column = 0; column < std::ssize(free_); ++column) {
         const Vector<D>& place = seen[free_[column]].value;
-        if (!may_be_at(target, place, companions) || !sight.alike(target, seen[free_[column]])) continue;
-        const double way = way_to(target, place);
-        if (!sight.believes_jump(way + target.width)) continue;
-        pairs_.push_back({row, column, 2 * kFar - std::min(way, kFar)});
+        const auto price = cost(target, place, companions, false);
+        if (!price || !sight.alike(target, seen[free_[column]])) continue;
+        if (!sight.believes_jump(way_to(target, place) + target.width)) continue;
+        pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
       }
     }
     const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(free_.size()), pairs_);
@@ -111,8 +121,8 @@ class RosterAdoption {
       if (target.observation != Target::kNone) continue;
       for (const int column : proven_) {
         const Target& newcomer = targets[column];
-        if (!may_be_at(target, newcomer.last_place, companions)) continue;
-        pairs_.push_back({row, column, 2 * kFar - std::min(way_to(target, newcomer.last_place), kFar)});
+        const auto price = cost(target, newcomer.last_place, companions, options_.companions && newcomer.seen > kStayed);
+        if (price) pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
       }
     }
     if (pairs_.empty()) return;
@@ -130,6 +140,10 @@ class RosterAdoption {
   static constexpr double kGentleJump = 1;           // gates
   static constexpr double kUnknownReach = 3.5;       // standard deviations
   static constexpr double kMostMisfit = 4;           // variances
+  static constexpr double kMostOfStayed = 12;        // the same for a newcomer who stays
+  static constexpr double kStayed = 0.5;             // s
+  static constexpr double kShortWay = 5;             // marker widths that who is not known may have gone astray
+  static constexpr double kUnknown = 100;            // variances: who is known by companions goes first
   static constexpr double kFar = 1e6;                // px
   static constexpr long kMostLostPairs = 1'000'000;  // glare: nobody is looked for in it
 

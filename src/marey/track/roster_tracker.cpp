@@ -112,7 +112,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (!options_.companions) return;
       for (Target& target : targets_) {
         if (target.standing != Standing::established || target.observation == kNone) continue;
-        if (!target.member && target.seen > kProof) target.member = companions_.enrol();
+        if (!target.member && target.seen > kEnrolled) target.member = companions_.enrol();
         if (target.member) companions_.see(*target.member, target.last_place);
       }
       companions_.end_frame();
@@ -175,9 +175,10 @@ class RosterTracker final : public Tracker<F::dimension> {
   /// Whether companions have nothing against it that a target that was lost is at a place.
   bool companions_agree(const Target& target, const Vector<D>& place) const {
     if constexpr (D == 3) {
-      if (!target.member || target.unseen < 1.5 * dt_) return true;
-      const auto misfit = companions_.misfit(*target.member, place);
-      return !misfit || *misfit < kForeign;
+      if (!options_.companions || target.unseen < 1.5 * dt_) return true;
+      const auto misfit = target.member ? companions_.misfit(*target.member, place) : std::nullopt;
+      if (misfit) return *misfit < kForeign;
+      return (place - target.filter.position()).norm() < kAstray * target.width;
     }
     return true;
   }
@@ -380,6 +381,8 @@ class RosterTracker final : public Tracker<F::dimension> {
 
   static constexpr double kCoast = 0.5;           // s that a lost target drifts on
   static constexpr double kFollowed = 0.04;       // of the variance of what companions say, when it is followed
+  static constexpr double kAstray = 5;            // marker widths that who is lost and not known yet may have gone astray
+  static constexpr double kEnrolled = 0.2;        // s after which a target is one of the companions
   static constexpr double kProof = 1;             // s: who was seen for less and is gone was never there
   static constexpr double kForeign = 9;           // variances of its distances from which companions find a target changed
   static constexpr int kMostDoubts = 8;           // frames that they do
