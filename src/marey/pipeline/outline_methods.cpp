@@ -167,7 +167,7 @@ class LoneFilters : public OutlineMethod {
     try {
       filters_.emplace(id, make(before, now));
     } catch (const Error&) {
-      // No curve fits these silhouettes: the next two may do.
+      filters_.erase(id);  // no curve fits these silhouettes: the next two may do
     }
   }
 

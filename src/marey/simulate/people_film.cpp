@@ -129,7 +129,7 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   PeopleMotion earlier = move_people(PeopleSituation::apart, camera_, before, random);
   earlier_figures_ = std::move(earlier.figures);
   for (int i = 0; i < kEarlier; ++i) {
-    earlier_.push_back(posed(earlier.frames[static_cast<std::size_t>(i * second)], earlier_figures_));
+    earlier_.push_back(posed(earlier.frames[static_cast<std::size_t>(i) * static_cast<std::size_t>(second)], earlier_figures_));
   }
   RenderOptions render;
   render.samples = options_.samples;

@@ -37,23 +37,8 @@ double shading(int shade, double side) {
   return 0.78 + 0.2 * std::sqrt(1 - t * t) + 0.13 * side * t;
 }
 
-/// How far clothing lies before the limb that it is on, m: rods that share an axis have one depth.
-double cover(FigurePart part) {
-  switch (part) {
-    case FigurePart::skin:
-    case FigurePart::hair:
-      return 0;
-    case FigurePart::shoes:
-      return 0.02;
-    case FigurePart::socks:
-      return 0.05;
-    case FigurePart::shorts:
-      return 0.08;
-    case FigurePart::shirt:
-      return 0.1;
-  }
-  return 0;
-}
+/// How far what has this colour lies before the limb that it is on, m: rods that share an axis have one depth. By FigurePart.
+constexpr std::array<double, kFigureParts> kCover{0, 0, 0.1, 0.08, 0.05, 0.02};
 
 std::uint8_t clamp_level(float level) {
   return static_cast<std::uint8_t>(std::clamp(level + 0.5F, 0.0F, 255.0F));
@@ -233,7 +218,7 @@ std::optional<PeopleRenderer::Sprite> PeopleRenderer::sprite_of(const PosedFigur
     const auto from = projection_(limb.from), to = projection_(limb.to);
     if (!from || !to) return std::nullopt;
     limbs.push_back({{from->at + shift, to->at + shift, limb.from_radius * from->scale, limb.to_radius * to->scale},
-                     (from->depth + to->depth) / 2 - cover(limb.part),
+                     (from->depth + to->depth) / 2 - kCover[static_cast<std::size_t>(limb.part)],
                      limb.part});
     box = box.empty() ? bounds(limbs.back().cone) : hull(box, bounds(limbs.back().cone));
   }
@@ -278,7 +263,7 @@ std::optional<PeopleRenderer::Sprite> PeopleRenderer::sprite_of(const Post& post
   if (sprite.shape.empty()) return std::nullopt;
   fill_convex(sprite.shape, outline, 1, kShades);
   for (int shade = 0; shade < kShades; ++shade) {
-    sprite.palette[static_cast<std::size_t>(1 + shade)] = to_ycc(post.colour, shading(shade, 1));
+    sprite.palette[1 + static_cast<std::size_t>(shade)] = to_ycc(post.colour, shading(shade, 1));
   }
   return sprite;
 }

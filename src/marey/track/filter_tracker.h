@@ -20,6 +20,7 @@
 #include "marey/track/check_frame.h"
 #include "marey/track/common_motion.h"
 #include "marey/track/crowd.h"
+#include "marey/track/reclaim.h"
 #include "marey/track/target.h"
 #include "marey/track/tracker.h"
 
@@ -45,7 +46,11 @@ class FilterTracker final : public Tracker<F::dimension> {
     claim(seen, [&](const Observation<D>& o) { return o.score >= options_.confident; });
     claim(seen, [&](const Observation<D>& o) { return o.score < options_.confident && o.score >= options_.weak; });
     claim_overlapped(seen);
-    claim_reappeared(seen);
+    if constexpr (D == 2) {
+      if (options_.reclaim)
+        reclaim_.claim(targets_, seen, now, options_.confident, size_options_, gate_,
+                       [&](const Observation<D>& o, const Target<F>& target) { return place_of(o, target); });
+    }
     keep_merged(seen);
     correct(now, seen);
     retire_lost(now);
@@ -216,44 +221,6 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
   }
 
-  /// Before a camera that stands still, nobody vanishes but behind something: somebody of his size who appears where he may have
-  /// gone by now, and whom nobody else claims, is he.
-  void claim_reappeared(std::span<const Observation<D>> seen) {
-    if constexpr (D == 2) {
-      if (!options_.reclaim) return;
-      claimed_.assign(seen.size(), 0);
-      for (const Target<F>& target : targets_) {
-        if (target.observation >= 0) claimed_[target.observation] = 1;
-      }
-      pairs_.clear();
-      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
-        const Target<F>& target = targets_[row];
-        const double unseen = seconds(*now_ - target.last_seen);
-        if (!target.confirmed || target.observation >= 0 || target.hidden || !target.size) continue;
-        for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
-          if (claimed_[i] || !seen[i].box || seen[i].shared || seen[i].score < options_.confident) continue;
-          const double worth = worth_of_reappearing(target, seen[i], unseen);
-          if (worth > 0) pairs_.push_back({row, i, worth});
-        }
-      }
-      if (pairs_.empty()) return;
-      const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
-      for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
-        if (columns[row] != GatedAssigner::nobody) targets_[row].observation = columns[row];
-      }
-    }
-  }
-
-  /// Also of one who was seen a moment ago, and turned so sharply that he left his gate.
-  double worth_of_reappearing(const Target<F>& target, const Observation<D>& observation, double unseen) const {
-    const double farthest = target.unit * (reappears_within + reappearing_speed * unseen);
-    const Vector<D> place = place_of(observation, target);
-    double distance = (place - target.filter.position()).norm();
-    if (const auto cruised = target.cruise.place_at(*now_)) distance = std::min(distance, (place - *cruised).norm());
-    if (distance > farthest || target.size->distance(*observation.box, size_options_) > gate_) return 0;
-    return 1 + farthest - distance;
-  }
-
   static Vector<D> centre_of(const Observation<D>& observation) {
     if constexpr (D == 2) {
       if (observation.box) return observation.box->centre();
@@ -416,8 +383,6 @@ class FilterTracker final : public Tracker<F::dimension> {
   static constexpr double hidden_evidence = 0.1;
   static constexpr double most_evidence = 10;
   static constexpr double overlapped = 0.25;         // IoU of a target's box and what must be the target, there being nobody else
-  static constexpr double reappears_within = 0.3;    // sizes; who was hidden is found again this near to where he is expected,
-  static constexpr double reappearing_speed = 0.5;   // sizes/s; and so much farther for each second
   static constexpr double tentative_patience = 0.4;  // s
   static constexpr double young_patience = 0.4;      // s
   static constexpr double duplicate_iou = 0.75;
@@ -440,6 +405,7 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<char> claimed_, merged_;
   PointGrid<D> grid_;  // of observations
   Crowd<F> crowd_;
+  Reclaim<F> reclaim_;
   GatedAssigner assigner_;
 };
 
