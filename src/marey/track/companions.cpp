@@ -21,8 +21,13 @@ constexpr double kSteady = 0.05;           // m; markers whose distance varies b
 constexpr std::size_t kFewest = 3;         // companions
 constexpr std::size_t kRanked = 14;        // companions that are asked who somebody is; those that are seen count
 constexpr std::size_t kAsked = 9;
-constexpr double kUnseen = 0.06;  // m, of spread that a distance may yet show, fading with the samples
-constexpr double kDoubt = 0.004;  // m, added to every spread: poses that were not seen yet
+constexpr int kHardlyEver = 60;      // samples of both seen, of names that may be one marker's
+constexpr int kWellKnown = 400;      // samples of each with a third
+constexpr int kEnoughAgree = 6;      // thirds
+constexpr double kShareAgree = 0.9;  // of the thirds that find both as far away, within
+constexpr double kAlike = 0.01;      // m, and the spreads' mean
+constexpr double kUnseen = 0.06;     // m, of spread that a distance may yet show, fading with the samples
+constexpr double kDoubt = 0.004;     // m, added to every spread: poses that were not seen yet
 
 }  // namespace
 
@@ -90,6 +95,19 @@ std::optional<double> Companions::misfit(int number, const Vector<3>& place) con
   const auto middle = off.begin() + static_cast<std::ptrdiff_t>(asked / 2);
   std::nth_element(off.begin(), middle, off.begin() + static_cast<std::ptrdiff_t>(asked));
   return *middle;
+}
+
+bool Companions::same(int a, int b) const {
+  if (between(a, b).count >= kHardlyEver) return false;
+  int asked = 0, agree = 0;
+  for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
+    if (i == a || i == b) continue;
+    const Distance &p = between(a, i), &q = between(b, i);
+    if (p.count < kWellKnown || q.count < kWellKnown) continue;
+    ++asked;
+    agree += std::abs(p.mean - q.mean) < kAlike + 0.5 * (std::sqrt(p.variance) + std::sqrt(q.variance));
+  }
+  return asked >= kEnoughAgree && agree >= kShareAgree * asked;
 }
 
 void Companions::disown(int number) {

@@ -41,6 +41,9 @@ class Companions {
   /// change of distance, in variances; below 1 for the marker itself. Nothing where too few are seen or known well enough.
   std::optional<double> misfit(int number, const Vector<3>& place) const;
 
+  /// Whether two numbers are one marker under two names: they keep the same distances to everybody, and are hardly ever seen both.
+  bool same(int a, int b) const;
+
   /// What was thought to be this marker is not: the places kept of it are worth nothing.
   void disown(int number);
 

@@ -21,8 +21,8 @@
 #include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
 #include "marey/track/check_frame.h"
-#include "marey/track/companions.h"
 #include "marey/track/roster_adoption.h"
+#include "marey/track/roster_companions.h"
 #include "marey/track/roster_target.h"
 
 namespace marey {
@@ -34,7 +34,11 @@ class RosterTracker final : public Tracker<F::dimension> {
   static constexpr int D = F::dimension;
 
   RosterTracker(const RosterTrackerOptions& options, const typename F::Options& filter_options)
-      : options_(options), filter_options_(filter_options), sight_(options), adoption_(options, filter_options) {
+      : options_(options),
+        filter_options_(filter_options),
+        sight_(options),
+        adoption_(options, filter_options),
+        companions_(options) {
     std::set<std::string> seen;
     for (const std::string& label : options.labels) {
       if (!seen.insert(label).second) throw Error("the label \"{}\" occurs twice; every marker needs a name of its own", label);
@@ -47,20 +51,20 @@ class RosterTracker final : public Tracker<F::dimension> {
       start_roster(seen);
     } else {
       claimed_.assign(seen.size(), 0);
-      if (knows_companions()) {
+      if (companions_.used()) {
         claim(seen, [&](const Target& target) { return target.unseen < 1.5 * dt_; });
-        tell_companions(seen);
+        companions_.tell(targets_, seen, claimed_);
         claim(seen, [&](const Target& target) { return target.observation == kNone; });
       } else {
         claim(seen, [](const Target&) { return true; });
       }
       meet(seen);
-      adoption_.find_lost(targets_, seen, claimed_, sight_, companions_);
+      adoption_.find_lost(targets_, seen, claimed_, sight_, companions_.all());
       correct(seen);
       judge_newcomers();
       start_unclaimed(seen);
     }
-    learn_companions();
+    companions_.learn(targets_);
     return report();
   }
 
@@ -93,33 +97,6 @@ class RosterTracker final : public Tracker<F::dimension> {
     }
   }
 
-  /// A target that this frame does not see is where its companions went.
-  void guide(Target& target) {
-    target.guided = 0;
-    if constexpr (D == 3) {
-      if (!target.member || target.observation != kNone) return;
-      const auto place = companions_.place_of(*target.member);
-      if (!place) return;
-      // Followed closely: how unsure the place is, `guided` says.
-      target.filter.correct(place->position, Matrix<D>::Identity() * (kFollowed * place->variance));
-      target.guided = place->variance;
-    }
-  }
-
-  /// Those who are established and seen teach how markers move together.
-  void learn_companions() {
-    if constexpr (D == 3) {
-      if (!options_.companions) return;
-      for (Target& target : targets_) {
-        if (target.standing != Standing::established || target.observation == kNone) continue;
-        if (!target.member && target.seen > kEnrolled) target.member = companions_.enrol();
-        if (target.member) companions_.see(*target.member, target.last_place);
-      }
-      companions_.end_frame();
-      for (Target& target : targets_) guide(target);
-    }
-  }
-
   void start_roster(std::span<const Observation<D>> seen) {
     if (seen.empty()) return;
     if (seen.size() < options_.labels.size()) {
@@ -148,41 +125,6 @@ class RosterTracker final : public Tracker<F::dimension> {
                         .standing = standing});
   }
 
-  bool knows_companions() const { return D == 3 && options_.companions; }
-
-  /// Who is followed without a break is known to the others of this frame; unless they find, frame after frame, that it is somebody
-  /// else: then it is lost, and who it is will be asked anew.
-  void tell_companions(std::span<const Observation<D>> seen) {
-    if constexpr (D == 3) {
-      companions_.begin_frame();
-      for (const Target& target : targets_) {
-        if (target.member && target.observation != kNone) companions_.see(*target.member, seen[target.observation].value);
-      }
-      for (Target& target : targets_) {
-        if (!target.member || target.observation == kNone) continue;
-        const auto misfit = companions_.misfit(*target.member, seen[target.observation].value);
-        target.doubts = misfit && *misfit > kForeign ? target.doubts + 1 : 0;
-        if (target.doubts < kMostDoubts) continue;
-        target.doubts = 0;
-        claimed_[target.observation] = 0;
-        target.observation = kNone;
-        target.guided = 0;
-        companions_.disown(*target.member);
-      }
-    }
-  }
-
-  /// Whether companions have nothing against it that a target that was lost is at a place.
-  bool companions_agree(const Target& target, const Vector<D>& place) const {
-    if constexpr (D == 3) {
-      if (!options_.companions || target.unseen < 1.5 * dt_) return true;
-      const auto misfit = target.member ? companions_.misfit(*target.member, place) : std::nullopt;
-      if (misfit) return *misfit < kForeign;
-      return (place - target.filter.position()).norm() < kAstray * target.width;
-    }
-    return true;
-  }
-
   /// Gives the points that nobody has claimed to those of the targets that are `wanted`.
   template <typename Wanted>
   void claim(std::span<const Observation<D>> seen, Wanted&& wanted) {
@@ -199,7 +141,7 @@ class RosterTracker final : public Tracker<F::dimension> {
         if ((points_[column] - targets_[row].filter.position()).squaredNorm() > reach * reach) return;
         if (claimed_[column]) return;
         const double worth = gain(targets_[row], seen[column]);
-        if (worth > 0 && companions_agree(targets_[row], points_[column])) pairs_.push_back({row, column, worth});
+        if (worth > 0 && companions_.agree(targets_[row], points_[column], dt_)) pairs_.push_back({row, column, worth});
       };
       if (few) {
         for (int column = 0; column < std::ssize(seen); ++column) consider(column);
@@ -336,12 +278,12 @@ class RosterTracker final : public Tracker<F::dimension> {
       if (target.standing == Standing::established) continue;
       if (target.observation == kNone && target.covered_by == kNone) target.score -= kMissPenalty;
       const bool proven = target.score >= options_.confirm;
-      const bool stayed = knows_companions() && target.seen > kProof;  // and nobody who is missed can be it
+      const bool stayed = companions_.used() && target.seen > kProof;  // and nobody who is missed can be it
       if (proven && (target.standing == Standing::provisional || all_there || stayed)) target.standing = Standing::established;
     }
     std::erase_if(targets_, [&](const Target& target) {
       const bool missed = target.observation == kNone && target.covered_by == kNone;
-      if (knows_companions() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
+      if (companions_.used() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
       return (target.standing == Standing::newcomer && missed) ||
              (target.standing == Standing::provisional && target.score < -3 * kMissPenalty);
     });
@@ -380,12 +322,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   static double square(double value) { return value * value; }
 
   static constexpr double kCoast = 0.5;           // s that a lost target drifts on
-  static constexpr double kFollowed = 0.04;       // of the variance of what companions say, when it is followed
-  static constexpr double kAstray = 5;            // marker widths that who is lost and not known yet may have gone astray
-  static constexpr double kEnrolled = 0.2;        // s after which a target is one of the companions
   static constexpr double kProof = 1;             // s: who was seen for less and is gone was never there
-  static constexpr double kForeign = 9;           // variances of its distances from which companions find a target changed
-  static constexpr int kMostDoubts = 8;           // frames that they do
   static constexpr double kRoom = 24;             // twice the log-likelihood that a pair may cost
   static constexpr double kWidestGate = 5;        // standard deviations
   static constexpr double kCrowded = 1.4;         // marker widths between two that disturb each other's centres
@@ -403,7 +340,7 @@ class RosterTracker final : public Tracker<F::dimension> {
   int next_id_ = 1;
   RosterSight<F> sight_;
   RosterAdoption<F> adoption_;
-  Companions companions_;
+  RosterCompanions<F> companions_;
   std::vector<Target> targets_;  // in the order of their ids
   std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.
