@@ -216,7 +216,6 @@ LensPrior prior_of(cv::Size size, bool free_lens) {
 
 constexpr double kClickSigma = 3;              // px: how well people click
 constexpr double kClickSigmaBesideLines = 15;  // px: where lines are seen, clicks only keep the whole in place
-constexpr double kEdgeSigma = 0.35;            // px: how well paint is found
 constexpr double kPaintSigma = 0.04;           // m: how well it was laid, and how level the ground is
 
 double solve(Numbers& p, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
