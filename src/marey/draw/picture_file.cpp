@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/free_by.h"
 #include "marey/core/part_name.h"
 
 extern "C" {
@@ -16,10 +17,6 @@ extern "C" {
 namespace marey {
 namespace {
 
-template <typename T, void (*Free)(T**)>
-struct FreeBy {
-  void operator()(T* object) const { Free(&object); }
-};
 using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
 using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
 using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -11,42 +9,23 @@
 
 #include "marey/core/error.h"
 #include "marey/format/read_file.h"
+#include "marey/format/text_rows.h"
 
 namespace marey {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '"'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> split(std::string_view text, std::string_view at) {
+std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
-  while (true) {
-    const auto end = text.find_first_of(at);
-    parts.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc() || stop != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 1e6)
-    return std::nullopt;
-  return value;
+  split_fields(text, separator, parts);
+  return parts;
 }
 
 /// "a,b", with or without parentheses.
 std::optional<Vector<2>> pair(std::string_view text) {
-  text = trimmed(text);
   if (text.size() >= 2 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
-  const auto parts = split(text, ",");
+  const auto parts = parts_of(text, ',');
   if (parts.size() != 2) return std::nullopt;
-  const auto x = number(parts[0]), y = number(parts[1]);
+  const auto x = number_of(parts[0]), y = number_of(parts[1]);
   if (!x || !y) return std::nullopt;
   return Vector<2>(*x, *y);
 }
@@ -74,23 +53,24 @@ std::optional<std::array<std::size_t, 4>> columns_of(const std::vector<std::stri
 PitchClicks parse_csv(std::string_view text, const std::string& name) {
   PitchClicks clicks;
   std::array<std::size_t, 4> columns = {0, 1, 2, 3};
-  int line_number = 0;
   bool first = true;
-  for (std::string_view line : split(text, "\n")) {
-    ++line_number;
+  TextLines lines(text);
+  std::string_view line;
+  std::vector<std::string_view> fields;
+  while (lines.next(line)) {
     if (line.empty() || line.front() == '#') continue;
-    const auto fields = split(line, ",;\t");
-    if (std::exchange(first, false) && !number(fields[0])) {
+    split_fields(line, line.find(',') != line.npos ? ',' : line.find(';') != line.npos ? ';' : '\t', fields);
+    if (std::exchange(first, false) && !number_of(fields[0])) {
       const auto named = columns_of(fields);
-      if (!named) throw Error("{}:{}: the header must name the columns x, y (m on the pitch), u, v (px)", name, line_number);
+      if (!named) throw Error("{}:{}: the header must name the columns x, y (m on the pitch), u, v (px)", name, lines.number());
       columns = *named;
       continue;
     }
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto value = columns[i] < fields.size() ? number(fields[columns[i]]) : std::nullopt;
+      const auto value = columns[i] < fields.size() ? number_of(fields[columns[i]]) : std::nullopt;
       if (!value)
-        throw Error("{}:{}: four numbers are wanted, x,y,u,v: a place on the pitch in m and its pixel", name, line_number);
+        throw Error("{}:{}: four numbers are wanted, x,y,u,v: a place on the pitch in m and its pixel", name, lines.number());
       values[i] = *value;
     }
     clicks.points.push_back({{values[0], values[1]}, {values[2], values[3]}, fmt::format("({:g},{:g})", values[0], values[1])});
@@ -103,7 +83,7 @@ PitchClicks parse_csv(std::string_view text, const std::string& name) {
 /// Continuous coordinates from the top left corner of the picture to ours, whose integers are pixel centres.
 std::optional<std::vector<Vector<2>>> cvat_pixels(std::string_view text) {
   std::vector<Vector<2>> pixels;
-  for (const std::string_view one : split(text, ";")) {
+  for (const std::string_view one : parts_of(text, ';')) {
     const auto pixel = pair(one);
     if (!pixel) return std::nullopt;
     pixels.push_back(pixel->array() - 0.5);
@@ -141,10 +121,15 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
   return clicks;
 }
 
+bool is_xml(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return begin != text.npos && text[begin] == '<';
+}
+
 }  // namespace
 
 PitchClicks parse_pitch_clicks(std::string_view text, const std::string& name) {
-  PitchClicks clicks = trimmed(text).starts_with('<') ? parse_cvat(text, name) : parse_csv(text, name);
+  PitchClicks clicks = is_xml(text) ? parse_cvat(text, name) : parse_csv(text, name);
   if (clicks.points.empty() && clicks.lines.empty()) throw Error("{}: not one point of the pitch is in it", name);
   return clicks;
 }

@@ -8,6 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
+#include "marey/format/rig_sources.h"
 #include "marey/source/open_source.h"
 
 namespace marey {
@@ -27,16 +28,7 @@ void settle_size(RigCamera& camera, cv::Size picture) {
                 camera.region->width, camera.region->height, camera.region->x, camera.region->y, picture.width, picture.height,
                 camera.source);
   }
-  const cv::Size seen = camera.region ? camera.region->size() : picture;
-  if (!camera.size) camera.size = seen;
-  if (*camera.size == seen) return;
-  const double factor = static_cast<double>(seen.width) / camera.size->width;
-  if (std::abs(factor * camera.size->height - seen.height) > 1) {
-    throw Error("camera \"{}\" is {}x{} px in the rig, and {} has pictures of {}x{} px: that is another camera or another cut",
-                camera.name, camera.size->width, camera.size->height, camera.source, seen.width, seen.height);
-  }
-  if (camera.lens) camera.lens = scaled(*camera.lens, factor);
-  camera.size = seen;
+  fit_to_size(camera, camera.region ? camera.region->size() : picture);
 }
 
 /// Container times are rounded; frames come at a steady rate.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "marey/core/error.h"
+#include "marey/core/free_by.h"
 #include "marey/source/decoded_picture.h"
 
 extern "C" {
@@ -16,10 +17,6 @@ extern "C" {
 namespace marey {
 namespace {
 
-template <typename T, void (*Free)(T**)>
-struct FreeBy {
-  void operator()(T* object) const { Free(&object); }
-};
 using FormatPtr = std::unique_ptr<AVFormatContext, FreeBy<AVFormatContext, avformat_close_input>>;
 using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
 using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
