@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/ids.h"
 #include "marey/geometry/vector.h"
 
 namespace marey {
@@ -21,7 +22,7 @@ struct GroundRecording {
     double time = 0;                         ///< s
     Vector<2> place = Vector<2>::Zero();     ///< m
     Vector<2> velocity = Vector<2>::Zero();  ///< m/s
-    std::uint64_t cameras = 0;               ///< a bit each that saw the person, in the order of `cameras`
+    CameraMask cameras = 0;                  ///< a bit each that saw the person, in the order of `cameras`
     bool observed = true;                    ///< else it is where the person was expected
   };
 

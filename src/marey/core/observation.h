@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "marey/core/appearance.h"
 #include "marey/core/ids.h"
 #include "marey/geometry/box.h"
 #include "marey/geometry/vector.h"
@@ -17,6 +18,7 @@ struct Observation {
   double score = 1;        ///< in [0, 1]; a weak one may continue a track, not begin one
   std::optional<Box> box;  ///< px, where the thing has an extent in the image
   bool shared = false;     ///< part of a region that several targets share: its place is believed, its size is not
+  std::optional<Appearance> appearance = {};  ///< what a person wears, where pictures tell
 };
 
 }  // namespace marey

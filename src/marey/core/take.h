@@ -12,9 +12,6 @@
 
 namespace marey {
 
-/// Which cameras of a rig: bit i stands for CameraId i. A rig has 64 cameras at most.
-using CameraMask = std::uint64_t;
-
 /// How a point came to be where it is.
 enum class Provenance : std::uint8_t {
   measured,   ///< from what cameras saw at this instant

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "marey/core/appearance.h"
 #include "marey/core/ids.h"
 #include "marey/core/outline.h"
 #include "marey/geometry/box.h"
@@ -26,6 +27,8 @@ struct Track {
   bool confirmed = true;           ///< false while evidence is still gathered that there is a target at all
   std::optional<Box> box;          ///< px, where the target has an extent in the image
   double score = 1;                ///< of the observation behind it, in [0, 1]
+  CameraMask cameras = 0;          ///< who saw it at this instant, where several cameras look at one ground
+  std::optional<Appearance> appearance = {};         ///< at this instant, of what was seen of it
   std::shared_ptr<const Outline> outline = nullptr;  ///< in the image, where outlines are followed and this one has one
 };
 

@@ -99,7 +99,7 @@ class Reader {
     return entry->second;
   }
 
-  std::uint64_t cameras_of(const std::string& names) {
+  CameraMask cameras_of(const std::string& names) {
     std::uint64_t mask = 0;
     split_fields(names, ' ', names_);
     for (const std::string_view one : names_) {
