@@ -3,12 +3,15 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "marey/core/appearance.h"
 #include "marey/core/ground_recording.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
+#include "marey/geometry/ground_view.h"
+#include "marey/track/ground/ground_tracker.h"
+#include "marey/track/ground/ground_tracklet.h"
 
 namespace marey {
 
@@ -17,25 +20,44 @@ struct GroundJoinOptions {
   double longest_gap = 20;    ///< who reappears later is somebody new
   double longest_filled = 5;  ///< a longer gap is joined, but nothing is said of where the person was meanwhile
   double shortest = 0.5;      ///< who is seen for less is taken for a false alarm
+  double rarest = 0.2;        ///< who is seen in a smaller share of the instants between first and last likewise
   double max_speed = 12;      ///< m/s; nobody runs faster
-  double smoothing = 0.3;     ///< standard deviation of the kernel that smooths places
+  double acceleration = 2.5;  ///< m/s^1.5; how restlessly people move, for the smoother
 };
 
-/// What a ground tracker said, instant by instant, kept for a second pass that may look ahead: at most 48 bytes a person and
-/// instant. Targets that are never confirmed are forgotten as they end.
+/// What was seen of people on the ground, instant by instant, kept for a second pass that may look ahead: 48 bytes a person and
+/// instant. Tracks that are never confirmed are forgotten as they end.
 class GroundRecorder {
  public:
-  /// The tracks of one instant, as GroundTracker::step gave them. Frames come in order, each once.
-  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks);
+  /// One instant: the tracks, looks and claims of one GroundTracker::step. Frames grow from call to call; some may be missing.
+  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const GroundLook> looks,
+           std::span<const GroundClaim> claims);
+
+  /// Between frames `first` and `last`, both included, what the tracker called `track` was `person`.
+  struct Piece {
+    TrackId track{};
+    std::int32_t first = 0, last = 0;
+    std::int32_t person = 0;  ///< index into `recording.people`
+  };
+  struct Joined {
+    GroundRecording recording;                     ///< world's ground, m; teams, labels and names of cameras empty
+    std::vector<Piece> pieces;                     ///< by track, then by frame; what is in none was a false alarm
+    std::vector<std::optional<Appearance>> wears;  ///< of each person: the median over all that was seen of it
+
+    /// Who it was that the tracker called `track` in `frame`: index into `recording.people`.
+    std::optional<int> person_of(TrackId track, std::int32_t frame) const;
+  };
 
   /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given anew
-  /// from 1 in the order of first appearance; `first_ids` of a person are the tracks' ids that it was made of. Used up afterwards.
-  struct Joined {
-    GroundRecording recording;                     ///< world's ground, m; teams empty
-    std::vector<std::vector<TrackId>> first_ids;   ///< of each person
-    std::vector<std::optional<Appearance>> wears;  ///< of each person: the median over all that was seen of it
-  };
-  Joined join(const GroundJoinOptions& options = {}) &&;
+  /// from 1 in the order of first appearance. `views` of the rig's cameras tell where people come into sight and leave it; without
+  /// them that is taken to be likely nowhere. Used up afterwards.
+  Joined join(const GroundJoinOptions& options = {}, std::span<const GroundView> views = {}) &&;
+
+ private:
+  std::vector<Timestamp> times_;
+  std::vector<std::int32_t> frames_;
+  std::vector<GroundTracklet> open_;  // by id
+  std::vector<GroundTracklet> closed_;
 };
 
 }  // namespace marey
