@@ -1,32 +1,20 @@
 #include "marey/assign/gated_assignment.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace marey {
 
-int GatedAssigner::root_of(int node) {
-  while (parent_[node] != node) {
-    parent_[node] = parent_[parent_[node]];
-    node = parent_[node];
-  }
-  return node;
-}
-
 void GatedAssigner::find_components(int rows, int columns, std::span<const GatedPair> pairs) {
-  parent_.resize(rows + columns);
-  std::iota(parent_.begin(), parent_.end(), 0);
+  components_.reset(rows + columns);
   grouped_.clear();
   for (const GatedPair& pair : pairs) {
     if (!(pair.gain > 0)) continue;
     grouped_.push_back(pair);
-    const int a = root_of(pair.row);
-    const int b = root_of(rows + pair.column);
-    parent_[std::max(a, b)] = std::min(a, b);  // the root is the lowest row, whatever the order of the pairs
+    components_.join(pair.row, rows + pair.column);  // named by the lowest row, whatever the order of the pairs
   }
   std::sort(grouped_.begin(), grouped_.end(), [this](const GatedPair& a, const GatedPair& b) {
-    return std::tuple(root_of(a.row), a.row, a.column) < std::tuple(root_of(b.row), b.row, b.column);
+    return std::tuple(components_.find(a.row), a.row, a.column) < std::tuple(components_.find(b.row), b.row, b.column);
   });
 }
 
@@ -37,8 +25,8 @@ std::span<const int> GatedAssigner::assign(int rows, int columns, std::span<cons
   find_components(rows, columns, pairs);
   const std::span<GatedPair> all(grouped_);
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-    const int root = root_of(all[begin].row);
-    while (end < all.size() && root_of(all[end].row) == root) ++end;
+    const int root = components_.find(all[begin].row);
+    while (end < all.size() && components_.find(all[end].row) == root) ++end;
     if (end - begin == 1) {
       column_of_row_[all[begin].row] = all[begin].column;
     } else {

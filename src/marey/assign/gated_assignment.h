@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "marey/assign/disjoint_sets.h"
 #include "marey/assign/linear_assignment.h"
 
 namespace marey {
@@ -33,13 +34,12 @@ class GatedAssigner {
   std::span<const int> assign(int rows, int columns, std::span<const GatedPair> pairs);
 
  private:
-  int root_of(int node);
   void find_components(int rows, int columns, std::span<const GatedPair> pairs);
   void solve_component(std::span<GatedPair> pairs);
   void name_nodes(std::span<const GatedPair> pairs);
   void solve_greedily(std::span<GatedPair> pairs);
 
-  std::vector<int> parent_;         // union-find over rows, then columns
+  DisjointSets components_;         // of rows, then columns
   std::vector<GatedPair> grouped_;  // pairs ordered by component, row, column
   std::vector<int> column_of_row_;
   std::vector<int> row_names_, column_names_, column_slot_;  // of the component at hand
