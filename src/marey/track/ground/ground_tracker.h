@@ -72,8 +72,10 @@ struct GroundTrackerOptions {
   double detected = 0.9;            ///< probability that somebody in view of a camera is seen in one of its frames
   double clutter = 1e-4;            ///< false observations per m² and look
   double births = 1e-4;             ///< people who appear per m² and second; at the edge of what cameras see, more
+  double disagreement = 0.3;        ///< by how much cameras may disagree about a place, for good: standard deviation per axis
   double confident = 0.5;           ///< a target begins with scores of at least this; weaker ones only continue one
   double weak = 0.05;               ///< scores below this are not looked at
+  double confirm = 3;               ///< evidence that makes a target: about so many confident observations
   double patience = 3;              ///< a target that should be seen and is not is given up after this
   // For mht.
   int hypotheses = 50;  ///< kept for each cluster, at most
@@ -81,7 +83,7 @@ struct GroundTrackerOptions {
 };
 
 /// `views`: how camera i of the rig sees the ground; who stands outside its picture is not missed by it. Throws Error where an
-/// option is out of its domain.
+/// option is out of its domain. Camera i of the looks is views[i].
 std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::vector<GroundView> views);
 
 }  // namespace marey

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "marey/core/ids.h"
+#include "marey/core/time.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// Finds targets that are one person: cameras that disagree about the place of somebody may each feed a target of its own. Two
+/// that one camera saw in one frame are two people. Two that stay together for a while, each seen, and never both by one camera,
+/// are one. Where only one camera looks, nothing is ever merged.
+/// Cost: targets · neighbours an instant.
+class GroundDuplicates {
+ public:
+  struct Member {
+    TrackId id{};
+    Vector<2> position = Vector<2>::Zero();        ///< m
+    Matrix<2> covariance = Matrix<2>::Identity();  ///< m²
+    CameraMask cameras = 0;                        ///< who saw it at this instant
+  };
+
+  /// Pairs of who stays and who goes, the older staying; nobody goes twice or stays after going. `members` are by id;
+  /// `disagreement` in m: how far apart two cameras see one person, standard deviation. Valid until the next call.
+  const std::vector<std::pair<TrackId, TrackId>>& find(Timestamp now, std::span<const Member> members, double disagreement);
+
+ private:
+  struct Pair {
+    Timestamp since{};  // they have been together, and nobody saw both
+    Timestamp latest{};
+    CameraMask first = 0, second = 0;  // who saw them meanwhile
+  };
+  bool together(const Member& a, const Member& b, double disagreement) const;
+
+  std::map<std::pair<TrackId, TrackId>, Pair> pairs_;
+  std::vector<std::pair<TrackId, TrackId>> merges_;
+  std::vector<int> by_x_;
+};
+
+}  // namespace marey

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "marey/track/ground/ground_tracker.h"
+
+namespace marey {
+
+/// Follows people on the ground by global nearest neighbour: in each look the one assignment of greatest likelihood.
+std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views);
+
+}  // namespace marey

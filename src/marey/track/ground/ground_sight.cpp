@@ -1,0 +1,37 @@
+#include "marey/track/ground/ground_sight.h"
+
+#include <algorithm>
+
+namespace marey {
+
+void GroundSight::look(CameraId camera, std::span<const Observation<2>> seen, double least_score) {
+  view_ = &views_.at(static_cast<std::size_t>(number(camera)));
+  boxes_.clear();
+  for (const Observation<2>& one : seen) {
+    if (one.box && !one.box->empty() && one.score >= least_score) boxes_.push_back(*one.box);
+  }
+}
+
+double GroundSight::visible(const Vector<2>& place) const {
+  const auto foot = view_->pixel(place);
+  if (!foot) return 0;
+  const cv::Size size = view_->size();
+  const double inside = std::min({foot->x() + 0.5, foot->y() + 0.5, size.width - 0.5 - foot->x(), size.height - 0.5 - foot->y()});
+  if (inside < 0) return 0;
+  const double open = covered(*foot) > hidden_share ? seen_hidden : 1.0;
+  return inside < border * size.width ? 0.5 * open : open;
+}
+
+/// The largest share of a body with its foot here that one other box covers, of those who stand nearer to the camera: their feet
+/// are lower in the picture. Who overlaps another is about as far away and thus as tall.
+double GroundSight::covered(const Vector<2>& foot) const {
+  double most = 0;
+  for (const Box& other : boxes_) {
+    if (other.foot().y() < foot.y()) continue;
+    const Box body{foot.x() - (other.width - 1) / 2, foot.y() + 0.5 - other.height, other.width, other.height};
+    most = std::max(most, intersection(body, other).area() / other.area());
+  }
+  return most;
+}
+
+}  // namespace marey
