@@ -38,7 +38,7 @@ nlohmann::json as_json(const BoardRun& run) {
     nlohmann::json camera = figures_of(found);
     camera["centre"] = {centre.x(), centre.y(), centre.z()};
     camera["centre_deviation"] = {found.centre_deviation.x(), found.centre_deviation.y(), found.centre_deviation.z()};
-    camera["offset_s"] = run.rig.cameras[i].offset_s;
+    camera["offset_s"] = run.rig.cameras[i].offset_s.value_or(0);
     camera["offset_deviation_s"] = found.offset_deviation_s;
     camera["readout_s"] = found.readout_s;
     cameras[run.rig.cameras[i].name] = std::move(camera);
@@ -52,8 +52,8 @@ void print_table(const BoardRun& run) {
     const BoardRigPose& found = run.found.cameras[i];
     const Vector<3> centre = run.rig.cameras[i].camera_from_world->inverse().translation;
     fmt::print("{:<14} {:>8.3f} {:>8.3f} {:>13} {:>9.2f} {:>8.4f} {:>8.4f} {:>8.4f}\n", run.rig.cameras[i].name, found.rms_px,
-               found.mean_px, fmt::format("{}/{}", found.inliers, found.observations), 1e3 * run.rig.cameras[i].offset_s,
-               centre.x(), centre.y(), centre.z());
+               found.mean_px, fmt::format("{}/{}", found.inliers, found.observations),
+               1e3 * run.rig.cameras[i].offset_s.value_or(0), centre.x(), centre.y(), centre.z());
   }
   fmt::print("{:<14} {:>8.3f} {:>8.3f} {:>13}\n", "all", run.found.rms_px, run.found.mean_px,
              fmt::format("{}/{}", run.found.inliers, run.found.observations));

@@ -61,7 +61,7 @@ nlohmann::json as_json(const WandResult& result) {
     nlohmann::json& entry = json["cameras"][camera.name] = as_json(camera.fit);
     entry["coverage"] = camera.coverage;
     entry["world_error_mm"] = camera.world_error_mm;
-    entry["offset_s"] = result.rig.cameras[c].offset_s;
+    entry["offset_s"] = result.rig.cameras[c].offset_s.value_or(0);
     entry["deviation"] = {{"centre_mm", 1000 * camera.deviation.centre.norm()},
                           {"rotation_rad", camera.deviation.rotation.norm()},
                           {"focal", camera.deviation.focal}};
@@ -94,7 +94,7 @@ void print_table(const WandResult& result) {
     const CameraReport& camera = report.cameras[c];
     row(camera.name, camera.fit);
     fmt::print(" {:>7.0f} % {:>10.3f} {:>10.3f}\n", 100 * camera.coverage, camera.world_error_mm,
-               1000 * result.rig.cameras[c].offset_s);
+               1000 * result.rig.cameras[c].offset_s.value_or(0));
   }
   row("all", report.all);
   fmt::print("\n");

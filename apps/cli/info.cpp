@@ -78,7 +78,7 @@ std::string camera_words(const RigCamera& camera) {
            : camera.lens              ? ", lens known"
                                       : ", not calibrated";
   if (camera.rms_px) words += fmt::format(", {:.2f} px RMS", *camera.rms_px);
-  if (camera.offset_s != 0) words += fmt::format(", offset {:+.4f} s", camera.offset_s);
+  if (camera.offset_s && *camera.offset_s != 0) words += fmt::format(", offset {:+.4f} s", *camera.offset_s);
   const std::string& source = camera.source.empty() ? camera.detections : camera.source;
   return source.empty() ? words : words + ", " + source;
 }
@@ -150,10 +150,8 @@ void print_motion(const std::string& path, MotionFormat format, const MotionInfo
 nlohmann::json as_json(const Rig& rig) {
   nlohmann::json cameras = nlohmann::json::array();
   for (const RigCamera& camera : rig.cameras) {
-    nlohmann::json entry{{"name", camera.name},
-                         {"source", camera.source},
-                         {"offset_s", camera.offset_s},
-                         {"calibrated", camera.camera().has_value()}};
+    nlohmann::json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
+    if (camera.offset_s) entry["offset_s"] = *camera.offset_s;
     if (camera.size) entry["size"] = {camera.size->width, camera.size->height};
     if (camera.rms_px) entry["rms_px"] = *camera.rms_px;
     cameras.push_back(std::move(entry));

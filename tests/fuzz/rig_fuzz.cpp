@@ -25,7 +25,7 @@ void check_message(std::string_view message) {
 }
 
 void check_camera(const marey::RigCamera& camera) {
-  check(!camera.name.empty() && std::isfinite(camera.offset_s));
+  check(!camera.name.empty() && std::isfinite(camera.offset_s.value_or(0)));
   if (camera.size) check(camera.size->width > 0 && camera.size->height > 0);
   if (camera.lens) check(marey::focal_of(*camera.lens).minCoeff() > 0 && marey::principal_of(*camera.lens).allFinite());
   if (camera.camera_from_world) {

@@ -76,7 +76,8 @@ class WandCalibration {
     options_.step("finding the wand");
     for (std::size_t c = 0; c < cameras(); ++c) {
       const RigCamera& camera = in_.rig.cameras[c];
-      tracks_.push_back({find_marks(in_.seen[c], in_.wand, camera.lens, *camera.size), period_of(in_.seen[c]), camera.offset_s});
+      tracks_.push_back(
+          {find_marks(in_.seen[c], in_.wand, camera.lens, *camera.size), period_of(in_.seen[c]), camera.offset_s.value_or(0)});
     }
     check_tracks(in_, tracks_);
     if (options_.find_offsets) {

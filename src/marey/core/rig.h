@@ -18,7 +18,7 @@ struct RigCamera {
   std::string detections;                      ///< in place of pictures, what another program detected; empty where there is none
   std::optional<cv::Rect> region;              ///< px: the camera's part of a larger picture; pixels count from its corner
   std::optional<double> rate_hz;               ///< in place of what the source's header says
-  double offset_s = 0;                         ///< added to this camera's times gives the rig's, s
+  std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing where nobody said
   std::optional<cv::Size> size;                ///< px
   std::optional<Lens> lens;                    ///< valid for `size`
   std::optional<Rigid3> camera_from_world;     ///< m

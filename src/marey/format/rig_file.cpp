@@ -128,7 +128,7 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   }
   camera.region = read_region(section);
   camera.rate_hz = section.positive("rate");
-  camera.offset_s = section.number("offset_s").value_or(0);
+  camera.offset_s = section.number("offset_s");
   camera.size = read_size(section);
   if (camera.region && camera.size && camera.region->size() != *camera.size) {
     section.problem("size", fmt::format("size is {} x {} and its region is {} x {}; they must agree", camera.size->width,

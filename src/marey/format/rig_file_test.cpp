@@ -57,6 +57,7 @@ TEST(RigFile, ReadsTheExample) {
   EXPECT_EQ(lens.distortion[4], -0.014);
   EXPECT_EQ(left.camera_from_world->translation, Vector<3>(0, 0, 5));
   EXPECT_TRUE(left.camera());
+  EXPECT_FALSE(rig.cameras[1].offset_s) << "nobody said";
   EXPECT_FALSE(rig.cameras[1].camera());
   EXPECT_TRUE(rig.cameras[1].ground_view());
 }
@@ -105,7 +106,6 @@ translation = [0.0, 0.0, 5.0]              # m, in the camera's frame
 
 [[camera]]
 name = "far"
-offset_s = 0.0
 size = [640, 480]
 ground_from_image = [[0.1, 0.0, -3.0],
                      [0.0, 0.1, 2.0],

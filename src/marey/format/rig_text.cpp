@@ -109,7 +109,7 @@ std::string camera_text(const RigCamera& camera, const std::string& folder, bool
     lines.add("region", fmt::format("[{}, {}, {}, {}]", r->x, r->y, r->width, r->height), "x, y, width, height in px");
   }
   if (camera.rate_hz) lines.add("rate", number_text(*camera.rate_hz), "Hz");
-  lines.add("offset_s", number_text(camera.offset_s), "add to this camera's times to get the rig's");
+  if (camera.offset_s) lines.add("offset_s", number_text(*camera.offset_s), "add to this camera's times to get the rig's");
   if (camera.size) lines.add("size", fmt::format("[{}, {}]", camera.size->width, camera.size->height), "px");
   if (camera.lens) add_lens(lines, *camera.lens);
   if (const auto& pose = camera.camera_from_world) {

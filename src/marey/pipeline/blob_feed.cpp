@@ -148,7 +148,7 @@ std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const MarkerOptions
     auto source = open_source(camera.source, camera.rate_hz ? camera.rate_hz : rate_hz);
     if (camera.region) source = crop(std::move(source), *camera.region);
     fit_to_size(camera, source->info().size);
-    feeds.push_back(std::make_unique<VideoFeed>(std::move(source), id, camera.offset_s, markers));
+    feeds.push_back(std::make_unique<VideoFeed>(std::move(source), id, camera.offset_s.value_or(0), markers));
     ++found;
   }
   if (found == 0) throw Error("no camera of the rig has a source; name them in the rig, or give CAMERA=VIDEO or --observations");
@@ -160,7 +160,7 @@ std::vector<std::unique_ptr<BlobFeed>> open_observations(const std::string& path
   std::vector<std::unique_ptr<BlobFeed>> feeds;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const double rate = rig.cameras[c].rate_hz ? *rig.cameras[c].rate_hz : rate_hz.value_or(kDefaultRate);
-    feeds.push_back(std::make_unique<ObservationFeed>(deal, c, rate, rig.cameras[c].offset_s));
+    feeds.push_back(std::make_unique<ObservationFeed>(deal, c, rate, rig.cameras[c].offset_s.value_or(0)));
   }
   return feeds;
 }

@@ -69,7 +69,7 @@ BoardRigCamera look(RigCamera& camera, const BoardDetector& detector, const Boar
   }
   fit_to_size(camera, seen.size);
   if (!camera.lens) camera.lens = lens_by_board(camera, detector.board(), seen);
-  BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s, {}};
+  BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s.value_or(0), {}};
   for (const BoardSighting& sighting : seen.sightings)
     input.views.push_back({sighting.frame, seconds(sighting.time), sighting.view});
   return input;
@@ -84,7 +84,7 @@ Rigid3 first_pose() {
 
 void enter(Rig& rig, const BoardRig& found) {
   const Rigid3 first_from_world = rig.cameras[0].camera_from_world.value_or(first_pose());
-  const double first_offset = rig.cameras[0].offset_s;
+  const double first_offset = rig.cameras[0].offset_s.value_or(0);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     RigCamera& camera = rig.cameras[i];
     camera.lens = found.cameras[i].lens;
@@ -110,7 +110,7 @@ BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRun
   const BoardDetector detector(board);
   std::vector<BoardRigCamera> cameras;
   for (RigCamera& camera : run.rig.cameras) cameras.push_back(look(camera, detector, options));
-  for (BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s;
+  for (BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s.value_or(0);
   run.found = calibrate_board_rig(board, cameras, how);
   enter(run.rig, run.found);
   return run;

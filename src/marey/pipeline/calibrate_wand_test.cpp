@@ -137,8 +137,8 @@ TEST(CalibrateWand, FindsWhenCamerasWereStarted) {
   const RoomScene scene(room);
   const WandResult result = calibrate_wand(input_of(scene));
   for (std::size_t c = 0; c < 4; ++c) {
-    const double truth = scene.rig().cameras[c].offset_s - scene.rig().cameras[0].offset_s;
-    EXPECT_NEAR(result.rig.cameras[c].offset_s, truth, 0.05 / 120) << "a twentieth of a frame";
+    const double truth = *scene.rig().cameras[c].offset_s - *scene.rig().cameras[0].offset_s;
+    EXPECT_NEAR(*result.rig.cameras[c].offset_s, truth, 0.05 / 120) << "a twentieth of a frame";
   }
   EXPECT_LT(compare(result.rig, scene.rig()).centre_mm, 1);
 }

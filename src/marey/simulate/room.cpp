@@ -152,7 +152,7 @@ void RoomScene::Parts::merge(std::vector<RoomBlob>& blobs, std::span<const doubl
 }
 
 std::vector<RoomBlob> RoomScene::Parts::blobs(int index, std::int64_t frame) const {
-  const double t = static_cast<double>(frame) / options.rate_hz + rig.cameras[static_cast<std::size_t>(index)].offset_s;
+  const double t = static_cast<double>(frame) / options.rate_hz + rig.cameras[static_cast<std::size_t>(index)].offset_s.value_or(0);
   const std::vector<Vector<3>> places = points(t);
   const BodyPose at = has_body() ? pose(t) : BodyPose{};
   Random random(mixed(options.seed, static_cast<std::uint64_t>(frame), static_cast<std::uint64_t>(index)));

@@ -23,7 +23,7 @@ TEST(Room, BlobsLieWhereTheRigSeesTheirMarkers) {
     for (std::size_t c = 0; c < 8; ++c) {
       const RigCamera& camera = scene.rig().cameras[c];
       offset += camera.offset_s != 0;
-      const auto points = scene.points(frame.time_s + camera.offset_s);
+      const auto points = scene.points(frame.time_s + *camera.offset_s);
       for (const RoomBlob& blob : frame.seen[c]) {
         sum += (blob.pixel - *camera.camera()->project(points[static_cast<std::size_t>(blob.marker.value())])).squaredNorm();
         ++count;
