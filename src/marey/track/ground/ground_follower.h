@@ -32,7 +32,7 @@ class GroundFollower : public GroundTracker {
 
   std::span<const Track<2>> step(Timestamp now, std::span<const GroundLook> looks) final {
     check_time(now, now_);
-    for (const GroundLook& look : looks) check_look(look);
+    for (const GroundLook& look : looks) sight_.check(look);
     predict_to(now);
     claims_.clear();
     for (int i = 0; i < static_cast<int>(looks.size()); ++i) take_in(i, looks[i]);
@@ -42,6 +42,13 @@ class GroundFollower : public GroundTracker {
   }
 
   std::span<const GroundClaim> claims() const final { return claims_; }
+
+  std::span<const GroundDecision> decided() final {
+    decision_ = {now_.value_or(Timestamp{}), tracks_, claims_};
+    return {&decision_, now_ ? std::size_t{1} : 0};
+  }
+
+  std::span<const GroundDecision> decide_all() final { return {}; }
 
   std::span<const Track<2>> expected(Timestamp now) final {
     const double dt = now_ ? std::max(0.0, seconds(now - *now_)) : 0.0;
@@ -72,12 +79,6 @@ class GroundFollower : public GroundTracker {
   Timestamp now() const { return *now_; }
 
  private:
-  void check_look(const GroundLook& look) const {
-    if (number(look.camera) < 0 || number(look.camera) >= sight_.cameras())
-      throw Error("a look is of camera {}, but the rig has {}; give each camera a view", number(look.camera), sight_.cameras());
-    check_finite(look.time, look.seen);
-  }
-
   void predict_to(Timestamp now) {
     const double dt = now_ ? seconds(now - *now_) : 0.0;
     now_ = now;
@@ -158,11 +159,7 @@ class GroundFollower : public GroundTracker {
     for (const auto& [kept, gone] : merges) {
       const auto target = at(gone);
       const auto into = at(kept);
-      into->cameras |= target->cameras;
-      into->last_seen = std::max(into->last_seen, target->last_seen);
-      into->evidence = std::max(into->evidence, target->evidence);
-      into->confirmed = into->confirmed || target->confirmed;
-      if (!into->wears) into->wears = target->wears;
+      rules_.absorb(*into, *target);
       for (GroundClaim& one : claims_) {
         if (one.track == gone) one.track = kept;
       }
@@ -196,6 +193,7 @@ class GroundFollower : public GroundTracker {
   std::vector<GroundTarget<F>> targets_;  // in the order of their ids
   std::vector<Track<2>> tracks_;
   std::vector<GroundClaim> claims_;
+  GroundDecision decision_;
   // What a look needs, kept so that it is allocated once.
   std::vector<int> owner_;  // of each observation: index of its target
   std::vector<char> explained_, seen_now_;

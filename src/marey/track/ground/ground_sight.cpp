@@ -2,7 +2,15 @@
 
 #include <algorithm>
 
+#include "marey/track/check_frame.h"
+
 namespace marey {
+
+void GroundSight::check(const GroundLook& look) const {
+  if (number(look.camera) < 0 || number(look.camera) >= cameras())
+    throw Error("a look is of camera {}, but the rig has {}; give each camera a view", number(look.camera), cameras());
+  check_finite(look.time, look.seen);
+}
 
 void GroundSight::look(CameraId camera, std::span<const Observation<2>> seen, double least_score) {
   view_ = &views_.at(static_cast<std::size_t>(number(camera)));

@@ -5,6 +5,7 @@
 
 #include "marey/core/observation.h"
 #include "marey/geometry/ground_view.h"
+#include "marey/track/ground/ground_tracker.h"
 
 namespace marey {
 
@@ -14,6 +15,9 @@ class GroundSight {
   explicit GroundSight(std::vector<GroundView> views) : views_(std::move(views)) {}
 
   int cameras() const { return static_cast<int>(views_.size()); }
+
+  /// Throws Error where a look is of none of the cameras, or not finite.
+  void check(const GroundLook& look) const;
 
   /// Turns to one camera's look: `seen` are its observations, of which those with scores of at least `least_score` may stand before
   /// others. The camera must be one of the rig's.

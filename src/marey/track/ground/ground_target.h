@@ -127,6 +127,15 @@ class GroundRules {
     target.evidence -= cost;
   }
 
+  /// `other` turned out to be the same person.
+  void absorb(Target& target, const Target& other) const {
+    target.cameras |= other.cameras;
+    target.last_seen = std::max(target.last_seen, other.last_seen);
+    target.evidence = std::max(target.evidence, other.evidence);
+    target.confirmed = target.confirmed || other.confirmed;
+    if (!target.wears) target.wears = other.wears;
+  }
+
   /// It has not been seen for too long, or there never was anybody.
   bool lost(const Target& target, Timestamp now) const {
     if (target.cameras != 0) return false;

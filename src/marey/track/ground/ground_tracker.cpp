@@ -2,6 +2,7 @@
 
 #include "marey/core/error.h"
 #include "marey/track/ground/ground_gnn.h"
+#include "marey/track/ground/ground_mht.h"
 
 namespace marey {
 namespace {
@@ -35,8 +36,9 @@ std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& o
   check(options);
   if (views.empty()) throw Error("no camera sees the ground; calibrate one over it");
   switch (options.associate) {
-    case GroundAssociation::jpda:
     case GroundAssociation::mht:
+      return make_ground_mht(options, std::move(views));
+    case GroundAssociation::jpda:
     case GroundAssociation::gnn:
       break;
   }

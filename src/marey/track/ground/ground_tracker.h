@@ -40,6 +40,16 @@ struct GroundClaim {
   int observation = 0;  ///< index into that look's `seen`
 };
 
+/// What a tracker has decided about an instant, never to be changed.
+struct GroundDecision {
+  Timestamp now{};
+  std::span<const Track<2>> tracks = {};     ///< by id
+  std::span<const GroundClaim> claims = {};  ///< of the looks of that instant
+};
+
+/// What `step` and `claims` tell at once is the best guess of the moment. Who follows live takes that. Who records takes `decided`:
+/// mht tells it later by its window, and may by then have found out that two who met had been taken for each other; gnn and jpda
+/// decide at once, and tell the same as `step`. Each instant is decided once, in order.
 class GroundTracker {
  public:
   virtual ~GroundTracker() = default;
@@ -52,6 +62,12 @@ class GroundTracker {
 
   /// Who was seen where in the last step; only what belongs to a reported track. Valid until the next call.
   virtual std::span<const GroundClaim> claims() const = 0;
+
+  /// The instants that were decided in the last step. Valid until the next call of any kind.
+  virtual std::span<const GroundDecision> decided() = 0;
+
+  /// At the end of a recording: decides all instants that are left, and tells them. No step may follow.
+  virtual std::span<const GroundDecision> decide_all() = 0;
 
   /// Where each confirmed target is expected at `now`. Valid until the next call of any kind.
   virtual std::span<const Track<2>> expected(Timestamp now) = 0;

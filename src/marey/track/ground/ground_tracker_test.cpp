@@ -43,7 +43,7 @@ TEST_P(EveryAssociation, GivesOneIdentityAcrossCameras) {
   EXPECT_FALSE(ids.contains(0));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryAssociation, testing::Values(GroundAssociation::gnn));
+INSTANTIATE_TEST_SUITE_P(All, EveryAssociation, testing::Values(GroundAssociation::gnn, GroundAssociation::mht));
 
 TEST(GroundTracker, NamesItsAssociations) {
   EXPECT_EQ(ground_association_named("mht"), GroundAssociation::mht);
