@@ -9,7 +9,7 @@
 #include "marey/core/ground_recording.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
-#include "marey/geometry/ground_view.h"
+#include "marey/track/ground/ground_join.h"
 #include "marey/track/ground/ground_tracker.h"
 #include "marey/track/ground/ground_tracklet.h"
 
@@ -49,9 +49,9 @@ class GroundRecorder {
   };
 
   /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given anew
-  /// from 1 in the order of first appearance. `views` of the rig's cameras tell where people come into sight and leave it; without
-  /// them that is taken to be likely nowhere. Used up afterwards.
-  Joined join(const GroundJoinOptions& options = {}, std::span<const GroundView> views = {}) &&;
+  /// from 1 in the order of first appearance. `in_sight` tells where people are seen and reported: at its border they are likely to
+  /// come and go; without it, nowhere. Used up afterwards.
+  Joined join(const GroundJoinOptions& options = {}, const InSight& in_sight = {}) &&;
 
  private:
   std::vector<Timestamp> times_;

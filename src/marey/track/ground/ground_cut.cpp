@@ -1,0 +1,148 @@
+#include "marey/track/ground/ground_cut.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+namespace {
+
+constexpr double bin_seconds = 0.5;
+constexpr double lightness_counts = 0.6;  // shade changes lightness
+
+/// What was seen of the colour in half a second.
+struct Bin {
+  std::size_t first = 0, last = 0;  // samples, the second not included
+  Vector<3> colour = Vector<3>::Zero();
+};
+
+Vector<3> median(std::span<const GroundSample> samples) {
+  Vector<3> colour;
+  for (int i = 0; i < 3; ++i) {
+    std::vector<int> values;
+    for (const GroundSample& sample : samples) {
+      if (sample.has_colour()) values.push_back(sample.colour[i]);
+    }
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    colour[i] = values[values.size() / 2];
+  }
+  colour[0] *= lightness_counts;
+  return colour;
+}
+
+std::vector<Bin> bins_of(std::span<const GroundSample> samples, std::span<const Timestamp> times) {
+  std::vector<Bin> bins;
+  const Duration length = duration_from_seconds(bin_seconds);
+  for (std::size_t first = 0; first < samples.size();) {
+    const Timestamp end = times[samples[first].instant] + length;
+    std::size_t last = first;
+    bool coloured = false;
+    for (; last < samples.size() && times[samples[last].instant] < end; ++last) coloured |= samples[last].has_colour();
+    if (coloured) bins.push_back({first, last, median(samples.subspan(first, last - first))});
+    first = last;
+  }
+  return bins;
+}
+
+class Cutter {
+ public:
+  Cutter(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundCutOptions& options)
+      : samples_(samples), options_(options), bins_(bins_of(samples, times)) {}
+
+  /// The samples at which new pieces begin, in order.
+  std::vector<std::size_t> cuts() {
+    search(0, bins_.size());
+    std::sort(cuts_.begin(), cuts_.end());
+    return cuts_;
+  }
+
+ private:
+  void search(std::size_t from, std::size_t to) {
+    const std::optional<std::size_t> cut = best_cut(from, to);
+    if (!cut) return;
+    cuts_.push_back(sharpened(*cut));
+    search(from, *cut);
+    search(*cut, to);
+  }
+
+  /// The bin that begins the second of two pieces of [from, to).
+  std::optional<std::size_t> best_cut(std::size_t from, std::size_t to) const {
+    const auto fewest = static_cast<std::size_t>(options_.shortest / bin_seconds + 0.5);
+    Vector<3> all = Vector<3>::Zero();
+    for (std::size_t i = from; i < to; ++i) all += bins_[i].colour;
+    Vector<3> before = Vector<3>::Zero();
+    std::optional<std::size_t> best;
+    double best_gain = options_.surely * options_.deviation * options_.deviation;
+    for (std::size_t i = from; i + fewest < to + 1 && i < to; ++i) {
+      const auto n = static_cast<double>(i - from);
+      const auto m = static_cast<double>(to - i);
+      if (i - from >= fewest) {
+        const double apart = (before / n - (all - before) / m).norm();
+        const double gain = apart * apart * n * m / (n + m);
+        if (apart > options_.least && gain > best_gain) {
+          best_gain = gain;
+          best = i;
+        }
+      }
+      before += bins_[i].colour;
+    }
+    return best;
+  }
+
+  /// The sample nearest the true change, within the bins on either side of a cut: where what comes before looks like the bins
+  /// before.
+  std::size_t sharpened(std::size_t cut) const {
+    const Vector<3> early = bins_[cut - 1].colour;
+    const Vector<3> late = bins_[std::min(cut + 1, bins_.size() - 1)].colour;
+    double sum = 0;
+    double least = 0;
+    std::size_t best = bins_[cut - 1].first + 1;
+    for (std::size_t i = best; i < bins_[cut].last; ++i) {
+      const GroundSample& sample = samples_[i - 1];
+      if (sample.has_colour()) {
+        Vector<3> colour = sample.lab();
+        colour[0] *= lightness_counts;
+        sum += (colour - early).squaredNorm() - (colour - late).squaredNorm();
+      }
+      if (sum > least) continue;
+      least = sum;
+      best = i;
+    }
+    return best;
+  }
+
+  std::span<const GroundSample> samples_;
+  const GroundCutOptions& options_;
+  std::vector<Bin> bins_;
+  std::vector<std::size_t> cuts_;
+};
+
+}  // namespace
+
+std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                     const GroundCutOptions& options) {
+  std::vector<GroundTracklet> pieces;
+  for (GroundTracklet& tracklet : tracklets) {
+    const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
+    if (cuts.empty()) {
+      pieces.push_back(std::move(tracklet));
+      continue;
+    }
+    std::size_t from = 0;
+    for (std::size_t k = 0; k <= cuts.size(); ++k) {
+      const std::size_t to = k < cuts.size() ? cuts[k] : tracklet.samples.size();
+      if (to <= from) continue;
+      GroundTracklet piece{tracklet.track, tracklet.confirmed, {}};
+      piece.samples.assign(tracklet.samples.begin() + static_cast<std::ptrdiff_t>(from),
+                           tracklet.samples.begin() + static_cast<std::ptrdiff_t>(to));
+      pieces.push_back(std::move(piece));
+      from = to;
+    }
+  }
+  return pieces;
+}
+
+}  // namespace marey

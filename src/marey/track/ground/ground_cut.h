@@ -1,0 +1,30 @@
+// Where a track went over from one person to another, by what they wear.
+//
+// A tracker that follows by motion may come out of an encounter with the wrong person. When the two wear different colours, the
+// track shows it: the colour is one thing before and another after. A tracklet's colours, half a second at a time (the median, so
+// that one who runs through the picture does not count), are cut in two where that explains them best, as long as that explains
+// them much better (binary segmentation). What is cut is only offered to be joined otherwise: where nothing fits better, the pieces
+// join again. Cost: linear in the samples, times the logarithm of the number of cuts. Reference: Scott & Knott, "A cluster analysis
+// method for grouping means in the analysis of variance", Biometrics 30 (1974).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "marey/core/time.h"
+#include "marey/track/ground/ground_tracklet.h"
+
+namespace marey {
+
+struct GroundCutOptions {
+  double shortest = 1;   ///< s; a piece whose colour is believed lasts at least so long
+  double least = 16;     ///< by how much the colours of two pieces differ, in L*a*b*
+  double surely = 40;    ///< and how much better two colours explain what was seen than one: twice a logarithm of likelihoods
+  double deviation = 9;  ///< of one person's colour from one half second to another
+};
+
+/// The same tracklets, those in which the colour changes cut there; pieces keep the track's id. Order is kept.
+std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                     const GroundCutOptions& options = {});
+
+}  // namespace marey

@@ -1,0 +1,225 @@
+#include "marey/track/ground/ground_join.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "marey/assign/sparse_assignment.h"
+
+namespace marey {
+namespace {
+
+constexpr double end_span = 3;         // s of a tracklet that its end is judged by
+constexpr double place_strays = 0.25;  // m: what an end is off by beyond what its covariance says: half hidden, about to be lost
+constexpr double speed_strays = 0.6;   // m/s: likewise
+
+constexpr double births_inside = 5e-5;  // people who come from nowhere, per m² and s: 25 people, each lost once in a minute or so
+constexpr double births_at_border = 2e-3;
+constexpr double left_inside = 0.02;  // probability that a track ends because the person left
+constexpr double left_at_border = 0.7;
+
+constexpr double clothes_vary = 6;  // deviation of one person's colour from one stretch to another: sun, shade, another camera
+constexpr double lightness_counts = 0.6;              // of a difference in lightness beside one in colour: shade changes it
+constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
+constexpr std::size_t most_kinds = 300;
+
+Matrix<4> covariance_of(const GroundState& state) {
+  Matrix<4> P;
+  P << state.Ppp, state.Ppv, state.Ppv.transpose(), state.Pvv;
+  return P;
+}
+
+template <int N>
+double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
+  const Eigen::LLT<Matrix<N>> llt(S);
+  const Matrix<N> L = llt.matrixL();
+  const Vector<N> white = llt.matrixL().solve(residual);
+  return -0.5 * white.squaredNorm() - L.diagonal().array().log().sum() - 0.5 * N * std::log(2 * std::numbers::pi);
+}
+
+double square(double x) {
+  return x * x;
+}
+
+/// Of the difference of two colours; components weighed as they tell people apart.
+double colour_log_normal(const Appearance& a, const Appearance& b) {
+  const double variance = square(a.deviation) + square(b.deviation) + 2 * clothes_vary * clothes_vary;
+  const Vector<3> apart(lightness_counts * (a.lightness - b.lightness), a.a - b.a, a.b - b.b);
+  return -0.5 * (apart.squaredNorm() / variance + 3 * std::log(2 * std::numbers::pi * variance));
+}
+
+/// Whether somebody there may be about to be out of sight: some place a second's way around is.
+bool near_border(const GroundState& state, double direction, const InSight& in_sight) {
+  if (!in_sight) return false;
+  const Vector<2> ahead = state.place + direction * 0.7 * state.velocity;
+  for (int k = 0; k < 8; ++k) {
+    const double angle = k * std::numbers::pi / 4;
+    if (!in_sight(ahead + 1.5 * Vector<2>(std::cos(angle), std::sin(angle)))) return true;
+  }
+  return false;
+}
+
+class Chainer {
+ public:
+  Chainer(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
+          const GroundChainOptions& options)
+      : tracklets_(tracklets), times_(times), options_(options) {
+    for (const GroundTracklet& tracklet : tracklets) {
+      GroundEnd head, tail;
+      const std::vector<GroundSample>& samples = tracklet.samples;
+      head.time = times[samples.front().instant];
+      tail.time = times[samples.back().instant];
+      head.state = first_state(samples, times, options.motion, end_span);
+      tail.state = last_state(samples, times, options.motion, end_span);
+      head.at_border = near_border(head.state, -1, in_sight);
+      tail.at_border = near_border(tail.state, 1, in_sight);
+      heads_.push_back(head);
+      tails_.push_back(tail);
+    }
+  }
+
+  std::vector<std::vector<int>> chains() {
+    std::vector<std::vector<int>> chains(tracklets_.size());
+    for (std::size_t i = 0; i < chains.size(); ++i) chains[i] = {static_cast<int>(i)};
+    for (const double share : {0.05, 0.25, 1.0}) lengthen(chains, share * options_.longest_gap);
+    std::sort(chains.begin(), chains.end(), [&](const std::vector<int>& a, const std::vector<int>& b) {
+      return std::pair(heads_[a.front()].time, a.front()) < std::pair(heads_[b.front()].time, b.front());
+    });
+    return chains;
+  }
+
+ private:
+  /// Joins chains over gaps of at most `longest`.
+  void lengthen(std::vector<std::vector<int>>& chains, double longest) {
+    std::vector<GroundEnd> heads, tails;
+    std::vector<GroundColours::Seen> seen;
+    for (const std::vector<int>& members : chains) {
+      heads.push_back(heads_[members.front()]);
+      tails.push_back(tails_[members.back()]);
+      std::vector<GroundSample> all;
+      for (const int member : members) {
+        const std::vector<GroundSample>& samples = tracklets_[member].samples;
+        all.insert(all.end(), samples.begin(), samples.end());
+      }
+      heads.back().appearance = tails.back().appearance = appearance_of(all);
+      if (!heads.back().appearance) continue;
+      seen.push_back({*heads.back().appearance, seconds(tails.back().time - heads.back().time)});
+    }
+    GroundChainOptions options = options_;
+    options.longest_gap = longest;
+    merge(chains, follow(tails, heads, GroundColours(seen), options));
+  }
+
+  static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
+    std::vector<char> follows(chains.size(), 0);
+    for (const int successor : next) {
+      if (successor != GatedAssigner::nobody) follows[successor] = 1;
+    }
+    std::vector<std::vector<int>> joined;
+    for (std::size_t first = 0; first < chains.size(); ++first) {
+      if (follows[first]) continue;
+      std::vector<int> whole = chains[first];
+      for (int k = next[first]; k != GatedAssigner::nobody; k = next[k])
+        whole.insert(whole.end(), chains[k].begin(), chains[k].end());
+      joined.push_back(std::move(whole));
+    }
+    chains = std::move(joined);
+  }
+
+  std::span<const GroundTracklet> tracklets_;
+  std::span<const Timestamp> times_;
+  const GroundChainOptions& options_;
+  std::vector<GroundEnd> heads_, tails_;
+};
+
+}  // namespace
+
+GroundColours::GroundColours(std::span<const Seen> seen) : kinds_(seen.begin(), seen.end()) {
+  std::stable_sort(kinds_.begin(), kinds_.end(), [](const Seen& a, const Seen& b) { return a.seconds > b.seconds; });
+  if (kinds_.size() > most_kinds) kinds_.resize(most_kinds);
+}
+
+double GroundColours::same(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const {
+  if (!a || !b || kinds_.empty()) return 0;
+  double common = 0;
+  double all = 0;
+  for (const Seen& kind : kinds_) {
+    common += (kind.seconds + 0.1) * std::exp(colour_log_normal(kind.wears, *b));
+    all += kind.seconds + 0.1;
+  }
+  const double newcomer = std::log(std::max(common / all, 1e-12));  // of some colour that was not seen yet
+  return std::clamp(colour_log_normal(*a, *b) - newcomer, surest_apart, surest_same);
+}
+
+std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,
+                                      const GroundChainOptions& options) {
+  const double gap = seconds(head.time - tail.time);
+  if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
+  const GroundState expected = predicted(tail.state, gap, options.motion);
+  const double way = (head.state.place - tail.state.place).norm();
+  const double unsure = 3 * std::sqrt(tail.state.Ppp.trace() + head.state.Ppp.trace() + 2 * place_strays * place_strays);
+  if (way > options.max_speed * gap + unsure) return std::nullopt;
+  Vector<4> residual;
+  residual << head.state.place - expected.place, head.state.velocity - expected.velocity;
+  Matrix<4> S = covariance_of(expected) + covariance_of(head.state);
+  S.diagonal().head<2>().array() += 2 * place_strays * place_strays;
+  S.diagonal().tail<2>().array() += 2 * speed_strays * speed_strays;
+  const Matrix<2> anyhow = head.state.Pvv + options.motion.speed_variance() * Matrix<2>::Identity();
+  const double left = tail.at_border ? left_at_border : left_inside;
+  const double found_again = std::log((1 - left) / left) - 2 * std::log1p(gap);
+  const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity, anyhow);
+  return log_normal<4>(residual, S) + found_again - came + colours.same(tail.appearance, head.appearance);
+}
+
+std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
+                        const GroundChainOptions& options) {
+  std::vector<int> by_time(heads.size());
+  std::iota(by_time.begin(), by_time.end(), 0);
+  std::sort(by_time.begin(), by_time.end(),
+            [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
+  const Duration longest = duration_from_seconds(options.longest_gap);
+  std::vector<GatedPair> pairs;
+  for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
+    auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time,
+                                 [&](Timestamp time, int head) { return time < heads[head].time; });
+    for (; next != by_time.end() && heads[*next].time - tails[tail].time <= longest; ++next) {
+      const std::optional<double> gain = gain_of_joining(tails[tail], heads[*next], colours, options);
+      if (gain && *gain > 0) pairs.push_back({tail, *next, *gain});
+    }
+  }
+  return sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
+}
+
+std::vector<std::vector<int>> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                    const InSight& in_sight, const GroundChainOptions& options) {
+  return Chainer(tracklets, times, in_sight, options).chains();
+}
+
+std::optional<Appearance> appearance_of(std::span<const GroundSample> samples) {
+  std::array<std::vector<float>, 3> values;
+  double variance = 0;
+  for (const GroundSample& sample : samples) {
+    if (!sample.has_colour()) continue;
+    for (int i = 0; i < 3; ++i) values[i].push_back(static_cast<float>(sample.lab()[i]));
+    variance += static_cast<double>(sample.colour_deviation) * sample.colour_deviation;
+  }
+  const std::size_t n = values[0].size();
+  if (n == 0) return std::nullopt;
+  constexpr double alike = 8;  // neighbouring samples err alike: so many count as one
+  const auto median = [&](std::vector<float>& of) {
+    std::nth_element(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(n / 2), of.end());
+    return of[n / 2];
+  };
+  const double count = static_cast<double>(n);
+  return Appearance{.lightness = median(values[0]),
+                    .a = median(values[1]),
+                    .b = median(values[2]),
+                    .deviation = static_cast<float>(std::sqrt(variance / count / std::max(1.0, count / alike)))};
+}
+
+}  // namespace marey

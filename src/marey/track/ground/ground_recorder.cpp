@@ -1,0 +1,124 @@
+#include "marey/track/ground/ground_recorder.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "marey/track/ground/ground_cut.h"
+#include "marey/track/ground/ground_people.h"
+
+namespace marey {
+namespace {
+
+static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
+
+std::int8_t rounded(double value) {
+  return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));
+}
+
+/// The observations of one target at one instant, melted into one.
+class Melted {
+ public:
+  void add(const Observation<2>& seen, const Vector<2>& brought) {
+    const Matrix<2> weight = seen.covariance.inverse();
+    weights_ += weight;
+    places_ += weight * (seen.value + brought);
+    cameras_ |= mask_of(seen.camera);
+    score_ = std::max(score_, seen.score);
+    if (!seen.appearance) return;
+    const Appearance& wears = *seen.appearance;
+    const double certainty = 1 / (static_cast<double>(wears.deviation) * wears.deviation);
+    certainty_ += certainty;
+    colours_ += certainty * Vector<3>(wears.lightness, wears.a, wears.b);
+  }
+
+  GroundSample sample(std::int32_t instant) const {
+    const Matrix<2> covariance = weights_.inverse();
+    const Vector<2> place = covariance * places_;
+    GroundSample sample;
+    sample.instant = instant;
+    sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+    sample.covariance = {static_cast<float>(covariance(0, 0)), static_cast<float>(covariance(0, 1)),
+                         static_cast<float>(covariance(1, 1))};
+    sample.score = static_cast<float>(score_);
+    sample.cameras = cameras_;
+    if (certainty_ == 0) return sample;
+    for (int i = 0; i < 3; ++i) sample.colour[i] = rounded(colours_[i] / certainty_);
+    sample.colour_deviation = static_cast<std::uint8_t>(std::clamp(std::lround(1 / std::sqrt(certainty_)), 1L, 254L));
+    return sample;
+  }
+
+  bool empty() const { return cameras_ == 0; }
+
+ private:
+  Matrix<2> weights_ = Matrix<2>::Zero();
+  Vector<2> places_ = Vector<2>::Zero();
+  CameraMask cameras_ = 0;
+  double score_ = 0;
+  double certainty_ = 0;
+  Vector<3> colours_ = Vector<3>::Zero();
+};
+
+Melted melt(const Track<2>& track, Timestamp now, std::span<const GroundLook> looks, std::span<const GroundClaim> claims) {
+  Melted melted;
+  for (const GroundClaim& claim : claims) {
+    if (claim.track != track.id) continue;
+    const GroundLook& look = looks[claim.look];
+    melted.add(look.seen[claim.observation], seconds(now - look.time) * track.velocity);
+  }
+  return melted;
+}
+
+}  // namespace
+
+void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const GroundLook> looks,
+                         std::span<const GroundClaim> claims) {
+  assert((frames_.empty() || frame > frames_.back()) && "frames are added in order, each once");
+  const auto instant = static_cast<std::int32_t>(frames_.size());
+  frames_.push_back(frame);
+  times_.push_back(time);
+  std::vector<GroundTracklet> still_open;
+  still_open.reserve(tracks.size());
+  auto open = open_.begin();  // both lists are in the order of ids
+  const auto close = [&] {
+    if (open->confirmed && !open->samples.empty()) closed_.push_back(std::move(*open));
+    ++open;
+  };
+  for (const Track<2>& track : tracks) {
+    while (open != open_.end() && open->track < track.id) close();
+    const bool known = open != open_.end() && open->track == track.id;
+    still_open.push_back(known ? std::move(*open++) : GroundTracklet{.track = track.id, .confirmed = false, .samples = {}});
+    GroundTracklet& tracklet = still_open.back();
+    tracklet.confirmed |= track.confirmed;
+    const Melted melted = melt(track, time, looks, claims);
+    if (!melted.empty()) tracklet.samples.push_back(melted.sample(instant));
+  }
+  while (open != open_.end()) close();
+  open_ = std::move(still_open);
+}
+
+std::optional<int> GroundRecorder::Joined::person_of(TrackId track, std::int32_t frame) const {
+  const auto next =
+      std::upper_bound(pieces.begin(), pieces.end(), std::pair(track, frame),
+                       [](const auto& sought, const Piece& piece) { return sought < std::pair(piece.track, piece.first); });
+  if (next == pieces.begin() || std::prev(next)->track != track || std::prev(next)->last < frame) return std::nullopt;
+  return std::prev(next)->person;
+}
+
+GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, const InSight& in_sight) && {
+  for (GroundTracklet& open : open_) {
+    if (open.confirmed && !open.samples.empty()) closed_.push_back(std::move(open));
+  }
+  open_.clear();
+  std::sort(closed_.begin(), closed_.end(), [](const GroundTracklet& a, const GroundTracklet& b) { return a.track < b.track; });
+  const GroundMotion motion{.acceleration = options.acceleration};
+  std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
+  const std::vector<std::vector<int>> chains =
+      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = motion});
+  return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
+}
+
+}  // namespace marey

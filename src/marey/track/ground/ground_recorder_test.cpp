@@ -1,0 +1,232 @@
+#include "marey/track/ground/ground_recorder.h"
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace marey {
+namespace {
+
+constexpr Appearance white{.lightness = 90, .a = 0, .b = 0, .deviation = 5};
+constexpr Appearance blue{.lightness = 35, .a = 15, .b = -50, .deviation = 5};
+
+struct Seen {
+  int track = 0;
+  double x = 0, y = 0;
+  std::optional<Appearance> wears = {};
+  bool confirmed = true;
+  bool observed = true;
+  CameraId camera{};
+  double sigma = 0.1;
+};
+
+/// Records instants as a tracker would tell them, one look a camera.
+class Story {
+ public:
+  explicit Story(double rate = 25) : rate_(rate) {}
+
+  void instant(const std::vector<Seen>& seen, double late = 0) {
+    const Timestamp now = timestamp_from_seconds(frame_ / rate_);
+    std::map<CameraId, std::vector<Observation<2>>> observations;
+    std::vector<Track<2>> tracks;
+    std::vector<std::tuple<CameraId, int, TrackId>> claims;
+    for (const Seen& s : seen) {
+      Track<2> track;
+      track.id = TrackId{s.track};
+      track.position = Vector<2>(s.x, s.y);
+      track.velocity = Vector<2>(5, 0);
+      track.confirmed = s.confirmed;
+      if (tracks.empty() || tracks.back().id != track.id) tracks.push_back(track);
+      if (!s.observed) continue;
+      Observation<2> observation;
+      observation.value = Vector<2>(s.x, s.y);
+      observation.covariance = s.sigma * s.sigma * Matrix<2>::Identity();
+      observation.camera = s.camera;
+      observation.appearance = s.wears;
+      auto& list = observations[s.camera];
+      claims.emplace_back(s.camera, static_cast<int>(list.size()), track.id);
+      list.push_back(observation);
+    }
+    std::vector<GroundLook> looks;
+    std::map<CameraId, int> look_of;
+    for (const auto& [camera, list] : observations) {
+      look_of[camera] = static_cast<int>(looks.size());
+      looks.push_back({camera, now - duration_from_seconds(late), list});
+    }
+    std::vector<GroundClaim> told;
+    for (const auto& [camera, index, track] : claims) told.push_back({track, look_of[camera], index});
+    recorder_.add(frame_++, now, tracks, looks, told);
+  }
+
+  double now() const { return frame_ / rate_; }
+  GroundRecorder::Joined join(const GroundJoinOptions& options = {}) { return std::move(recorder_).join(options); }
+
+ private:
+  double rate_;
+  int frame_ = 0;
+  GroundRecorder recorder_;
+};
+
+TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
+  Story story;
+  for (int k = 0; k < 200; ++k) {
+    const Vector<2> place(0.1 * k, 3);
+    if (k < 80) story.instant({{.track = 4, .x = place.x(), .y = place.y()}});
+    if (k >= 80 && k < 120) story.instant({});
+    if (k >= 120) story.instant({{.track = 9, .x = place.x(), .y = place.y()}});
+  }
+  const auto joined = story.join();
+  ASSERT_EQ(joined.recording.people.size(), 1U);
+  EXPECT_EQ(joined.recording.people[0].id, 1);
+  ASSERT_EQ(joined.recording.samples.size(), 200U);
+  for (const GroundRecording::Sample& sample : joined.recording.samples) {
+    EXPECT_EQ(sample.observed, sample.frame < 80 || sample.frame >= 120);
+    EXPECT_EQ(sample.cameras, sample.observed ? 1U : 0U);
+    EXPECT_NEAR(sample.place.x(), 0.1 * sample.frame, 0.1);
+    EXPECT_NEAR(sample.velocity.x(), 2.5, 0.3);
+  }
+  EXPECT_EQ(joined.person_of(TrackId{4}, 79), 0);
+  EXPECT_EQ(joined.person_of(TrackId{9}, 120), 0);
+  EXPECT_EQ(joined.person_of(TrackId{9}, 119), std::nullopt);
+  EXPECT_EQ(joined.person_of(TrackId{5}, 79), std::nullopt);
+}
+
+TEST(GroundRecorder, SeveralCamerasBecomeOnePlaceByWhatTheyKnow) {
+  Story story;
+  for (int k = 0; k < 50; ++k) {
+    story.instant({{.track = 1, .x = 10, .y = 0, .camera = CameraId{0}, .sigma = 0.1},
+                   {.track = 1, .x = 11, .y = 0, .camera = CameraId{2}, .sigma = 0.3}});
+  }
+  const auto joined = story.join();
+  ASSERT_EQ(joined.recording.samples.size(), 50U);
+  EXPECT_EQ(joined.recording.samples[20].cameras, 0b101U);
+  EXPECT_NEAR(joined.recording.samples[20].place.x(), 10.1, 1e-3);
+}
+
+TEST(GroundRecorder, LateFramesAreBroughtToTheInstant) {
+  Story story;
+  for (int k = 0; k < 50; ++k) story.instant({{.track = 1, .x = 0.2 * k - 0.05, .y = 0}}, 0.01);  // at 5 m/s
+  const auto joined = story.join();
+  EXPECT_NEAR(joined.recording.samples[25].place.x(), 5.0, 1e-2);
+}
+
+TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
+  Story story;
+  for (int k = 0; k < 250; ++k) {
+    std::vector<Seen> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
+    if (k < 100) seen.push_back({.track = 2, .x = 50, .y = 50, .confirmed = false});
+    if (k >= 30 && k < 40) seen.push_back({.track = 3, .x = 70, .y = 50});
+    if (k > 100) seen.push_back({.track = 4, .x = 90, .y = 10, .observed = k % 20 == 0});
+    story.instant(seen);
+  }
+  const auto joined = story.join();
+  EXPECT_EQ(joined.recording.people.size(), 1U);
+  EXPECT_EQ(joined.recording.samples.size(), 250U);
+}
+
+TEST(GroundRecorder, AnEmptyOneIsAnEmptyRecording) {
+  Story nothing;
+  EXPECT_TRUE(nothing.join().recording.samples.empty());
+  Story nobody;
+  for (int k = 0; k < 10; ++k) nobody.instant({});
+  EXPECT_TRUE(nobody.join().recording.people.empty());
+}
+
+TEST(GroundRecorder, ALongGapIsJoinedButNothingIsSaidOfIt) {
+  Story story;
+  for (int k = 0; k < 400; ++k) {
+    if (k < 100 || k >= 300) {
+      story.instant({{.track = k < 100 ? 1 : 2, .x = 30, .y = 3 + 0.001 * k}});
+    } else {
+      story.instant({});
+    }
+  }
+  const auto joined = story.join();
+  EXPECT_EQ(joined.recording.people.size(), 1U);
+  EXPECT_EQ(joined.recording.samples.size(), 200U);
+}
+
+/// Two in other shirts run into each other; the tracker comes out with their names exchanged.
+TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
+  Story story;
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 250; ++k) {
+    const double t = 0.04 * k - 5;
+    const Vector<2> a(20 + 2 * t, 10 + 0.3 * t * t), b(20 - 2 * t, 10.3 - 0.3 * t * t);
+    const auto noise = [&] { return 0.1 * normal(engine); };
+    const bool swapped = k >= 125;
+    const Vector<2>& first = swapped ? b : a;
+    const Vector<2>& second = swapped ? a : b;
+    story.instant({{.track = 1, .x = first.x() + noise(), .y = first.y() + noise(), .wears = swapped ? blue : white},
+                   {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .wears = swapped ? white : blue}});
+  }
+  const auto joined = story.join();
+  ASSERT_EQ(joined.recording.people.size(), 2U);
+  ASSERT_EQ(joined.recording.samples.size(), 500U);
+  for (const GroundRecording::Sample& sample : joined.recording.samples) {
+    const double t = 0.04 * sample.frame - 5;
+    if (std::abs(t) < 0.5) continue;
+    const bool first = joined.wears[sample.person]->lightness > 60;
+    const Vector<2> truth = first ? Vector<2>(20 + 2 * t, 10 + 0.3 * t * t) : Vector<2>(20 - 2 * t, 10.3 - 0.3 * t * t);
+    EXPECT_LT((sample.place - truth).norm(), 0.5) << "frame " << sample.frame;
+  }
+  EXPECT_NE(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{1}, 249));
+}
+
+/// Twenty people who run about as people do, seen by two cameras with a tenth of looks missed: truth is known.
+TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(0, 1);
+  struct Person {
+    Vector<2> place, velocity;
+    double length = 0;
+  };
+  std::vector<Person> people;
+  for (int k = 0; k < 20; ++k) people.push_back({{5.0 * k, 40 * unit(engine)}, {0, 0}});
+  std::vector<std::vector<Person>> truth;
+  Story story;
+  for (int frame = 0; frame < 1500; ++frame) {
+    std::vector<Seen> seen;
+    for (std::size_t k = 0; k < people.size(); ++k) {
+      Person& person = people[k];
+      person.velocity = 0.99 * person.velocity + 0.3 * Vector<2>(normal(engine), normal(engine));
+      person.place += 0.04 * person.velocity;
+      person.length += 0.04 * person.velocity.norm();
+      for (int camera = 0; camera < 2; ++camera) {
+        const Vector<2> noise = 0.2 * Vector<2>(normal(engine), normal(engine));
+        seen.push_back({.track = static_cast<int>(k) + 1,
+                        .x = person.place.x() + noise.x(),
+                        .y = person.place.y() + noise.y(),
+                        .observed = unit(engine) > 0.1,
+                        .camera = CameraId{camera},
+                        .sigma = 0.2});
+      }
+    }
+    truth.push_back(people);
+    story.instant(seen);
+  }
+  const auto joined = story.join();
+  ASSERT_EQ(joined.recording.people.size(), 20U);
+  double place = 0, speed = 0;
+  std::map<int, double> length;
+  std::map<int, Vector<2>> last;
+  for (const GroundRecording::Sample& sample : joined.recording.samples) {
+    const Person& person = truth[sample.frame][*joined.person_of(TrackId{sample.person + 1}, sample.frame)];
+    place += (sample.place - person.place).squaredNorm();
+    speed += std::pow(sample.velocity.norm() - person.velocity.norm(), 2);
+    if (last.contains(sample.person)) length[sample.person] += (sample.place - last[sample.person]).norm();
+    last[sample.person] = sample.place;
+  }
+  const auto n = static_cast<double>(joined.recording.samples.size());
+  EXPECT_LT(std::sqrt(place / n), 0.12);
+  EXPECT_LT(std::sqrt(speed / n), 0.45) << "these people's velocities are rough";
+  for (const auto& [person, way] : length) EXPECT_NEAR(way / truth.back()[person].length, 1, 0.03);
+}
+
+}  // namespace
+}  // namespace marey

@@ -1,0 +1,145 @@
+#include "marey/track/ground/ground_smooth.h"
+
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace marey {
+namespace {
+
+struct Scene {
+  std::vector<GroundSample> samples;
+  std::vector<Timestamp> times;
+};
+
+GroundSample sample(int instant, const Vector<2>& place, double xx, double xy, double yy) {
+  GroundSample sample;
+  sample.instant = instant;
+  sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+  sample.covariance = {static_cast<float>(xx), static_cast<float>(xy), static_cast<float>(yy)};
+  sample.cameras = 1;
+  return sample;
+}
+
+/// A way with instants at uneven times, not all of them seen, each with another covariance.
+Scene random_scene(std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::normal_distribution<double> normal;
+  Scene scene;
+  double time = 0;
+  Vector<2> place(10, 20);
+  Vector<2> velocity(3, -1);
+  for (int k = 0; k < 60; ++k) {
+    const double dt = unit(engine) < 0.1 ? 2e-3 : 0.02 + unit(engine);
+    time += dt;
+    velocity += Vector<2>(normal(engine), normal(engine));
+    place += dt * velocity;
+    scene.times.push_back(timestamp_from_seconds(time));
+    if (k > 0 && unit(engine) < 0.3) continue;
+    const double xx = 0.01 + unit(engine), yy = 0.01 + unit(engine);
+    const double xy = 0.8 * (2 * unit(engine) - 1) * std::sqrt(xx * yy);
+    scene.samples.push_back(sample(k, place + 0.3 * Vector<2>(normal(engine), normal(engine)), xx, xy, yy));
+  }
+  return scene;
+}
+
+/// All places and velocities in one least-squares problem, solved densely: the same answer, without a filter.
+std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
+  const auto n = static_cast<Eigen::Index>(scene.samples.size());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4 * n, 4 * n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(4 * n);
+  const double tau = motion.settling, q = motion.acceleration * motion.acceleration;
+  A.block<2, 2>(2, 2) += Matrix<2>::Identity() / motion.speed_variance();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const GroundSample& seen = scene.samples[i];
+    const Matrix<2> W = seen.spread().inverse();
+    A.block<2, 2>(4 * i, 4 * i) += W;
+    b.segment<2>(4 * i) += W * seen.at();
+    if (i == 0) continue;
+    const double dt = seconds(scene.times[seen.instant] - scene.times[scene.samples[i - 1].instant]);
+    // Q by integrating the noise in many small steps, not by its closed form.
+    Matrix<2> Q = Matrix<2>::Zero();
+    constexpr int steps = 4000;
+    for (int k = 0; k < steps; ++k) {
+      const double left = dt * (k + 0.5) / steps;
+      const Vector<2> reached(tau * (1 - std::exp(-left / tau)), std::exp(-left / tau));
+      Q += q * dt / steps * reached * reached.transpose();
+    }
+    const double a = std::exp(-dt / tau);
+    Eigen::Matrix<double, 2, 4> difference;
+    difference << -1, -tau * (1 - a), 1, 0, 0, -a, 0, 1;
+    const Matrix<4> link = difference.transpose() * Q.inverse() * difference;
+    for (int axis = 0; axis < 2; ++axis) {
+      const std::array<Eigen::Index, 4> at = {4 * (i - 1) + axis, 4 * (i - 1) + 2 + axis, 4 * i + axis, 4 * i + 2 + axis};
+      for (int r = 0; r < 4; ++r) {
+        for (int c = 0; c < 4; ++c) A(at[r], at[c]) += link(r, c);
+      }
+    }
+  }
+  const Eigen::VectorXd x = A.fullPivLu().solve(b);
+  std::vector<GroundMoment> moments(static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    moments[i].place = x.segment<2>(4 * i);
+    moments[i].velocity = x.segment<2>(4 * i + 2);
+  }
+  return moments;
+}
+
+TEST(GroundSmooth, IsTheLeastSquaresPath) {
+  const GroundMotion motion;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Scene scene = random_scene(seed);
+    const auto path = smooth_ground(scene.samples, scene.times, motion, 1);
+    const auto expected = twin(scene, motion);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      // The first place is not quite unknown to the filter; the dense twin knows nothing.
+      EXPECT_NEAR((path[i].place - expected[i].place).norm(), 0, 1e-3) << "seed " << seed << ", sample " << i;
+      EXPECT_NEAR((path[i].velocity - expected[i].velocity).norm(), 0, 1e-3) << "seed " << seed << ", sample " << i;
+    }
+  }
+}
+
+TEST(GroundSmooth, BetweenTwoMomentsIsWhereTheSmootherPutsWhatIsHardlySeen) {
+  const GroundMotion motion;
+  Scene scene = random_scene(7);
+  const std::size_t middle = 20;
+  scene.samples[middle].covariance = {1e6F, 0, 1e6F};
+  const auto path = smooth_ground(scene.samples, scene.times, motion, 1);
+  const auto time = [&](std::size_t i) { return scene.times[scene.samples[i].instant]; };
+  const GroundMoment moment = between(path[middle - 1], seconds(time(middle) - time(middle - 1)), path[middle + 1],
+                                      seconds(time(middle + 1) - time(middle)), motion);
+  EXPECT_NEAR((moment.place - path[middle].place).norm(), 0, 1e-3);
+  EXPECT_NEAR((moment.velocity - path[middle].velocity).norm(), 0, 1e-3);
+}
+
+TEST(GroundSmooth, EndsAreWhatTheSmootherSaysOfThem) {
+  const GroundMotion motion;
+  const Scene scene = random_scene(3);
+  const auto path = smooth_ground(scene.samples, scene.times, motion);
+  const GroundState first = first_state(scene.samples, scene.times, motion, 1e6);
+  const GroundState last = last_state(scene.samples, scene.times, motion, 1e6);
+  EXPECT_NEAR((first.place - path.front().place).norm(), 0, 0.02);
+  EXPECT_NEAR((first.velocity - path.front().velocity).norm(), 0, 0.02);
+  EXPECT_NEAR((last.place - path.back().place).norm(), 0, 0.02);
+  EXPECT_NEAR((last.velocity - path.back().velocity).norm(), 0, 0.02);
+}
+
+TEST(GroundSmooth, WhatDoesNotFitCountsLess) {
+  Scene scene;
+  for (int k = 0; k < 100; ++k) {
+    scene.times.push_back(timestamp_from_seconds(0.04 * k));
+    const bool wrong = k >= 50 && k < 53;
+    scene.samples.push_back(sample(k, Vector<2>(0.2 * k, wrong ? 3.0 : 0.0), 0.01, 0, 0.01));
+  }
+  const auto once = smooth_ground(scene.samples, scene.times, {}, 1);
+  const auto path = smooth_ground(scene.samples, scene.times, {}, 4);
+  EXPECT_GT(std::abs(once[51].place.y()), 0.5);
+  EXPECT_LT(std::abs(path[51].place.y()), 0.15);
+  EXPECT_LT(path[51].fit, 0.1);
+  EXPECT_GT(path[20].fit, 1);
+}
+
+}  // namespace
+}  // namespace marey
