@@ -13,6 +13,7 @@
 #include "marey/format/mot.h"
 
 #include "commands.h"
+#include "evaluate_ground.h"
 
 namespace marey::cli {
 namespace {
@@ -21,6 +22,7 @@ struct EvaluateOptions {
   std::string truth;
   std::string tracks;
   double iou = 0.5;
+  std::optional<double> distance;
   bool motchallenge = false;
   bool json = false;
 };
@@ -136,6 +138,7 @@ void print_table(const Evaluation& result, double iou) {
 
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw Error("only one of --truth and --tracks can be standard input");
+  if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json);
   MotTable truth = read_mot(options.truth, MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const MotTable tracks = read_mot(options.tracks, MotKind::tracks);
@@ -155,19 +158,30 @@ void run(const EvaluateOptions& options) {
 void add_evaluate(CLI::App& app) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = app.add_subcommand("evaluate", "Judge tracks against the truth");
-  command->add_option("--truth", options->truth, "the truth, MOTChallenge text; - for standard input")->required();
-  command->add_option("--tracks", options->tracks, "the tracks to judge, MOTChallenge text; - for standard input")->required();
-  command->add_option("--iou", options->iou, "overlap (IoU) from which a box counts as found, above 0 and up to 1")
-      ->capture_default_str()
-      ->check(CLI::Validator(
-          [](std::string& text) -> std::string {
-            double value = 0;
-            const bool valid = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
-            return valid ? "" : "\"" + text + "\" is no overlap; it must be above 0 and at most 1";
-          },
-          "0..1"));
-  command->add_flag("--motchallenge", options->motchallenge,
-                    "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
+  command
+      ->add_option("--truth", options->truth,
+                   "the truth, MOTChallenge text (with --distance, places on the ground); - for standard input")
+      ->required();
+  command->add_option("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input")->required();
+  CLI::Option* iou =
+      command->add_option("--iou", options->iou, "overlap (IoU) from which a box counts as found, above 0 and up to 1")
+          ->capture_default_str()
+          ->check(CLI::Validator(
+              [](std::string& text) -> std::string {
+                double value = 0;
+                const bool valid = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
+                return valid ? "" : "\"" + text + "\" is no overlap; it must be above 0 and at most 1";
+              },
+              "0..1"));
+  CLI::Option* motchallenge =
+      command->add_flag("--motchallenge", options->motchallenge,
+                        "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
+  command
+      ->add_option("--distance", options->distance,
+                   "judge places on the ground (CSV with frame,time,id,x,y): from how near someone counts as found, m")
+      ->check(CLI::Range(1e-6, 1e3))
+      ->excludes(iou)
+      ->excludes(motchallenge);
   command->add_flag("--json", options->json, "print all figures as JSON, shares between 0 and 1");
   command->callback([options] { run(*options); });
 }

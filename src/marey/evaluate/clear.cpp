@@ -12,17 +12,17 @@
 
 namespace marey {
 
-void ClearCounter::add(const FrameWalk& frame) {
-  row_matched_.assign(frame.objects().size(), 0);
+void ClearCounter::add(const FramePairs& frame) {
+  column_of_row_.assign(frame.objects().size(), LinearAssigner::nobody);
   column_matched_.assign(frame.tracks().size(), 0);
-  if (!frame.overlaps().empty()) {
+  if (frame.has_both()) {
     keep_last_matches(frame);
     match_the_rest(frame);
   }
   count_unmatched(frame);
 }
 
-void ClearCounter::keep_last_matches(const FrameWalk& frame) {
+void ClearCounter::keep_last_matches(const FramePairs& frame) {
   const auto tracks = frame.tracks();
   for (std::size_t column = 0; column < tracks.size(); ++column) column_of_track_[tracks[column]] = static_cast<int>(column);
   for (std::size_t row = 0; row < frame.objects().size(); ++row) {
@@ -30,65 +30,68 @@ void ClearCounter::keep_last_matches(const FrameWalk& frame) {
     if (track == LinearAssigner::nobody) continue;
     const int column = column_of_track_[track];
     if (column == LinearAssigner::nobody || column_matched_[column]) continue;
-    if (close_enough(1 - frame.overlaps_of(row)[column])) match(frame, row, column);
+    if (close_enough(frame.distances_of(row)[column])) match(frame, row, column);
   }
   for (const int track : tracks) column_of_track_[track] = LinearAssigner::nobody;
 }
 
-void ClearCounter::match_the_rest(const FrameWalk& frame) {
+void ClearCounter::match_the_rest(const FramePairs& frame) {
   if (!fill_costs(frame)) return;
   const int rows = static_cast<int>(frame.objects().size());
   const int columns = static_cast<int>(frame.tracks().size());
-  const auto column_of_row = assigner_.assign(rows, columns, costs_);
+  const auto assigned = assigner_.assign(rows, columns, costs_);
   for (int row = 0; row < rows; ++row) {
-    const int column = column_of_row[row];
-    if (column == LinearAssigner::nobody || row_matched_[row] || column_matched_[column]) continue;
-    if (close_enough(1 - frame.overlaps_of(row)[column])) match(frame, row, column);
+    const int column = assigned[row];
+    if (column == LinearAssigner::nobody || column_of_row_[row] != LinearAssigner::nobody || column_matched_[column]) continue;
+    if (close_enough(frame.distances_of(row)[column])) match(frame, row, column);
   }
 }
 
 /// Distances of the pairs that are left, and for every other pair a cost so high that it is chosen only where nothing else is:
 /// the most pairs come before the least distance. False where no pair is left.
-bool ClearCounter::fill_costs(const FrameWalk& frame) {
+bool ClearCounter::fill_costs(const FramePairs& frame) {
   constexpr double forbidden = std::numeric_limits<double>::infinity();
-  costs_.assign(frame.overlaps().size(), forbidden);
+  costs_.assign(frame.objects().size() * frame.tracks().size(), forbidden);
   const std::size_t columns = frame.tracks().size();
   double largest = -1;
-  for (std::size_t row = 0; row < row_matched_.size(); ++row) {
-    if (row_matched_[row]) continue;
-    const auto overlaps = frame.overlaps_of(row);
+  for (std::size_t row = 0; row < column_of_row_.size(); ++row) {
+    if (column_of_row_[row] != LinearAssigner::nobody) continue;
+    const auto distances = frame.distances_of(row);
     for (std::size_t column = 0; column < columns; ++column) {
-      const double distance = 1 - overlaps[column];
+      const double distance = distances[column];
       if (column_matched_[column] || !close_enough(distance)) continue;
       costs_[row * columns + column] = distance;
       largest = std::max(largest, std::abs(distance));
     }
   }
   if (largest < 0) return false;
-  const double most_pairs = static_cast<double>(std::min(row_matched_.size(), columns));
+  const double most_pairs = static_cast<double>(std::min(column_of_row_.size(), columns));
   std::replace(costs_.begin(), costs_.end(), forbidden, 2 * most_pairs * (largest + 1) + 1);
   return true;
 }
 
-void ClearCounter::match(const FrameWalk& frame, std::size_t row, std::size_t column) {
-  row_matched_[row] = 1;
+void ClearCounter::match(const FramePairs& frame, std::size_t row, std::size_t column) {
+  column_of_row_[row] = static_cast<int>(column);
   column_matched_[column] = 1;
   Object& object = objects_[frame.objects()[row]];
   const int track = frame.tracks()[column];
-  if (object.track != LinearAssigner::nobody && object.track != track) ++counts_.switches;
+  if (object.track != LinearAssigner::nobody && object.track != track) {
+    ++counts_.switches;
+    ++object.switches;
+  }
   if (object.lost) ++counts_.fragmentations;
   object.track = track;
   object.lost = false;
   ++object.found;
   ++counts_.matches;
-  total_distance_ += 1 - frame.overlaps_of(row)[column];
+  total_distance_ += frame.distances_of(row)[column];
 }
 
-void ClearCounter::count_unmatched(const FrameWalk& frame) {
-  for (std::size_t row = 0; row < row_matched_.size(); ++row) {
+void ClearCounter::count_unmatched(const FramePairs& frame) {
+  for (std::size_t row = 0; row < column_of_row_.size(); ++row) {
     Object& object = objects_[frame.objects()[row]];
     ++object.frames;
-    if (row_matched_[row]) continue;
+    if (column_of_row_[row] != LinearAssigner::nobody) continue;
     object.lost = object.found > 0;
     ++counts_.misses;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "marey/assign/linear_assignment.h"
@@ -11,30 +12,38 @@ namespace marey {
 /// Counts CLEAR-MOT events frame by frame.
 class ClearCounter {
  public:
-  ClearCounter(int objects, int tracks, double least_overlap)
-      : most_distance_(1 - least_overlap), objects_(objects), column_of_track_(tracks, LinearAssigner::nobody) {}
+  /// What lies farther than `most_distance` is no match.
+  ClearCounter(int objects, int tracks, double most_distance)
+      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, LinearAssigner::nobody) {}
 
-  void add(const FrameWalk& frame);
+  void add(const FramePairs& frame);
   ClearScores scores() const;
 
- private:
+  /// What became of one object.
   struct Object {
     int track = LinearAssigner::nobody;  ///< its last match
     std::int64_t frames = 0;
     std::int64_t found = 0;
+    std::int64_t switches = 0;
     bool lost = false;  ///< found before, and missed since
   };
+  const std::vector<Object>& objects() const { return objects_; }
+  /// Of the frame added last: each row's column, or LinearAssigner::nobody.
+  std::span<const int> column_of_row() const { return column_of_row_; }
+
+ private:
   bool close_enough(double distance) const { return !(distance > most_distance_); }
-  void keep_last_matches(const FrameWalk& frame);
-  void match_the_rest(const FrameWalk& frame);
-  bool fill_costs(const FrameWalk& frame);
-  void match(const FrameWalk& frame, std::size_t row, std::size_t column);
-  void count_unmatched(const FrameWalk& frame);
+  void keep_last_matches(const FramePairs& frame);
+  void match_the_rest(const FramePairs& frame);
+  bool fill_costs(const FramePairs& frame);
+  void match(const FramePairs& frame, std::size_t row, std::size_t column);
+  void count_unmatched(const FramePairs& frame);
 
   double most_distance_;
   std::vector<Object> objects_;
   std::vector<int> column_of_track_;  // in the frame at hand
-  std::vector<char> row_matched_, column_matched_;
+  std::vector<int> column_of_row_;
+  std::vector<char> column_matched_;
   std::vector<double> costs_;
   LinearAssigner assigner_;
   ClearScores counts_;

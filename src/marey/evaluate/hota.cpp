@@ -23,13 +23,13 @@ int levels_reached(double overlap) {
 
 }  // namespace
 
-void HotaCounter::see(const FrameWalk& frame) {
+void HotaCounter::see(const FramePairs& frame) {
   for (const int object : frame.objects()) ++object_frames_[object];
   for (const int track : frame.tracks()) ++track_frames_[track];
   row_sums_.assign(frame.objects().size(), 0);
   column_sums_.assign(frame.tracks().size(), 0);
   for (std::size_t row = 0; row < row_sums_.size(); ++row) {
-    const auto overlaps = frame.overlaps_of(row);
+    const auto overlaps = frame.similarities_of(row);
     for (std::size_t column = 0; column < overlaps.size(); ++column) {
       row_sums_[row] += overlaps[column];
       column_sums_[column] += overlaps[column];
@@ -37,7 +37,7 @@ void HotaCounter::see(const FrameWalk& frame) {
   }
   for (std::size_t row = 0; row < row_sums_.size(); ++row) {
     if (row_sums_[row] <= 0) continue;
-    const auto overlaps = frame.overlaps_of(row);
+    const auto overlaps = frame.similarities_of(row);
     for (std::size_t column = 0; column < overlaps.size(); ++column) {
       const double all = row_sums_[row] + column_sums_[column] - overlaps[column];
       if (overlaps[column] <= 0 || all <= epsilon) continue;
@@ -52,12 +52,12 @@ void HotaCounter::align() {
   }
 }
 
-void HotaCounter::match(const FrameWalk& frame) {
-  costs_.assign(frame.overlaps().size(), 0);
+void HotaCounter::match(const FramePairs& frame) {
+  costs_.assign(frame.objects().size() * frame.tracks().size(), 0);
   const std::size_t columns = frame.tracks().size();
   bool any = false;
   for (std::size_t row = 0; row < frame.objects().size(); ++row) {
-    const auto overlaps = frame.overlaps_of(row);
+    const auto overlaps = frame.similarities_of(row);
     for (std::size_t column = 0; column < columns; ++column) {
       if (overlaps[column] <= 0) continue;
       costs_[row * columns + column] = -pairs_.at(frame.objects()[row], frame.tracks()[column]).alignment * overlaps[column];
@@ -68,7 +68,7 @@ void HotaCounter::match(const FrameWalk& frame) {
   const auto column_of_row = assigner_.assign(static_cast<int>(frame.objects().size()), static_cast<int>(columns), costs_);
   for (std::size_t row = 0; row < column_of_row.size(); ++row) {
     if (column_of_row[row] == LinearAssigner::nobody) continue;
-    const double overlap = frame.overlaps_of(row)[column_of_row[row]];
+    const double overlap = frame.similarities_of(row)[column_of_row[row]];
     const int level = levels_reached(overlap);
     if (level == 0) continue;
     ++pairs_.at(frame.objects()[row], frame.tracks()[column_of_row[row]]).at_level[level];

@@ -16,9 +16,9 @@ class HotaCounter {
   /// `pairs` is shared with whoever else counts by pairs of ids, and outlives this.
   HotaCounter(int objects, int tracks, PairTable& pairs) : pairs_(pairs), object_frames_(objects), track_frames_(tracks) {}
 
-  void see(const FrameWalk& frame);
+  void see(const FramePairs& frame);
   void align();
-  void match(const FrameWalk& frame);
+  void match(const FramePairs& frame);
   HotaScores scores() const;
 
  private:

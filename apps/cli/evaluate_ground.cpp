@@ -1,0 +1,173 @@
+#include "evaluate_ground.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/ground_file.h"
+#include "marey/pipeline/judge_match.h"
+
+namespace marey::cli {
+namespace {
+
+nlohmann::json or_null(std::optional<double> value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+std::string percent(std::optional<double> share) {
+  return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
+}
+
+void add_spread(nlohmann::json& json, const char* name, const char* unit, const std::optional<ErrorSpread>& spread) {
+  const auto key = [&](const char* which) { return fmt::format("{}_{}_{}", name, which, unit); };
+  json[key("rms")] = spread ? nlohmann::json(spread->rms) : nlohmann::json();
+  json[key("median")] = spread ? nlohmann::json(spread->median) : nlohmann::json();
+  json[key("p95")] = spread ? nlohmann::json(spread->p95) : nlohmann::json();
+}
+
+std::optional<double> share_kept(const std::vector<PersonFate>& people) {
+  if (people.empty()) return std::nullopt;
+  const auto kept = std::count_if(people.begin(), people.end(), [](const PersonFate& person) { return person.kept(); });
+  return static_cast<double>(kept) / static_cast<double>(people.size());
+}
+
+/// Of the reported places, those where nobody is.
+std::optional<double> share_false(const ClearScores& clear) {
+  if (!clear.precision) return std::nullopt;
+  return 1 - *clear.precision;
+}
+
+nlohmann::json people_json(const MatchJudgement& judgement) {
+  std::map<int, WayLengths> ways;
+  for (const WayLengths& way : judgement.ways) ways[way.id] = way;
+  nlohmann::json people = nlohmann::json::array();
+  for (const PersonFate& person : judgement.evaluation.people) {
+    nlohmann::json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
+                         {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
+                         {"kept", person.kept()}};
+    if (person.track) entry["track"] = *person.track;
+    if (const auto way = ways.find(person.id); way != ways.end()) {
+      entry["true_distance_m"] = way->second.true_m;
+      entry["track_distance_m"] = way->second.track_m;
+    }
+    people.push_back(std::move(entry));
+  }
+  return people;
+}
+
+nlohmann::json as_json(const MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
+  const Evaluation& scores = judgement.evaluation.scores;
+  const ClearScores& clear = scores.clear;
+  nlohmann::json json{{"distance", distance},
+                      {"paired_by", judgement.by_time ? "time" : "frame"},
+                      {"frames", scores.frames},
+                      {"common_frames", scores.common_frames},
+                      {"objects", scores.objects},
+                      {"tracks", scores.tracks},
+                      {"true_places", scores.true_boxes},
+                      {"track_places", scores.track_boxes},
+                      {"matches", clear.matches},
+                      {"found", or_null(clear.recall)},
+                      {"false", or_null(share_false(clear))},
+                      {"mota", or_null(clear.mota)},
+                      {"motp", or_null(clear.motp)},
+                      {"recall", or_null(clear.recall)},
+                      {"precision", or_null(clear.precision)},
+                      {"fp", clear.false_positives},
+                      {"fn", clear.misses},
+                      {"idsw", clear.switches},
+                      {"frag", clear.fragmentations},
+                      {"mt", clear.mostly_tracked},
+                      {"pt", clear.partially_tracked},
+                      {"ml", clear.mostly_lost},
+                      {"idf1", or_null(scores.identity.f1)},
+                      {"idp", or_null(scores.identity.precision)},
+                      {"idr", or_null(scores.identity.recall)},
+                      {"hota", scores.hota.hota},
+                      {"deta", scores.hota.detection},
+                      {"assa", scores.hota.association},
+                      {"loca", scores.hota.localisation},
+                      {"kept", or_null(share_kept(judgement.evaluation.people))},
+                      {"distance_error", or_null(judgement.distance_error)},
+                      {"people", people_json(judgement)},
+                      {"warnings", warnings}};
+  add_spread(json, "position", "m", judgement.evaluation.position);
+  const bool speed = judgement.has_speed;
+  add_spread(json, "speed", "mps", speed ? judgement.evaluation.speed : std::nullopt);
+  add_spread(json, "velocity", "mps", speed ? judgement.evaluation.velocity : std::nullopt);
+  return json;
+}
+
+void print_row(const char* name, const std::string& value, const char* meaning) {
+  fmt::print("  {:<9} {:>24}   {}\n", name, value, meaning);
+}
+
+std::string words_of(const std::optional<ErrorSpread>& spread) {
+  return spread ? fmt::format("{:.3f} / {:.3f} / {:.3f}", spread->rms, spread->median, spread->p95) : "none";
+}
+
+void print_table(const MatchJudgement& judgement, double distance) {
+  const Evaluation& scores = judgement.evaluation.scores;
+  const ClearScores& clear = scores.clear;
+  fmt::print("{} instants; truth: {} people, {} places; tracks: {}, {} places. Someone counts as found within {} m.\n\n",
+             scores.frames, scores.objects, scores.true_boxes, scores.tracks, scores.track_boxes, distance);
+  fmt::print("Finding\n");
+  print_row("found", percent(clear.recall), fmt::format("of the true places; {} missed", clear.misses).c_str());
+  print_row("false", percent(share_false(clear)),
+            fmt::format("of the reported places: {} where nobody is", clear.false_positives).c_str());
+  print_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true places");
+  fmt::print("Naming\n");
+  print_row("kept", percent(share_kept(judgement.evaluation.people)),
+            "of the people: one track in 80 % of their instants and no switch");
+  print_row("IDSW", fmt::format("{}", clear.switches), "times a person's track became another one");
+  print_row("IDF1", percent(scores.identity.f1), "places that bear the right name throughout, of both files' places");
+  print_row("IDP, IDR", percent(scores.identity.precision) + ", " + percent(scores.identity.recall),
+            "the same, of the reported places and of the true ones");
+  print_row("HOTA", percent(scores.hota.hota), "finding and naming weighed alike");
+  fmt::print("Measuring: root mean square / median / 95 % of the errors\n");
+  print_row("position", words_of(judgement.evaluation.position), "m");
+  print_row("speed", judgement.has_speed ? words_of(judgement.evaluation.speed) : "none", "m/s");
+  print_row("velocity", judgement.has_speed ? words_of(judgement.evaluation.velocity) : "none", "m/s, its direction too");
+  print_row("distance", percent(judgement.distance_error), "by which the ways that people ran come out wrong, of their length");
+}
+
+/// What a user should know before believing the figures.
+std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const GroundRecording& truth,
+                                const GroundRecording& tracks, const MatchJudgement& judgement) {
+  std::vector<std::string> sentences = judgement.warnings;
+  if (truth.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
+  if (tracks.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
+  if (truth.samples.empty() || tracks.samples.empty()) return sentences;
+  if (judgement.evaluation.scores.common_frames == 0) sentences.push_back("truth and tracks have no instant in common");
+  const double earlier = truth.samples.front().time - tracks.samples.front().time;
+  const double later = tracks.samples.back().time - truth.samples.back().time;
+  constexpr double much = 0.5;
+  if (earlier > much || later > much)
+    sentences.push_back(fmt::format("the tracks ({:.2f} to {:.2f} s) go beyond the truth ({:.2f} to {:.2f} s)",
+                                    tracks.samples.front().time, tracks.samples.back().time, truth.samples.front().time,
+                                    truth.samples.back().time));
+  return sentences;
+}
+
+}  // namespace
+
+void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
+  const GroundRecording truth = read_ground(truth_name), tracks = read_ground(tracks_name);
+  const MatchJudgement judgement = judge_match(truth, tracks, distance);
+  const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
+  for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (json) {
+    fmt::print("{}\n", as_json(judgement, distance, warnings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    print_table(judgement, distance);
+  }
+  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/evaluate/evaluation.h"
+#include "marey/geometry/vector.h"
+
+namespace marey {
+
+/// Where someone was at one instant.
+struct PersonPlace {
+  std::int32_t frame = 0;
+  std::int32_t id = 0;
+  Vector<2> place = Vector<2>::Zero();     ///< m
+  Vector<2> velocity = Vector<2>::Zero();  ///< m/s
+};
+
+/// What became of one true person.
+struct PersonFate {
+  int id = 0;
+  std::optional<int> track;  ///< the one that the identity scores give them for good
+  std::int64_t frames = 0;
+  std::int64_t found = 0;     ///< frames in which some track was near
+  std::int64_t agreeing = 0;  ///< frames in which their own track was
+  std::int64_t switches = 0;
+  /// Whether the identity stays right: no switch, and their own track finds them in at least 80 % of their frames.
+  bool kept() const { return track && switches == 0 && 5 * agreeing >= 4 * frames; }
+};
+
+/// Root mean square, median and 95th percentile of an error's amount.
+struct ErrorSpread {
+  double rms = 0, median = 0, p95 = 0;
+};
+
+/// Everything that `marey evaluate --distance` tells of places.
+struct GroundEvaluation {
+  Evaluation scores;  ///< as of boxes, with places for boxes; MOTP is a mean distance, m
+  std::vector<PersonFate> people;
+  /// Over CLEAR's matches; none without.
+  std::optional<ErrorSpread> position;  ///< m
+  std::optional<ErrorSpread> speed;     ///< of the amount of the velocity, m/s
+  std::optional<ErrorSpread> velocity;  ///< of the difference of the velocities, m/s
+};
+
+/// Judges places by their distance: up to `farthest` m they may match, and for HOTA the similarity is 1 − distance / farthest.
+/// Both are ordered by frame, and an id stands once a frame. Cost as of `evaluate`.
+GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<const PersonPlace> tracks, double farthest);
+
+}  // namespace marey

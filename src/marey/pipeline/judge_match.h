@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/ground_recording.h"
+#include "marey/evaluate/ground_evaluation.h"
+
+namespace marey {
+
+/// How far a person went by the truth and by the track that is theirs, over the instants that both have. Ways are smoothed alike.
+struct WayLengths {
+  int id = 0;
+  double true_m = 0, track_m = 0;
+};
+
+/// Tracks on the ground against the truth.
+struct MatchJudgement {
+  GroundEvaluation evaluation;
+  std::vector<WayLengths> ways;          ///< of the people with a track; none where the instants are too far apart to add up ways
+  std::optional<double> distance_error;  ///< differences of the lengths by amount, over the true lengths: a share
+  bool by_time = false;                  ///< instants were paired by time, not by frame number
+  bool has_speed = false;                ///< whether the speeds of both sides are known
+  std::vector<std::string> warnings;     ///< one sentence each
+};
+
+/// Pairs the instants of both and judges the tracks. Instants go together by frame number where frames mean the same time in both,
+/// else by time, the nearest within half a period; where one file has instants more often, the other's instants alone are judged. A
+/// side without velocities gets them from its smoothed ways.
+MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& tracks, double farthest);
+
+}  // namespace marey
