@@ -5,12 +5,27 @@
 #include <functional>
 #include <vector>
 
-#include "marey/simulate/random.h"
+#include "marey/filter/random_stream.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::ground_scene {
 
 constexpr double rate = 25;  // Hz
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : stream_(seed) {}
+
+  double uniform(double low, double high) { return low + (high - low) * stream_.uniform(); }
+  bool chance(double probability) { return stream_.uniform() < probability; }
+  Vector<2> gaussian(double sigma) {
+    const auto [x, y] = stream_.normal_pair();
+    return {sigma * x, sigma * y};
+  }
+
+ private:
+  RandomStream stream_;
+};
 
 /// A camera that sees the ground within a rectangle, 10 px a metre, its picture's top at greater y. It is nearer to small y.
 inline GroundView view_of(double left, double right, double bottom, double top) {

@@ -30,8 +30,7 @@ TEST_P(EveryAssociation, GivesOneIdentityAcrossCameras) {
         const Vector<2> place(5 + 0.18 * frame, 30);
         for (int c = 0; c < 2; ++c) {
           const bool sees = c == 0 ? place.x() < 60 : place.x() > 40;
-          const Vector<2> noise(random.gaussian(0, 0.15), random.gaussian(0, 0.15));
-          if (sees && !random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, place + noise));
+          if (sees && !random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, place + random.gaussian(0.15)));
         }
       },
       [&](int frame, std::span<const Track<2>> tracks) {

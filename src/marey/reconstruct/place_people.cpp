@@ -1,0 +1,162 @@
+#include "marey/reconstruct/place_people.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+
+namespace marey {
+namespace {
+
+constexpr double at_border = 1.5;     // px: a box that comes this near to the picture's border is cut by it
+constexpr double inconsistent = 9;    // squared standard deviations by which foot and head contradict each other
+constexpr double group_across = 0.3;  // of its width: where in a shared region one of its people stands, standard deviation
+constexpr double group_along = 0.15;  // of its height
+
+struct Placement {
+  Vector<2> place = Vector<2>::Zero();
+  Matrix<2> covariance = Matrix<2>::Identity();
+};
+
+/// Which edges of a box the picture's border cuts.
+struct Cut {
+  bool side = false, top = false, bottom = false;
+};
+
+class Placer {
+ public:
+  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options)
+      : detections_(detections), view_(view), options_(options) {}
+
+  std::optional<Placement> place(std::size_t index) const {
+    const Detection& one = detections_[index];
+    if (one.box.empty()) return std::nullopt;
+    const Cut cut = cut_of(one.box);
+    const auto foot = by_foot(one, cut);
+    const Camera* camera = view_.camera();
+    if (camera == nullptr || cut.top || one.group) return foot;
+    if (cut.bottom) {
+      const auto head = by_head(*camera, one, cut);
+      return head ? head : foot;
+    }
+    if (!foot) return std::nullopt;
+    return joined(*camera, *foot, index, cut);
+  }
+
+ private:
+  Cut cut_of(const Box& box) const {
+    const cv::Size size = view_.size();
+    return {.side = box.left < at_border - 0.5 || box.right() > size.width + 0.5 - at_border,
+            .top = box.top<at_border - 0.5, .bottom = box.bottom()> size.height + 0.5 - at_border};
+  }
+
+  double edge_variance(const Box& box) const {
+    return options_.pixel_noise * options_.pixel_noise + std::pow(options_.edge_noise * box.height, 2);
+  }
+
+  /// Of a box's middle: two edges tell it, unless the border or other people hide one.
+  double across_variance(const Detection& one, const Cut& cut) const {
+    const double edge = edge_variance(one.box);
+    if (one.group) return edge + std::pow(group_across * one.box.width, 2);
+    return cut.side ? edge + std::pow(one.box.width / 2, 2) : edge / 2;
+  }
+
+  std::optional<Placement> by_foot(const Detection& one, const Cut& cut) const {
+    const auto place = view_.place(one.box.foot());
+    if (!place) return std::nullopt;
+    double along = edge_variance(one.box);
+    if (one.group) along += std::pow(group_along * one.box.height, 2);
+    if (cut.bottom) along += std::pow(one.box.height / 2, 2);
+    return Placement{place->ground, on_ground(place->by_pixel, across_variance(one, cut), along)};
+  }
+
+  Matrix<2> on_ground(const Matrix<2>& by_pixel, double across, double along) const {
+    return by_pixel * Vector<2>(across, along).asDiagonal() * by_pixel.transpose() +
+           options_.stride * options_.stride * Matrix<2>::Identity();
+  }
+
+  static Vector<2> head_of(const Box& box) { return {box.left + (box.width - 1) / 2, box.top - 0.5}; }
+
+  /// A camera below the ground is one whose world has z down (GroundView).
+  static double up(const Camera& camera) { return camera.centre().z() < 0 ? -1 : 1; }
+
+  std::optional<Placement> by_head(const Camera& camera, const Detection& one, const Cut& cut) const {
+    const auto ray = camera.ray(head_of(one.box));
+    if (!ray) return std::nullopt;
+    const double crown = up(camera) * options_.height;
+    const double length = (crown - ray->origin.z()) / ray->direction.z();
+    if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+    const Vector<2> place = ray->origin.head<2>() + length * ray->direction.head<2>();
+    const auto seen = camera.project_with_jacobian({place.x(), place.y(), crown});
+    if (!seen) return std::nullopt;
+    const Matrix<2> by_ground = seen->by_world.leftCols<2>();
+    if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
+    const Vector<2> by_height = ray->direction.head<2>() / std::abs(ray->direction.z()) * options_.height_spread;
+    const Matrix<2> by_pixel = by_ground.inverse();
+    return Placement{place,
+                     on_ground(by_pixel, across_variance(one, cut), edge_variance(one.box)) + by_height * by_height.transpose()};
+  }
+
+  /// The foot's place corrected by the row in which the head is seen.
+  std::optional<Placement> joined(const Camera& camera, const Placement& foot, std::size_t index, const Cut& cut) const {
+    const Box& box = detections_[index].box;
+    const double row = head_of(box).y();
+    Placement both = foot;
+    for (int i = 0; i < 2; ++i) {
+      const auto head = camera.project_with_jacobian({both.place.x(), both.place.y(), up(camera) * options_.height});
+      if (!head) return foot;
+      const Vector<2> slope = head->by_world.row(1).head<2>();
+      const double spread = head->by_world(1, 2) * options_.height_spread;
+      const double residual = row - head->pixel.y() - slope.dot(foot.place - both.place);
+      const double S = slope.dot(foot.covariance * slope) + edge_variance(box) + spread * spread;
+      if (residual * residual > inconsistent * S) {
+        if (residual < 0 || !legs_hidden(index)) return foot;
+        return by_head(camera, detections_[index], cut);
+      }
+      const Vector<2> K = foot.covariance * slope / S;
+      both.place = foot.place + K * residual;
+      both.covariance = foot.covariance - K * S * K.transpose();
+    }
+    return both;
+  }
+
+  /// Another's box, whose foot is nearer, covers what lies below this one.
+  bool legs_hidden(std::size_t index) const {
+    const Box& box = detections_[index].box;
+    const Box below{box.left, box.bottom(), box.width, std::max(1.0, box.height / 4)};
+    return std::any_of(detections_.begin(), detections_.end(), [&](const Detection& other) {
+      return &other != &detections_[index] && other.box.bottom() > box.bottom() &&
+             intersection(below, other.box).area() > below.area() / 2;
+    });
+  }
+
+  std::span<const Detection> detections_;
+  const GroundView& view_;
+  const PlacePeopleOptions& options_;
+};
+
+}  // namespace
+
+PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
+                          const PlacePeopleOptions& options) {
+  const Placer placer(detections, view, options);
+  PlacedPeople placed;
+  placed.seen.reserve(detections.size());
+  placed.detection.reserve(detections.size());
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const auto at = placer.place(i);
+    if (!at) continue;
+    auto& one = placed.seen.emplace_back();
+    one.value = at->place;
+    one.covariance = at->covariance;
+    one.camera = camera;
+    one.score = detections[i].score;
+    one.box = detections[i].box;
+    one.shared = detections[i].group.has_value();
+    placed.detection.push_back(static_cast<int>(i));
+  }
+  return placed;
+}
+
+}  // namespace marey
