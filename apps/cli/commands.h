@@ -10,6 +10,7 @@ void add_track(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_simulate_people(CLI::App& simulate);  ///< below `simulate`
+void add_simulate_match(CLI::App& simulate);   ///< below `simulate`
 void add_simulate_room(CLI::App& simulate);    ///< below `simulate`
 void add_reconstruct(CLI::App& app);
 void add_experiment(CLI::App& app);

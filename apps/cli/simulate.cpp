@@ -90,6 +90,7 @@ void add_simulate(CLI::App& app) {
   markers->callback([options] { run(*options); });
   add_simulate_people(*simulate);
   add_simulate_room(*simulate);
+  add_simulate_match(*simulate);
 }
 
 }  // namespace marey::cli

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
-#include "marey/format/whole_file.h"
 
 namespace marey {
 namespace {
@@ -146,28 +147,38 @@ GroundRecording read_ground(const std::string& path) {
   return parse_ground(text, path == "-" ? "standard input" : path);
 }
 
-void write_ground(const GroundRecording& recording, const std::string& path) {
-  WholeFile file(path);
-  file.write(fmt::format("{}\n", fmt::join(kNames, ",")));
-  std::string text, seen_by;
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    const GroundRecording::Person& person = recording.people[static_cast<std::size_t>(sample.person)];
-    seen_by.clear();
-    for (std::size_t i = 0; i < recording.cameras.size(); ++i) {
-      if ((sample.cameras >> i & 1) == 0) continue;
-      if (!seen_by.empty()) seen_by += ' ';
-      seen_by += recording.cameras[i];
-    }
-    fmt::format_to(std::back_inserter(text), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
-                   person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
-                   sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by));
-    if (text.size() > (std::size_t{1} << 20)) {
-      file.write(text);
-      text.clear();
-    }
+GroundWriter::GroundWriter(const std::string& path, std::vector<std::string> cameras) : file_(path), cameras_(std::move(cameras)) {
+  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
+}
+
+void GroundWriter::write(const GroundRecording::Sample& sample, const GroundRecording::Person& person) {
+  seen_by_.clear();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    if ((sample.cameras >> i & 1) == 0) continue;
+    if (!seen_by_.empty()) seen_by_ += ' ';
+    seen_by_ += cameras_[i];
   }
-  file.write(text);
-  file.finish();
+  fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
+                 person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
+                 sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by_));
+  if (text_.size() > (std::size_t{1} << 20)) {
+    file_.write(text_);
+    text_.clear();
+  }
+}
+
+void GroundWriter::finish() {
+  file_.write(text_);
+  text_.clear();
+  file_.finish();
+}
+
+void write_ground(const GroundRecording& recording, const std::string& path) {
+  GroundWriter writer(path, recording.cameras);
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    writer.write(sample, recording.people[static_cast<std::size_t>(sample.person)]);
+  }
+  writer.finish();
 }
 
 }  // namespace marey

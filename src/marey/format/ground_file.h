@@ -2,8 +2,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "marey/core/ground_recording.h"
+#include "marey/format/whole_file.h"
 
 namespace marey {
 
@@ -17,6 +19,23 @@ GroundRecording read_ground(const std::string& path);
 
 /// The same from text; `name` is what messages call it.
 GroundRecording parse_ground(std::string_view text, const std::string& name);
+
+/// Writes such a file as it comes, so that memory does not grow with its length. Throws Error where the place is full.
+class GroundWriter {
+ public:
+  GroundWriter(const std::string& path, std::vector<std::string> cameras);
+
+  /// `person` is who `sample` is of; its index there is passed over. Rows come by frame, then by id.
+  void write(const GroundRecording::Sample& sample, const GroundRecording::Person& person);
+
+  /// Without it nothing is left behind.
+  void finish();
+
+ private:
+  WholeFile file_;
+  std::vector<std::string> cameras_;
+  std::string text_, seen_by_;
+};
 
 /// Writes the file, whole or not at all. Throws Error where that cannot be.
 void write_ground(const GroundRecording& recording, const std::string& path);

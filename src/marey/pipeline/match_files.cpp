@@ -1,0 +1,230 @@
+#include "marey/pipeline/match_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/format/ground_file.h"
+#include "marey/format/mot.h"
+#include "marey/format/rig_file.h"
+#include "marey/format/whole_file.h"
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLongest = 24 * 3600;  // s
+
+struct Match {
+  const MatchFilesOptions& options;
+  Rig rig;
+  Matrix<3> world_from_pitch = Matrix<3>::Identity();
+  std::array<Figure, kMatchPeople> figures;
+  std::int64_t frames = 0;
+
+  explicit Match(const MatchFilesOptions& asked)
+      : options(asked), rig(match_cameras(asked.cameras, asked.seed)), figures(match_figures(asked.seed)) {
+    if (!(asked.seconds > 0 && asked.seconds <= kLongest))
+      throw Error("a match of {} s; more than 0 and {} at most are possible", asked.seconds, kLongest);
+    frames = std::max<std::int64_t>(1, std::llround(asked.seconds * asked.cameras.rate_hz));
+    if (rig.ground_from_world) world_from_pitch = rig.ground_from_world->inverse();
+  }
+
+  /// s since the kick-off; no camera begins before it.
+  double match_time(double rig_time) const { return std::max(0.0, rig_time + options.cameras.offset_s); }
+
+  std::array<Stance, kMatchPeople> stances(std::span<const MatchPerson, kMatchPeople> people) const {
+    std::array<Stance, kMatchPeople> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = match_stance(people[i], world_from_pitch);
+    return all;
+  }
+};
+
+/// What one camera sees, frame by frame, by its own clock.
+class CameraFiles {
+ public:
+  CameraFiles(const Match& match, int index, const fs::path& folder)
+      : match_(match),
+        eye_(match.rig.cameras[static_cast<std::size_t>(index)]),
+        camera_(*eye_.camera()),
+        motion_(match.options.seed, match.options.cameras.pitch),
+        random_((match.options.seed * 64 + static_cast<std::uint64_t>(index)) * 2654435761u + 41),
+        truth_((folder / (eye_.name + "_truth.txt")).string()) {
+    if (match.options.boxes) detections_.emplace((folder / (eye_.name + ".txt")).string());
+    if (match.options.films) start_film(index, folder);
+  }
+
+  void write(std::int64_t frame) {
+    const double own_time = static_cast<double>(frame) / *eye_.rate_hz;
+    const double time = match_.match_time(own_time + eye_.offset_s);
+    motion_.advance(time);
+    const auto stances = match_.stances(motion_.people());
+    const std::vector<SeenPerson> seen = look_at(camera_, match_.figures, stances);
+    text_.clear();
+    for (const SeenPerson& person : seen) {
+      fmt::format_to(std::back_inserter(text_), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.person + 1,
+                     person.shown.left + 1, person.shown.top + 1, person.shown.width, person.shown.height, person.visible_share);
+    }
+    truth_.write(text_);
+    if (detections_) write_detections(frame, seen);
+    if (movie_) movie_->write(film_->render(match_.figures, stances, time, frame), timestamp_from_seconds(own_time));
+  }
+
+  void finish() {
+    if (movie_) movie_->finish();
+    truth_.finish();
+    if (detections_) detections_->finish();
+  }
+
+ private:
+  void start_film(int index, const fs::path& folder) {
+    const MatchFilesOptions& options = match_.options;
+    const auto seed = options.seed * 64 + static_cast<std::uint64_t>(index);
+    film_.emplace(camera_, match_.world_from_pitch, options.cameras.pitch, options.film, seed);
+    movie_.emplace((folder / (eye_.name + ".mp4")).string(), *eye_.size, eye_.rate_hz);
+    WholeFile clicks((folder / (eye_.name + "_clicks.csv")).string());
+    clicks.write("x,y,u,v\n");
+    for (const MatchClick& click :
+         match_clicks(camera_, match_.world_from_pitch, options.cameras.pitch, options.click_noise, options.wrong_clicks, seed)) {
+      clicks.write(fmt::format("{:g},{:g},{:.2f},{:.2f}\n", click.ground.x(), click.ground.y(), click.pixel.x(), click.pixel.y()));
+    }
+    clicks.finish();
+  }
+
+  void write_detections(std::int64_t frame, std::span<const SeenPerson> seen) {
+    text_.clear();
+    for (const LabelledBox& box : detect_match(seen, camera_, match_.world_from_pitch, match_.options.cameras.pitch,
+                                               static_cast<std::int32_t>(frame), match_.options.detector, random_)) {
+      fmt::format_to(std::back_inserter(text_), "{},-1,{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},-1,-1,-1\n", box.frame + 1,
+                     box.box.left + 1, box.box.top + 1, box.box.width, box.box.height, box.score);
+    }
+    detections_->write(text_);
+  }
+
+  const Match& match_;
+  const RigCamera& eye_;
+  Camera camera_;
+  MatchMotion motion_;
+  Random random_;
+  WholeFile truth_;
+  std::optional<WholeFile> detections_;
+  std::optional<MatchFilm> film_;
+  std::optional<MovieWriter> movie_;
+  std::string text_;
+};
+
+class GroundTruth {
+ public:
+  GroundTruth(const Match& match, const fs::path& folder)
+      : match_(match),
+        motion_(match.options.seed, match.options.cameras.pitch),
+        writer_((folder / "truth.csv").string(), names(match.rig)) {
+    for (const RigCamera& eye : match.rig.cameras) cameras_.push_back(*eye.camera());
+    for (int i = 0; i < kMatchPeople; ++i) people_.push_back({i + 1, match_label(i), std::string(match_team(i))});
+  }
+
+  void write(std::int64_t frame) {
+    const double time = static_cast<double>(frame) / match_.options.cameras.rate_hz;
+    motion_.advance(match_.match_time(time));
+    const auto stances = match_.stances(motion_.people());
+    std::array<CameraMask, kMatchPeople> seen_by{};
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      for (const SeenPerson& person : look_at(cameras_[i], match_.figures, stances)) {
+        if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
+      }
+    }
+    for (std::size_t i = 0; i < people_.size(); ++i) {
+      const MatchPerson& person = motion_.people()[i];
+      GroundRecording::Sample sample;
+      sample.frame = static_cast<std::int32_t>(frame);
+      sample.time = time;
+      sample.place = person.place;
+      sample.velocity = person.velocity;
+      sample.cameras = seen_by[i];
+      writer_.write(sample, people_[i]);
+    }
+  }
+
+  void finish() { writer_.finish(); }
+
+ private:
+  static std::vector<std::string> names(const Rig& rig) {
+    std::vector<std::string> all;
+    for (const RigCamera& eye : rig.cameras) all.push_back(eye.name);
+    return all;
+  }
+
+  const Match& match_;
+  MatchMotion motion_;
+  std::vector<Camera> cameras_;
+  std::vector<GroundRecording::Person> people_;
+  GroundWriter writer_;
+};
+
+void write_rigs(const Match& match, const fs::path& folder) {
+  const auto write = [&](const Rig& rig, const char* name) {
+    WholeFile file((folder / name).string());
+    file.write(rig_text(rig));
+    file.finish();
+  };
+  const MatchFilesOptions& options = match.options;
+  Rig exact = match.rig;
+  for (RigCamera& camera : exact.cameras) {
+    if (options.films)
+      camera.source = camera.name + ".mp4";
+    else if (options.boxes)
+      camera.detections = camera.name + ".txt";
+  }
+  Rig told = exact;
+  for (RigCamera& camera : told.cameras) camera.offset_s = options.hide_offsets ? 0 : camera.offset_s;
+  if (options.hide_offsets) write(exact, "true_rig.toml");
+  write(told, "rig.toml");
+  if (!options.films) return;
+  Rig boxes = told, start = told;
+  start.ground_from_world.reset();
+  start.calibration.reset();
+  for (RigCamera& camera : boxes.cameras) {
+    camera.source.clear();
+    camera.detections = camera.name + ".txt";
+  }
+  for (RigCamera& camera : start.cameras) {
+    camera.lens.reset();
+    camera.camera_from_world.reset();
+  }
+  if (options.boxes) write(boxes, "boxes.toml");
+  write(start, "start.toml");
+}
+
+}  // namespace
+
+void write_match(const MatchFilesOptions& options, const std::string& folder,
+                 const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  const Match match(options);
+  const fs::path place = folder;
+  std::vector<std::unique_ptr<CameraFiles>> cameras;
+  for (int i = 0; i < std::ssize(match.rig.cameras); ++i) cameras.push_back(std::make_unique<CameraFiles>(match, i, place));
+  GroundTruth truth(match, place);
+  for (std::int64_t frame = 0; frame < match.frames; ++frame) {
+    tbb::parallel_for(std::size_t{0}, cameras.size() + 1, [&](std::size_t i) {
+      if (i < cameras.size())
+        cameras[i]->write(frame);
+      else
+        truth.write(frame);
+    });
+    if (progress) progress(frame + 1, match.frames);
+  }
+  for (const auto& camera : cameras) camera->finish();
+  truth.finish();
+  write_rigs(match, place);
+}
+
+}  // namespace marey

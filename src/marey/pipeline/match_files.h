@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "marey/simulate/match_cameras.h"
+#include "marey/simulate/match_film.h"
+#include "marey/simulate/match_view.h"
+
+namespace marey {
+
+struct MatchFilesOptions {
+  MatchCamerasOptions cameras;
+  MatchDetectorOptions detector;
+  std::uint64_t seed = 1;
+  double seconds = 60;  ///< positive
+  bool boxes = true;    ///< what a detector says of each camera
+  bool films = false;   ///< what each camera films, and clicks on its picture
+  MatchFilmOptions film;
+  double click_noise = 1;     ///< px, standard deviation in each axis
+  int wrong_clicks = 0;       ///< of each camera
+  bool hide_offsets = false;  ///< rig.toml says nothing of when cameras were started; true_rig.toml does
+};
+
+/// Writes a simulated match into a folder, which must exist:
+///   rig.toml        the exact cameras, with their films as sources, else with their boxes as detections
+///   truth.csv       where everybody is at the first camera's frames (format/ground_file.h), in the pitch's own frame; `cameras`
+///   are
+///                   those for which he is in the picture and not hidden
+///   CAM_truth.txt   MOTChallenge truth for each camera: the box of each whole person, cut at the picture's border; ids as in
+///                   truth.csv; the ninth column is the share of it that can be seen
+///   CAM.txt         with `boxes`: MOTChallenge detections for each camera; with films too, boxes.toml is the rig that names them
+///   CAM.mp4         with `films`: what each camera films, H.264
+///   CAM_clicks.csv  with `films`: x,y,u,v of places on the pitch that were clicked, with which start.toml, the rig without its
+///                   calibration, can be calibrated
+/// Memory does not grow with the length. `progress` may be empty. Throws Error where an option is out of its domain or a file
+/// cannot be written.
+void write_match(const MatchFilesOptions& options, const std::string& folder,
+                 const std::function<void(std::int64_t done, std::int64_t all)>& progress = {});
+
+}  // namespace marey
