@@ -11,6 +11,7 @@
 #include "marey/pipeline/people_video.h"
 #include "marey/source/open_source.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "progress_bar.h"
 
@@ -61,9 +62,7 @@ void add_simulate_people(CLI::App& simulate) {
   const std::map<std::string, LightChange> lights{
       {"steady", LightChange::steady}, {"gradual", LightChange::gradual}, {"sudden", LightChange::sudden}};
   PeopleFilmOptions& film = options->film;
-  people->add_option("--situation", options->situation, "what they do")
-      ->transform(CLI::CheckedTransformer(situations))
-      ->default_str("crowd");
+  add_choice(*people, "--situation", options->situation, situations, "what they do")->default_str("crowd");
   people->add_option("-o,--output", options->folder, "folder for the video and its truth")->capture_default_str();
   people->add_option("--seed", options->seed, "which of the endlessly many films")->capture_default_str();
   people->add_option("--frames", film.frames, "length (default: 100 of crossing, 200 of the others)")
@@ -81,7 +80,7 @@ void add_simulate_people(CLI::App& simulate) {
   people->add_option("--noise", film.noise, "standard deviation of the pixels, grey levels")
       ->check(CLI::Range(0.0, 50.0))
       ->capture_default_str();
-  people->add_option("--light", film.light, "how it changes")->transform(CLI::CheckedTransformer(lights))->default_str("steady");
+  add_choice(*people, "--light", film.light, lights, "how it changes")->default_str("steady");
   people->add_option("--shake", film.shake_px, "standard deviation of the camera's shaking, px")
       ->check(CLI::Range(0.0, 50.0))
       ->capture_default_str();

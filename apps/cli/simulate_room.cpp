@@ -12,6 +12,7 @@
 #include "marey/core/error.h"
 #include "marey/pipeline/room_files.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "progress_bar.h"
 
@@ -89,10 +90,10 @@ void add_scene(CLI::App& room, SimulateRoom& options) {
   RoomOptions& scene = options.room;
   std::map<std::string, RoomMotion> motions;
   for (const NamedRoomMotion& known : room_motions()) motions.emplace(known.name, known.motion);
-  room.add_option(
-          "--motion", scene.motion,
-          "somebody with markers who walks, waves or stands still; a wand that is waved; an L-frame on the floor; free markers")
-      ->transform(CLI::CheckedTransformer(motions))
+  add_choice(
+      room, "--motion", scene.motion, motions,
+      "somebody with markers who walks, waves or stands still; a wand that is waved; an L-frame on the ground; a cloud of free "
+      "markers")
       ->default_str("walk");
   room.add_option("--cameras", scene.cameras, "how many, round the volume")->check(CLI::Range(1, 256))->capture_default_str();
   room.add_option("--markers", scene.markers, "how many, on the body or free")->check(CLI::Range(1, 2000))->capture_default_str();
