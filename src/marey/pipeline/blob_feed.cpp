@@ -128,6 +128,14 @@ class ObservationFeed final : public BlobFeed {
   double rate_hz_, offset_s_;
 };
 
+/// The camera's part of pictures of that size. Throws Error where it is not within them.
+cv::Rect region_within(const RigCamera& camera, cv::Size picture) {
+  const cv::Rect& region = *camera.region;
+  if ((region & cv::Rect({}, picture)) == region) return region;
+  throw Error("camera \"{}\": its region {}x{} at ({}, {}) is not within the pictures of {}x{} px of {}", camera.name, region.width,
+              region.height, region.x, region.y, picture.width, picture.height, camera.source);
+}
+
 class NoFeed final : public BlobFeed {
  public:
   std::optional<SeenBlobs> next() override { return std::nullopt; }
@@ -146,7 +154,7 @@ std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const MarkerOptions
       continue;
     }
     auto source = open_source(camera.source, camera.rate_hz ? camera.rate_hz : rate_hz);
-    if (camera.region) source = crop(std::move(source), *camera.region);
+    if (camera.region) source = crop(std::move(source), region_within(camera, source->info().size));
     fit_to_size(camera, source->info().size);
     feeds.push_back(std::make_unique<VideoFeed>(std::move(source), id, camera.offset_s.value_or(0), markers));
     ++found;

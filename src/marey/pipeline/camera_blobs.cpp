@@ -1,6 +1,5 @@
 #include "marey/pipeline/camera_blobs.h"
 
-#include <cmath>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -8,57 +7,18 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig_sources.h"
-#include "marey/source/open_source.h"
+#include "marey/pipeline/blob_feed.h"
 
 namespace marey {
 namespace {
 
-/// The camera's part of a frame.
-Frame cut_out(const Frame& frame, const std::optional<cv::Rect>& region) {
-  if (!region) return frame;
-  Frame part = frame;
-  part.picture = Picture(frame.picture.luma()(*region));
-  return part;
-}
-
-void settle_size(RigCamera& camera, cv::Size picture) {
-  if (camera.region && (*camera.region & cv::Rect({}, picture)) != *camera.region) {
-    throw Error("camera \"{}\": its region {}x{} at ({}, {}) is not within the pictures of {}x{} px of {}", camera.name,
-                camera.region->width, camera.region->height, camera.region->x, camera.region->y, picture.width, picture.height,
-                camera.source);
-  }
-  fit_to_size(camera, camera.region ? camera.region->size() : picture);
-}
-
-/// Container times are rounded; frames come at a steady rate.
-double steady_time(const Frame& frame, const SourceInfo& info) {
-  const double time = seconds(frame.time);
-  if (!info.rate_hz) return time;
-  const double steady = std::round(time * *info.rate_hz) / *info.rate_hz;
-  return std::abs(steady - time) * *info.rate_hz < 0.25 ? steady : time;
-}
-
-std::vector<BlobFrame> blobs_of(RigCamera& camera, const MarkerOptions& options, const std::function<void()>& frame_done,
-                                std::vector<std::string>& warnings) {
-  if (camera.source.empty()) {
-    throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
-  }
-  const auto source = open_source(camera.source, camera.rate_hz);
-  settle_size(camera, source->info().size);
-  MarkerDetector detector(options);
+std::vector<BlobFrame> all_of(BlobFeed& feed, double offset_s, const std::function<void()>& frame_done) {
   std::vector<BlobFrame> frames;
-  while (const auto frame = source->next()) {
-    BlobFrame blobs{steady_time(*frame, source->info()), {}};
-    for (const Detection& detection : detector.detect(cut_out(*frame, camera.region), {}).detections) {
-      blobs.blobs.push_back(detection.centre);
-    }
-    frames.push_back(std::move(blobs));
+  while (const auto seen = feed.next()) {
+    BlobFrame& blobs = frames.emplace_back(BlobFrame{seconds(seen->time) - offset_s, {}});
+    for (const Observation<2>& blob : seen->blobs) blobs.blobs.push_back(blob.value);
     frame_done();
   }
-  for (const std::string& sentence : source->warnings()) warnings.push_back(fmt::format("{}: {}", camera.name, sentence));
-  for (const std::string& sentence : marey::warnings(detector.counts()))
-    warnings.push_back(fmt::format("{}: {}", camera.name, sentence));
   return frames;
 }
 
@@ -85,9 +45,13 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig) {
 }
 
 CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgress& progress) {
+  for (const RigCamera& camera : rig.cameras) {
+    if (camera.source.empty())
+      throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
+  }
+  const auto feeds = open_videos(rig, options, std::nullopt);
   CameraBlobs blobs;
-  blobs.seen.resize(rig.cameras.size());
-  std::vector<std::vector<std::string>> warnings(rig.cameras.size());
+  blobs.seen.resize(feeds.size());
   std::mutex telling;
   std::int64_t done = 0;
   const auto frame_done = [&] {
@@ -95,9 +59,12 @@ CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgres
     ++done;
     if (progress) progress(done);
   };
-  tbb::parallel_for(std::size_t{0}, rig.cameras.size(),
-                    [&](std::size_t c) { blobs.seen[c] = blobs_of(rig.cameras[c], options, frame_done, warnings[c]); });
-  for (const auto& own : warnings) blobs.warnings.insert(blobs.warnings.end(), own.begin(), own.end());
+  tbb::parallel_for(std::size_t{0}, feeds.size(),
+                    [&](std::size_t c) { blobs.seen[c] = all_of(*feeds[c], rig.cameras[c].offset_s.value_or(0), frame_done); });
+  for (std::size_t c = 0; c < feeds.size(); ++c) {
+    for (const std::string& sentence : feeds[c]->warnings())
+      blobs.warnings.push_back(fmt::format("{}: {}", rig.cameras[c].name, sentence));
+  }
   return blobs;
 }
 
