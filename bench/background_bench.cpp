@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
 
+#include "marey/detect/appearance.h"
 #include "marey/detect/background.h"
 #include "marey/source/video_source.h"
 
@@ -92,10 +93,36 @@ void cnt_model(benchmark::State& state) {
   run(state, opencv(cv::bgsegm::createBackgroundSubtractorCNT()));
 }
 
+/// The colour of one upper body; `against_convert` is what converting the same part of the picture to L*a*b* takes, over that.
+void upper_body_colour(benchmark::State& state) {
+  const Clip& shown = clip(3072, 1728);
+  const double height = static_cast<double>(state.range(0));
+  const cv::Mat mask(1728, 3072, CV_8UC1, cv::Scalar(255));
+  Detection person;
+  person.box = {1500, 800, height * 0.4, height};
+  const cv::Rect part(1500, 800 + static_cast<int>(0.2 * height), static_cast<int>(0.4 * height), static_cast<int>(0.3 * height));
+  const double ours = least_time(shown, [&](const Clip& clip, std::size_t i) {
+    benchmark::DoNotOptimize(upper_body(clip.frames[i].picture, {.mask = mask}, person));
+  });
+  const double theirs = least_time(shown, [&](const Clip& clip, std::size_t i) {
+    cv::Mat lab;
+    cv::cvtColor(clip.bgr[i](part), lab, cv::COLOR_BGR2Lab);
+    benchmark::DoNotOptimize(cv::mean(lab));
+  });
+  for (auto _ : state) benchmark::DoNotOptimize(upper_body(shown.frames[0].picture, {.mask = mask}, person));
+  state.counters["us"] = ours * 1e3;
+  state.counters["against_convert"] = theirs / ours;
+}
+
 void sizes(benchmark::internal::Benchmark* bench) {
   if (!std::filesystem::exists(kVideo)) return;
   bench->Args({768, 576})->Args({1920, 1080})->Args({3072, 1728})->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(0.2);
 }
+void heights(benchmark::internal::Benchmark* bench) {
+  if (!std::filesystem::exists(kVideo)) return;
+  bench->Arg(40)->Arg(80)->Arg(300)->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK(upper_body_colour)->Apply(heights);
 BENCHMARK(marey_model)->Apply(sizes);
 BENCHMARK(mog2_model)->Apply(sizes);
 BENCHMARK(knn_model)->Apply(sizes);

@@ -1,0 +1,171 @@
+#include "marey/analyse/colour_mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "marey/geometry/vector.h"
+
+namespace marey {
+namespace {
+
+constexpr double lightness_counts = 0.6;           // beside a* and b*: sun and shade change it
+constexpr double narrowest = 4, widest = 14;       // of one kind: standard deviation, L*a*b*
+constexpr double all_colours = 100.0 * 120 * 120;  // volume over which odd colours are spread
+constexpr double fewest_odd = 0.02;
+constexpr int beginnings = 12;
+constexpr int iterations = 60;
+
+Vector<3> point_of(const Appearance& colour) {
+  return {lightness_counts * colour.lightness, colour.a, colour.b};
+}
+
+struct Fit {
+  std::vector<Vector<3>> centres;
+  std::vector<double> shares;
+  double odd = 0.1;
+  double variance = 64;
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  std::vector<std::vector<double>> whose;
+};
+
+class Fitter {
+ public:
+  explicit Fitter(std::span<const ColourSeen> seen) {
+    for (const ColourSeen& one : seen) {
+      points_.push_back(point_of(one.colour));
+      own_.push_back(static_cast<double>(one.colour.deviation) * one.colour.deviation);
+      weights_.push_back(one.weight);
+    }
+    total_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    by_weight_.resize(seen.size());
+    std::iota(by_weight_.begin(), by_weight_.end(), 0);
+    std::stable_sort(by_weight_.begin(), by_weight_.end(), [&](int a, int b) { return weights_[a] > weights_[b]; });
+  }
+
+  Fit best(int kinds) const {
+    Fit best;
+    for (int k = 0; k < std::min<int>(beginnings, static_cast<int>(points_.size())); ++k) {
+      Fit fit = begin(kinds, by_weight_[k]);
+      for (int i = 0; i < iterations; ++i) improve(fit);
+      judge(fit);
+      if (fit.log_likelihood > best.log_likelihood) best = std::move(fit);
+    }
+    return best;
+  }
+
+  /// Schwarz's: twice the logarithm of the likelihood, less what the parameters cost.
+  double criterion(const Fit& fit) const {
+    const double parameters = 4.0 * static_cast<double>(fit.centres.size());
+    return 2 * fit.log_likelihood - parameters * std::log(std::max(2.0, total_));
+  }
+
+ private:
+  /// The first centre is given; each further one is where most weight is far from all before.
+  Fit begin(int kinds, int first) const {
+    Fit fit;
+    fit.centres = {points_[first]};
+    while (static_cast<int>(fit.centres.size()) < kinds) {
+      double most = -1;
+      Vector<3> next = points_[first];
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Vector<3>& centre : fit.centres) nearest = std::min(nearest, (points_[i] - centre).squaredNorm());
+        if (weights_[i] * nearest <= most) continue;
+        most = weights_[i] * nearest;
+        next = points_[i];
+      }
+      fit.centres.push_back(next);
+    }
+    fit.shares.assign(fit.centres.size(), 0.9 / kinds);
+    judge(fit);
+    return fit;
+  }
+
+  /// Whose everything is under the fit, and how likely that makes what was seen.
+  void judge(Fit& fit) const {
+    fit.log_likelihood = 0;
+    fit.whose.assign(points_.size(), {});
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double variance = fit.variance + own_[i];
+      double sum = fit.odd / (lightness_counts * all_colours);
+      for (std::size_t k = 0; k < fit.centres.size(); ++k) {
+        const double distance = (points_[i] - fit.centres[k]).squaredNorm() / variance;
+        fit.whose[i].push_back(fit.shares[k] * std::exp(-distance / 2) * std::pow(2 * std::numbers::pi * variance, -1.5));
+        sum += fit.whose[i].back();
+      }
+      for (double& probability : fit.whose[i]) probability /= sum;
+      fit.log_likelihood += weights_[i] * std::log(sum);
+    }
+  }
+
+  void improve(Fit& fit) const {
+    double odd = total_;
+    double squares = 0;
+    double count = 0;
+    for (std::size_t k = 0; k < fit.centres.size(); ++k) {
+      double mass = 0, certain = 0;
+      Vector<3> sum = Vector<3>::Zero();
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const double mine = weights_[i] * fit.whose[i][k];
+        mass += mine;
+        const double weight = mine / (fit.variance + own_[i]);  // who was measured badly says less of the centre
+        certain += weight;
+        sum += weight * points_[i];
+      }
+      fit.shares[k] = mass / total_;
+      odd -= mass;
+      if (certain <= 0) continue;
+      fit.centres[k] = sum / certain;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const double mine = weights_[i] * fit.whose[i][k];
+        squares += mine * std::max(0.0, (points_[i] - fit.centres[k]).squaredNorm() / 3 - own_[i]);
+        count += mine;
+      }
+    }
+    fit.odd = std::max(fewest_odd, odd / total_);
+    if (count > 0) fit.variance = std::clamp(squares / count, narrowest * narrowest, widest * widest);
+    judge(fit);
+  }
+
+  std::vector<Vector<3>> points_;
+  std::vector<double> own_;  // variance of each
+  std::vector<double> weights_;
+  double total_ = 0;
+  std::vector<int> by_weight_;
+};
+
+}  // namespace
+
+ColourMixture find_colours(std::span<const ColourSeen> seen, int most) {
+  ColourMixture mixture;
+  if (seen.empty()) return mixture;
+  const Fitter fitter(seen);
+  std::optional<Fit> best;
+  for (int kinds = 1; kinds <= std::min<int>(most, static_cast<int>(seen.size())); ++kinds) {
+    Fit fit = fitter.best(kinds);
+    if (!best || fitter.criterion(fit) > fitter.criterion(*best)) best = std::move(fit);
+  }
+  std::vector<std::size_t> order(best->centres.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return best->shares[a] > best->shares[b]; });
+  for (const std::size_t k : order) {
+    const Vector<3>& centre = best->centres[k];
+    mixture.kinds.push_back({{.lightness = static_cast<float>(centre[0] / lightness_counts),
+                              .a = static_cast<float>(centre[1]),
+                              .b = static_cast<float>(centre[2]),
+                              .deviation = static_cast<float>(std::sqrt(best->variance))},
+                             best->shares[k]});
+  }
+  mixture.odd = best->odd;
+  for (const std::vector<double>& probabilities : best->whose) {
+    mixture.whose.emplace_back();
+    for (const std::size_t k : order) mixture.whose.back().push_back(probabilities[k]);
+  }
+  return mixture;
+}
+
+}  // namespace marey

@@ -1,0 +1,88 @@
+#include "marey/analyse/colour_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+// Shirts in the open, filmed from afar: duller than a painter's colours.
+constexpr std::array<ColourName, 14> names = {{
+    {"white", {85, 0, 0}},
+    {"black", {18, 0, 0}},
+    {"grey", {52, 0, 0}},
+    {"red", {42, 48, 28}},
+    {"orange", {60, 35, 50}},
+    {"yellow", {80, -5, 62}},
+    {"green", {50, -40, 30}},
+    {"turquoise", {60, -30, -10}},
+    {"blue", {38, 10, -40}},
+    {"purple", {35, 32, -32}},
+    {"pink", {65, 38, 0}},
+    {"brown", {32, 15, 20}},
+    {"claret", {28, 32, 10}},
+    {"sky blue", {68, -8, -28}},
+}};
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> others = {
+    {{"violet", "purple"}, {"gray", "grey"}, {"navy", "dark blue"}, {"maroon", "claret"}, {"cyan", "turquoise"}}};
+
+constexpr float lighter = 20;  // L* by which "light" and "dark" change a colour
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+}  // namespace
+
+std::span<const ColourName> colour_names() {
+  return names;
+}
+
+Appearance colour_named(std::string_view name) {
+  std::string word = lower(name);
+  for (const auto& [other, usual] : others) {
+    if (word == other) word = usual;
+  }
+  float shift = 0;
+  for (const auto& [prefix, change] : {std::pair{std::string_view("light "), lighter}, {"dark ", -lighter}}) {
+    if (!word.starts_with(prefix)) continue;
+    shift = change;
+    word = word.substr(prefix.size());
+    break;
+  }
+  for (const ColourName& known : names) {
+    if (known.word != word) continue;
+    Appearance colour = known.typical;
+    colour.lightness = std::clamp(colour.lightness + shift, 5.0F, 97.0F);
+    return colour;
+  }
+  std::string all;
+  for (const ColourName& known : names) all += fmt::format("{}{}", all.empty() ? "" : ", ", known.word);
+  throw Error(fmt::format("\"{}\" is no colour that is known here; there are {}, each also light or dark", name, all));
+}
+
+std::string name_of_colour(const Appearance& colour) {
+  const auto nearest = std::min_element(names.begin(), names.end(), [&](const ColourName& a, const ColourName& b) {
+    return colours_apart(a.typical, colour) < colours_apart(b.typical, colour);
+  });
+  return std::string(nearest->word);
+}
+
+double colours_apart(const Appearance& a, const Appearance& b) {
+  const double lightness = static_cast<double>(a.lightness) - b.lightness;
+  const double da = static_cast<double>(a.a) - b.a;
+  const double db = static_cast<double>(a.b) - b.b;
+  const double strength = std::hypot(a.a, a.b) - std::hypot(b.a, b.b);
+  const double hue = std::max(0.0, da * da + db * db - strength * strength);
+  return std::sqrt((lightness * lightness + strength * strength) / 4 + hue);
+}
+
+}  // namespace marey

@@ -1,0 +1,262 @@
+#include "marey/analyse/teams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "marey/analyse/colour_mixture.h"
+#include "marey/analyse/colour_names.h"
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+constexpr double least_team = 0.12;    // share of all people's time that a team's people have at least
+constexpr double keepers_length = 22;  // m from the goal line: where a keeper is nearly always
+constexpr double keepers_width = 20;   // m to either side of the middle
+constexpr double keepers_time = 0.85;  // nearly always
+constexpr double officials = 0.2;      // share that referees have at most
+constexpr double another_colour = 14;  // L*a*b*: by how much an official's colour differs from each team's
+constexpr double longest_step = 0.5;   // s from one row of a person to the next that counts as seen
+constexpr double colours_differ = 25;  // L*a*b*: how far a team's colour may lie from the one that is named
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
+}
+
+/// Where and for how long somebody was seen.
+struct Presence {
+  double seconds = 0;
+  double near_goal[2] = {0, 0};  // s before the goal at x = 0 and before the other
+};
+
+std::vector<Presence> presences(const GroundRecording& recording, const std::optional<PitchSize>& pitch) {
+  std::vector<Presence> all(recording.people.size());
+  std::vector<double> last(recording.people.size(), -1e9);
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    if (!sample.observed) continue;
+    const auto who = static_cast<std::size_t>(sample.person);
+    const double step = std::min(longest_step, sample.time - last[who]);
+    last[who] = sample.time;
+    if (step >= longest_step) continue;
+    all[who].seconds += step;
+    if (!pitch || std::abs(sample.place.y() - pitch->width / 2) > keepers_width) continue;
+    if (sample.place.x() < keepers_length) all[who].near_goal[0] += step;
+    if (sample.place.x() > pitch->length - keepers_length) all[who].near_goal[1] += step;
+  }
+  return all;
+}
+
+/// The kinds that are teams, in the order in which they are told.
+std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::vector<TeamName>& names) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t k = 0; k < mixture.kinds.size(); ++k) {
+    if (mixture.kinds[k].share >= least_team) chosen.push_back(k);
+  }
+  if (names.empty()) {
+    if (chosen.size() > 2) chosen.resize(2);
+    return chosen;
+  }
+  // Large kinds of about the colours named, each named team another kind, or none.
+  std::vector<std::size_t> best;
+  double best_worth = 0;
+  const auto worth = [&](std::size_t kind, const TeamName& name) {
+    const double apart = colours_apart(mixture.kinds[kind].colour, name.colour) / colours_differ;
+    return std::log(mixture.kinds[kind].share / least_team) + 4 - apart * apart / 2;
+  };
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> kinds = chosen;
+  kinds.push_back(none);
+  for (const std::size_t a : kinds) {
+    for (const std::size_t b : kinds) {
+      if (a == b && a != none) continue;
+      const double sum = (a == none ? 0 : worth(a, names[0])) + (b == none ? 0 : worth(b, names[1]));
+      if (sum <= best_worth) continue;
+      best_worth = sum;
+      best = {a, b};
+    }
+  }
+  return best;
+}
+
+/// Names for teams that the user has not named: by colour, told apart by lightness where they have the same.
+void name_by_colour(std::vector<Teams::Team>& teams) {
+  for (Teams::Team& team : teams) team.name = name_of_colour(team.colour);
+  if (teams.size() < 2 || teams[0].name != teams[1].name) return;
+  const bool first_lighter = teams[0].colour.lightness > teams[1].colour.lightness;
+  teams[0].name = (first_lighter ? "light " : "dark ") + teams[0].name;
+  teams[1].name = (first_lighter ? "dark " : "light ") + teams[1].name;
+}
+
+/// The team whose players stood nearer to the goal of `end` (0: x = 0) while the keeper was seen.
+std::optional<int> team_of_keeper(const GroundRecording& recording, std::span<const Teams::Member> members, int keeper, int end) {
+  std::array<double, 2> sum{};
+  std::array<std::int64_t, 2> count{};
+  double lead = 0;
+  const auto settle = [&](bool keeper_seen) {
+    if (keeper_seen && count[0] > 0 && count[1] > 0) {
+      lead += sum[0] / static_cast<double>(count[0]) - sum[1] / static_cast<double>(count[1]);
+    }
+    sum = {};
+    count = {};
+  };
+  std::int32_t frame = -1;
+  bool seen = false;
+  for (const GroundRecording::Sample& sample : recording.samples) {
+    if (sample.frame != frame) settle(std::exchange(seen, false));
+    frame = sample.frame;
+    seen |= sample.person == keeper;
+    const Teams::Member& member = members[static_cast<std::size_t>(sample.person)];
+    if (member.role != Teams::Role::player || !member.team) continue;
+    sum[*member.team] += sample.place.x();
+    ++count[*member.team];
+  }
+  settle(seen);
+  if (lead == 0) return std::nullopt;
+  return (lead > 0) == (end == 1) ? 0 : 1;
+}
+
+/// Everybody's colour and time, for those who were seen long enough.
+struct Candidates {
+  std::vector<int> people;
+  std::vector<ColourSeen> seen;
+};
+
+Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> wears, double shortest) {
+  double longest = 0;
+  for (const Presence& one : presence) longest = std::max(longest, one.seconds);
+  Candidates result;
+  for (std::size_t who = 0; who < presence.size(); ++who) {
+    if (!wears[who] || presence[who].seconds < std::min(shortest, longest)) continue;
+    result.people.push_back(static_cast<int>(who));
+    result.seen.push_back({*wears[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
+  }
+  return result;
+}
+
+class Finder {
+ public:
+  Finder(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options)
+      : recording_(recording),
+        options_(options),
+        presence_(presences(recording, options.pitch)),
+        candidates_(candidates(presence_, wears, options.shortest)),
+        mixture_(find_colours(candidates_.seen)) {}
+
+  Teams find() {
+    teams_.members.resize(recording_.people.size());
+    const std::vector<std::size_t> kinds = choose_teams(mixture_, options_.names);
+    for (std::size_t t = 0; t < kinds.size(); ++t) {
+      Teams::Team team;
+      if (kinds[t] < mixture_.kinds.size())
+        team.colour = mixture_.kinds[kinds[t]].colour;
+      else
+        team.colour = options_.names[t].colour;
+      if (!options_.names.empty()) team.name = options_.names[t].name;
+      teams_.teams.push_back(team);
+    }
+    if (options_.names.empty()) name_by_colour(teams_.teams);
+    vote(kinds);
+    for (std::size_t i = 0; i < candidates_.people.size(); ++i) place_official(i);
+    return std::move(teams_);
+  }
+
+ private:
+  void vote(std::span<const std::size_t> kinds) {
+    for (std::size_t i = 0; i < candidates_.people.size(); ++i) {
+      Teams::Member& member = teams_.members[static_cast<std::size_t>(candidates_.people[i])];
+      for (std::size_t t = 0; t < kinds.size(); ++t) {
+        if (kinds[t] >= mixture_.kinds.size()) continue;
+        const double probability = mixture_.whose[i][kinds[t]];
+        if (probability <= member.confidence) continue;
+        member.confidence = probability;
+        member.team = static_cast<int>(t);
+      }
+      if (member.confidence >= options_.sure) {
+        member.role = Teams::Role::player;
+        ++teams_.teams[static_cast<std::size_t>(*member.team)].people;
+      } else {
+        member = {};
+      }
+    }
+  }
+
+  /// Who is in no team's colour: a keeper, a referee, or nobody knows.
+  void place_official(std::size_t candidate) {
+    const int who = candidates_.people[candidate];
+    Teams::Member& member = teams_.members[static_cast<std::size_t>(who)];
+    if (member.role != Teams::Role::unknown || teams_.teams.empty()) return;
+    const ColourSeen& seen = candidates_.seen[candidate];
+    double apart = 1e9;
+    for (const Teams::Team& team : teams_.teams) apart = std::min(apart, colours_apart(seen.colour, team.colour));
+    if (apart < another_colour + seen.colour.deviation) return;
+    const double confidence = std::clamp(1 - another_colour / (2 * apart), 0.0, 1.0);
+    const Presence& presence = presence_[static_cast<std::size_t>(who)];
+    for (const int end : {0, 1}) {
+      if (presence.near_goal[end] < keepers_time * presence.seconds || presence.seconds == 0) continue;
+      member = {Teams::Role::keeper, teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, who, end) : std::nullopt,
+                confidence};
+      return;
+    }
+    if (share_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};
+  }
+
+  /// How many wear what this one wears: of all people's time.
+  double share_of_kind(std::size_t candidate) const {
+    const std::vector<double>& whose = mixture_.whose[candidate];
+    const auto likeliest = std::max_element(whose.begin(), whose.end());
+    if (likeliest == whose.end() || *likeliest < 0.5) return 0;
+    return mixture_.kinds[static_cast<std::size_t>(likeliest - whose.begin())].share;
+  }
+
+  const GroundRecording& recording_;
+  const TeamOptions& options_;
+  std::vector<Presence> presence_;
+  Candidates candidates_;
+  ColourMixture mixture_;
+  Teams teams_;
+};
+
+}  // namespace
+
+std::vector<TeamName> parse_teams(std::string_view text) {
+  std::vector<TeamName> names;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    const std::string_view one = text.substr(from, to - from);
+    const std::size_t equals = one.find('=');
+    const std::string name = trimmed(one.substr(0, equals));
+    const std::string colour = equals == std::string_view::npos ? name : trimmed(one.substr(equals + 1));
+    if (name.empty() || colour.empty()) {
+      throw Error(
+          fmt::format("teams \"{}\": a name or a colour is missing; give two, as in white,blue or City=sky blue,United=red", text));
+    }
+    names.push_back({name, colour_named(colour)});
+    from = to + 1;
+  }
+  if (names.size() != 2) throw Error(fmt::format("teams \"{}\": there are {}; give two, as in white,blue", text, names.size()));
+  if (names[0].name == names[1].name) throw Error(fmt::format("teams \"{}\": both have one name", text));
+  return names;
+}
+
+Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options) {
+  return Finder(recording, wears, options).find();
+}
+
+void note_teams(const Teams& teams, GroundRecording& recording) {
+  for (std::size_t who = 0; who < recording.people.size(); ++who) {
+    const Teams::Member& member = teams.members[who];
+    GroundRecording::Person& person = recording.people[who];
+    person.team = member.team ? teams.teams[static_cast<std::size_t>(*member.team)].name : std::string();
+    if (!person.label.empty()) continue;
+    if (member.role == Teams::Role::keeper) person.label = "keeper";
+    if (member.role == Teams::Role::referee) person.label = "referee";
+  }
+}
+
+}  // namespace marey

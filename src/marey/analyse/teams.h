@@ -1,0 +1,58 @@
+// Who plays with whom, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
+// colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
+// colour and stay near a goal, or referees. Everybody's vote comes with its probability; who cannot be told stays without a team.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "marey/core/appearance.h"
+#include "marey/core/ground_recording.h"
+#include "marey/geometry/pitch.h"
+
+namespace marey {
+
+/// A team as the user knows it.
+struct TeamName {
+  std::string name;
+  Appearance colour;
+};
+
+/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be told. Throws Error for what is not so.
+std::vector<TeamName> parse_teams(std::string_view text);
+
+struct TeamOptions {
+  std::vector<TeamName> names;     ///< none: teams are called by their colours
+  double sure = 0.8;               ///< who belongs to a team with less probability stays without
+  double shortest = 0.8;           ///< s; who was seen for less likewise
+  std::optional<PitchSize> pitch;  ///< where goals are, for keepers; without it there are none
+};
+
+struct Teams {
+  enum class Role { unknown, player, keeper, referee };
+  struct Team {
+    std::string name;
+    Appearance colour;  ///< deviation: how much its people differ
+    int people = 0;
+  };
+  struct Member {
+    Role role = Role::unknown;
+    std::optional<int> team = {};  ///< index into `teams`
+    double confidence = 0;         ///< probability of what is said, in [0, 1]
+  };
+  std::vector<Team> teams;      ///< two at most; as named, else the one most seen first
+  std::vector<Member> members;  ///< one a person
+};
+
+/// `wears` of each person of the recording, where known. `recording` in the pitch's frame where `pitch` is given.
+Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears,
+                 const TeamOptions& options = {});
+
+/// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
+/// none.
+void note_teams(const Teams& teams, GroundRecording& recording);
+
+}  // namespace marey

@@ -1,0 +1,158 @@
+#include "marey/analyse/teams.h"
+
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "marey/analyse/colour_names.h"
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+/// People and what they wear; each stands about somewhere for some seconds.
+struct Scene {
+  GroundRecording recording;
+  std::vector<std::optional<Appearance>> wears;
+  std::mt19937_64 engine;
+  double seconds = 20;
+
+  explicit Scene(std::uint64_t seed) : engine(seed) {}
+
+  double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(engine); }
+
+  void add(const std::string& colour, double spread, double x, double y, double from = 0, double to = 1) {
+    const Appearance typical = colour_named(colour);
+    wears.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
+                               .a = typical.a + static_cast<float>(normal(spread)),
+                               .b = typical.b + static_cast<float>(normal(spread)),
+                               .deviation = 3});
+    const auto who = static_cast<std::int32_t>(recording.people.size());
+    recording.people.push_back({who + 1, {}, {}});
+    for (int k = static_cast<int>(from * seconds * 5); k < static_cast<int>(to * seconds * 5); ++k) {
+      GroundRecording::Sample sample;
+      sample.frame = k;
+      sample.person = who;
+      sample.time = k / 5.0;
+      sample.place = {x + normal(2), y + normal(2)};
+      recording.samples.push_back(sample);
+    }
+  }
+
+  Teams find(const TeamOptions& options = {.names = {}, .pitch = PitchSize{}}) {
+    std::stable_sort(recording.samples.begin(), recording.samples.end(),
+                     [](const auto& a, const auto& b) { return a.frame < b.frame; });
+    return find_teams(recording, wears, options);
+  }
+};
+
+/// Ten of one colour attack towards x = 105, ten of another defend; keepers; three referees.
+Scene match(std::uint64_t seed, const std::string& one = "white", const std::string& two = "blue", double spread = 4) {
+  Scene scene(seed);
+  for (int k = 0; k < 10; ++k) scene.add(one, spread, 30 + 5 * k, 6 * k + 5);
+  for (int k = 0; k < 10; ++k) scene.add(two, spread, 45 + 5 * k, 6 * k + 8);
+  scene.add("green", spread, 6, 34);
+  scene.add("orange", spread, 99, 33);
+  for (int k = 0; k < 3; ++k) scene.add("black", spread, 52, 34 * k);
+  return scene;
+}
+
+TEST(Teams, TwoTeamsKeepersAndRefereesAreTold) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scene scene = match(seed);
+    const Teams teams = scene.find();
+    ASSERT_EQ(teams.teams.size(), 2U) << "seed " << seed;
+    const int white = teams.teams[0].name == "white" ? 0 : 1;
+    EXPECT_EQ(teams.teams[white].name, "white") << "seed " << seed;
+    EXPECT_EQ(teams.teams[1 - white].name, "blue") << "seed " << seed;
+    for (int who = 0; who < 20; ++who) {
+      EXPECT_EQ(teams.members[who].role, Teams::Role::player) << "seed " << seed << ", person " << who;
+      EXPECT_EQ(teams.members[who].team, who < 10 ? white : 1 - white) << "seed " << seed << ", person " << who;
+      EXPECT_GT(teams.members[who].confidence, 0.9);
+    }
+    EXPECT_EQ(teams.members[20].role, Teams::Role::keeper);
+    EXPECT_EQ(teams.members[20].team, white) << "who is behind them";
+    EXPECT_EQ(teams.members[21].role, Teams::Role::keeper);
+    EXPECT_EQ(teams.members[21].team, 1 - white);
+    for (int who = 22; who < 25; ++who) {
+      EXPECT_EQ(teams.members[who].role, Teams::Role::referee) << "seed " << seed;
+      EXPECT_FALSE(teams.members[who].team);
+    }
+  }
+}
+
+TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
+  Scene scene = match(3, "red", "yellow");
+  const Teams teams = scene.find({.names = parse_teams("Away=yellow, Home=red"), .pitch = PitchSize{}});
+  ASSERT_EQ(teams.teams.size(), 2U);
+  EXPECT_EQ(teams.teams[0].name, "Away");
+  EXPECT_EQ(teams.members[0].team, 1);
+  EXPECT_EQ(teams.members[10].team, 0);
+  note_teams(teams, scene.recording);
+  EXPECT_EQ(scene.recording.people[0].team, "Home");
+  EXPECT_EQ(scene.recording.people[20].label, "keeper");
+  EXPECT_EQ(scene.recording.people[22].label, "referee");
+  EXPECT_EQ(scene.recording.people[22].team, "");
+}
+
+TEST(Teams, WhereKitsAreTheSameNobodyIsGivenTheWrongOne) {
+  Scene scene = match(5, "blue", "blue", 6);
+  const Teams teams = scene.find();
+  EXPECT_EQ(teams.teams.size(), 1U);
+}
+
+TEST(Teams, OneTeamAloneIsOne) {
+  Scene scene(7);
+  for (int k = 0; k < 8; ++k) scene.add("red", 4, 30 + 5 * k, 30);
+  const Teams teams = scene.find();
+  ASSERT_EQ(teams.teams.size(), 1U);
+  EXPECT_EQ(teams.teams[0].name, "red");
+  const Teams named = scene.find({.names = parse_teams("white,red"), .pitch = {}});
+  ASSERT_EQ(named.teams.size(), 2U);
+  EXPECT_EQ(named.members[0].team, 1);
+  EXPECT_EQ(named.teams[0].people, 0);
+}
+
+TEST(Teams, WhoWasHardlySeenOrHasNoColourStaysWithout) {
+  Scene scene = match(9);
+  scene.add("white", 4, 50, 50, 0.5, 0.52);
+  scene.add("white", 4, 50, 55);
+  scene.wears.back().reset();
+  scene.add("white", 4, 50, 58);
+  scene.wears.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
+  const Teams teams = scene.find();
+  for (int who = 25; who < 28; ++who) EXPECT_FALSE(teams.members[who].team) << who;
+}
+
+TEST(Teams, ManyShortPiecesOfPeopleAreNoTrouble) {
+  Scene scene(13);
+  scene.seconds = 60;
+  for (int k = 0; k < 300; ++k) scene.add(k % 2 == 0 ? "sky blue" : "claret", 5, 20 + k % 60, k % 68, k / 320.0, k / 320.0 + 0.05);
+  const Teams teams = scene.find();
+  ASSERT_EQ(teams.teams.size(), 2U);
+  int right = 0;
+  const int even = teams.teams[0].name == "sky blue" ? 0 : 1;
+  for (int k = 0; k < 300; ++k) right += teams.members[k].team == (k % 2 == 0 ? even : 1 - even) ? 1 : 0;
+  EXPECT_GE(right, 290);
+}
+
+TEST(Teams, NobodyIsNoTeam) {
+  EXPECT_TRUE(find_teams({}, {}).teams.empty());
+}
+
+TEST(Teams, WhatIsNoColourIsSaid) {
+  EXPECT_THROW(parse_teams("white,bleu"), Error);
+  EXPECT_THROW(parse_teams("white"), Error);
+  EXPECT_THROW(parse_teams("white,"), Error);
+  EXPECT_THROW(parse_teams("white,blue,red"), Error);
+  EXPECT_THROW(parse_teams("red,red"), Error);
+  EXPECT_EQ(parse_teams(" Dark Green , violet")[0].name, "Dark Green");
+}
+
+TEST(ColourNames, EveryWordNamesItself) {
+  for (const ColourName& name : colour_names()) EXPECT_EQ(name_of_colour(colour_named(name.word)), name.word);
+}
+
+}  // namespace
+}  // namespace marey

@@ -1,0 +1,104 @@
+#include "marey/detect/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "marey/core/lab.h"
+
+namespace marey {
+namespace {
+
+constexpr double first_row = 0.2, last_row = 0.5;          // of the box, from the top
+constexpr double first_column = 0.25, last_column = 0.75;  // and from the left
+constexpr int most_samples = 100;
+constexpr int fewest_samples = 6;
+constexpr float alike = 3;                 // neighbouring samples share light, cloth and compression: so many count as one
+constexpr float coded_to = 2;              // L*a*b*: what compression leaves uncertain however many samples there are
+constexpr float half_of_normal = 1.4826F;  // standard deviations in a median distance from the median
+
+/// A rectangle of chroma samples, visited every `step`-th in both directions.
+struct Grid {
+  int left = 0, right = 0, top = 0, bottom = 0;  // right and bottom are not included
+  int step = 1;
+};
+
+Grid grid_of(const Box& box, cv::Size chroma) {
+  Grid grid;
+  const auto cell = [](double pixel) { return static_cast<int>(std::floor(pixel / 2)); };
+  grid.left = std::max(0, cell(box.left + first_column * box.width));
+  grid.right = std::min(chroma.width, cell(box.left + last_column * box.width) + 1);
+  grid.top = std::max(0, cell(box.top + first_row * box.height));
+  grid.bottom = std::min(chroma.height, cell(box.top + last_row * box.height) + 1);
+  const double cells = static_cast<double>(std::max(0, grid.right - grid.left)) * std::max(0, grid.bottom - grid.top);
+  grid.step = std::max(1, static_cast<int>(std::ceil(std::sqrt(cells / most_samples))));
+  return grid;
+}
+
+/// BT.601.
+std::array<float, 3> lab_of(float luma, float cb, float cr, Picture::Range range) {
+  const bool limited = range == Picture::Range::limited;
+  const float y = limited ? (luma - 16) * (255.0F / 219.0F) : luma;
+  const float chroma = limited ? 255.0F / 224.0F : 1.0F;
+  const float u = chroma * (cb - 128);
+  const float v = chroma * (cr - 128);
+  return lab_from_srgb(y + 1.402F * v, y - 0.344136F * u - 0.714136F * v, y + 1.772F * u);
+}
+
+/// The four pixels of a chroma sample: their mean luma, and whether half of them are somebody's.
+struct Quad {
+  float luma = 0;
+  bool seen = false;
+};
+
+Quad quad_at(const cv::Mat& luma, const cv::Mat& mask, int column, int row) {
+  int sum = 0, seen = 0, all = 0;
+  for (int y = 2 * row; y < std::min(2 * row + 2, luma.rows); ++y) {
+    for (int x = 2 * column; x < std::min(2 * column + 2, luma.cols); ++x) {
+      sum += luma.at<std::uint8_t>(y, x);
+      seen += mask.at<std::uint8_t>(y, x) != 0 ? 1 : 0;
+      ++all;
+    }
+  }
+  return {static_cast<float>(sum) / static_cast<float>(all), 2 * seen > all};
+}
+
+float median(std::array<float, 2 * most_samples>& values, int n) {
+  std::nth_element(values.begin(), values.begin() + n / 2, values.begin() + n);
+  return values[n / 2];
+}
+
+}  // namespace
+
+std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, const Detection& detection) {
+  if (!picture.is_colour() || foreground.mask.empty() || detection.group || detection.box.top < 1) return std::nullopt;
+  const cv::Mat& mask = foreground.covered.empty() ? foreground.mask : foreground.covered;
+  const Grid grid = grid_of(detection.box, picture.cb().size());
+  std::array<std::array<float, 2 * most_samples>, 3> values{};
+  int n = 0;
+  for (int row = grid.top; row < grid.bottom; row += grid.step) {
+    for (int column = grid.left; column < grid.right && n < 2 * most_samples; column += grid.step) {
+      const Quad quad = quad_at(picture.luma(), mask, column, row);
+      if (!quad.seen) continue;
+      const std::array<float, 3> lab = lab_of(quad.luma, picture.cb().at<std::uint8_t>(row, column),
+                                              picture.cr().at<std::uint8_t>(row, column), picture.range());
+      for (int i = 0; i < 3; ++i) values[i][n] = lab[i];
+      ++n;
+    }
+  }
+  if (n < fewest_samples) return std::nullopt;
+  std::array<float, 3> colour{};
+  float variance = 0;
+  for (int i = 0; i < 3; ++i) {
+    colour[i] = median(values[i], n);
+    for (int k = 0; k < n; ++k) values[i][k] = std::abs(values[i][k] - colour[i]);
+    const float spread = half_of_normal * median(values[i], n);
+    variance += spread * spread / 3;
+  }
+  const float independent = std::max(1.0F, static_cast<float>(n) / alike);
+  return Appearance{
+      .lightness = colour[0], .a = colour[1], .b = colour[2], .deviation = std::sqrt(variance / independent + coded_to * coded_to)};
+}
+
+}  // namespace marey

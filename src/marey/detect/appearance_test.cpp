@@ -1,0 +1,97 @@
+#include "marey/detect/appearance.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace marey {
+namespace {
+
+const cv::Scalar grass(60, 140, 70), shirt(200, 60, 40), shorts(240, 240, 240), skin(120, 150, 200);
+
+/// A person in a blue shirt on grass, with noise, and the silhouette as a background model would give it.
+struct Scene {
+  cv::Mat bgr, mask;
+  Detection person;
+
+  explicit Scene(int height, int left = 100, int top = 40) : bgr(400, 301, CV_8UC3, grass), mask(400, 301, CV_8UC1, cv::Scalar(0)) {
+    const int width = height * 2 / 5;
+    const auto part = [&](double from, double to, double share, const cv::Scalar& colour) {
+      const int inset = static_cast<int>(width * (1 - share) / 2);
+      const cv::Rect rect(left + inset, top + static_cast<int>(from * height), width - 2 * inset,
+                          static_cast<int>(to * height) - static_cast<int>(from * height));
+      bgr(rect).setTo(colour);
+      mask(rect).setTo(255);
+    };
+    part(0, 0.15, 0.3, skin);
+    part(0.15, 0.5, 0.7, shirt);
+    part(0.5, 0.7, 0.6, shorts);
+    part(0.7, 1, 0.5, skin);
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 4);
+    for (auto pixel = bgr.begin<cv::Vec3b>(); pixel != bgr.end<cv::Vec3b>(); ++pixel) {
+      for (int c = 0; c < 3; ++c) (*pixel)[c] = cv::saturate_cast<uchar>((*pixel)[c] + normal(random));
+    }
+    person.box = {static_cast<double>(left), static_cast<double>(top), static_cast<double>(width), static_cast<double>(height)};
+  }
+
+  std::optional<Appearance> seen() const { return upper_body(Picture::from_bgr(bgr), {.mask = mask}, person); }
+};
+
+cv::Vec3f lab_of(const cv::Scalar& bgr) {
+  cv::Mat one(1, 1, CV_32FC3, bgr / 255), lab;
+  cv::cvtColor(one, lab, cv::COLOR_BGR2Lab);
+  return lab.at<cv::Vec3f>(0, 0);
+}
+
+TEST(UpperBody, IsTheShirtsColourFarAndNear) {
+  for (const int height : {30, 60, 101, 300}) {
+    const auto seen = Scene(height).seen();
+    ASSERT_TRUE(seen) << height;
+    const cv::Vec3f truth = lab_of(shirt);
+    EXPECT_NEAR(seen->lightness, truth[0], 5) << height;
+    EXPECT_NEAR(seen->a, truth[1], 6) << height;
+    EXPECT_NEAR(seen->b, truth[2], 6) << height;
+    EXPECT_LT(seen->deviation, 6) << height;
+    EXPECT_GE(seen->deviation, 2) << height;
+  }
+}
+
+TEST(UpperBody, WhatIsNotForegroundIsNotLookedAt) {
+  Scene scene(100);
+  scene.bgr(cv::Rect(100, 40, 20, 100)).setTo(cv::Scalar(0, 0, 255));
+  scene.mask(cv::Rect(100, 40, 20, 100)).setTo(0);
+  const auto seen = scene.seen();
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->b, lab_of(shirt)[2], 6);
+}
+
+TEST(UpperBody, NoColourIsToldWhereNoneIsSeen) {
+  EXPECT_FALSE(Scene(8).seen()) << "too small";
+  EXPECT_FALSE(Scene(200, 100, 0).seen()) << "the head may be outside the picture";
+  Scene nobody(100);
+  nobody.mask.setTo(0);
+  EXPECT_FALSE(nobody.seen());
+  Scene shared(100);
+  shared.person.group = 1;
+  EXPECT_FALSE(shared.seen());
+  const Scene grey(100);
+  cv::Mat luma;
+  cv::cvtColor(grey.bgr, luma, cv::COLOR_BGR2GRAY);
+  EXPECT_FALSE(upper_body(Picture(luma), {.mask = grey.mask}, grey.person));
+  EXPECT_FALSE(upper_body(Picture::from_bgr(grey.bgr), {}, grey.person));
+}
+
+TEST(UpperBody, BoxesBeyondThePictureAreNoTrouble) {
+  const Scene scene(100);
+  for (const Box& box : {Box{-50, 20, 60, 100}, Box{290, 390, 60, 100}, Box{5000, 5000, 10, 10}, Box{0, 20, 301, 380}}) {
+    Detection person;
+    person.box = box;
+    const auto seen = upper_body(Picture::from_bgr(scene.bgr), {.mask = scene.mask}, person);
+    EXPECT_TRUE(!seen || std::isfinite(seen->deviation));
+  }
+}
+
+}  // namespace
+}  // namespace marey
