@@ -65,7 +65,7 @@ class CameraFiles {
 
   void write(std::int64_t frame) {
     const double own_time = static_cast<double>(frame) / *eye_.rate_hz;
-    const double time = match_.match_time(own_time + eye_.offset_s);
+    const double time = match_.match_time(own_time + eye_.offset_s.value_or(0));
     motion_.advance(time);
     const auto stances = match_.stances(motion_.people());
     const std::vector<SeenPerson> seen = look_at(camera_, match_.figures, stances);

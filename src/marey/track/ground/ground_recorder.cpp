@@ -84,6 +84,7 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
   still_open.reserve(tracks.size());
   auto open = open_.begin();  // both lists are in the order of ids
   const auto close = [&] {
+    open->samples.shrink_to_fit();
     if (open->confirmed && !open->samples.empty()) closed_.push_back(std::move(*open));
     ++open;
   };
