@@ -100,7 +100,7 @@ class Match(unittest.TestCase):
         folder = self.simulate("match", "--cameras", 3, "--seconds", 1, "--offset", 0.4, "--hide-offsets")
         told = re.findall(r"offset_s = (\S+)", (folder / "rig.toml").read_text())
         true = re.findall(r"offset_s = (\S+)", (folder / "true_rig.toml").read_text())
-        self.assertEqual([float(t) for t in told], [0, 0, 0])
+        self.assertEqual(told, [])
         self.assertEqual(float(true[0]), 0)
         self.assertTrue(all(0 < abs(float(t)) <= 0.4 for t in true[1:]), true)
 

@@ -185,8 +185,10 @@ void write_rigs(const Match& match, const fs::path& folder) {
       camera.detections = camera.name + ".txt";
   }
   Rig told = exact;
-  for (RigCamera& camera : told.cameras) camera.offset_s = options.hide_offsets ? 0 : camera.offset_s;
-  if (options.hide_offsets) write(exact, "true_rig.toml");
+  if (options.hide_offsets) {
+    write(exact, "true_rig.toml");
+    for (RigCamera& camera : told.cameras) camera.offset_s.reset();
+  }
   write(told, "rig.toml");
   if (!options.films) return;
   Rig boxes = told, start = told;

@@ -62,7 +62,7 @@ class Builder {
     camera.lens = lens;
     camera.camera_from_world = looking(centre, target, options_.stand == MatchStand::football ? random_.uniform(-0.015, 0.015) : 0);
     const double offset = random_.uniform(-options_.offset_s, options_.offset_s);
-    if (!rig_.cameras.empty()) camera.offset_s = offset;
+    camera.offset_s = rig_.cameras.empty() ? 0 : offset;
     rig_.cameras.push_back(std::move(camera));
   }
 
@@ -92,7 +92,7 @@ class Builder {
                  y = -(options_.pitch.width + kBehind + random_.uniform(-0.5, 0.5));
     const double height = 7.4 + random_.uniform(-0.2, 0.2);
     for (const double side : {-1.0, 1.0}) {
-      const Vector<3> ahead(side * 0.47, 0.87, -0.145);
+      const Vector<3> ahead(side * 0.47, 0.87, -0.165);
       const Vector<3> centre(x + 0.25 * side, y, height);
       add(side < 0 ? "left" : "right", {3072, 1728}, 0.686, centre, centre + ahead);
     }

@@ -23,13 +23,13 @@ constexpr double kStripe = 5.25;      // m, of mowing
 constexpr double kMown = 4;           // m beyond the lines
 constexpr double kWall = 24;          // m beyond the lines
 constexpr double kBoards = 1.1;       // m high
-constexpr Rgb kLight{88, 99, 62}, kDark{60, 86, 62}, kBeyond{70, 90, 58}, kPaint{208, 213, 206}, kSky{196, 206, 226},
+constexpr Rgb kLight{94, 106, 74}, kDark{70, 94, 74}, kBeyond{76, 96, 68}, kPaint{208, 213, 206}, kSky{196, 206, 226},
     kTrees{38, 58, 34}, kBoard{58, 76, 84};
 
 struct Patch {
   double size, strength;  // m, share of the brightness
 };
-constexpr std::array<Patch, 5> kPatches{{{14, 0.05}, {5, 0.05}, {1.3, 0.05}, {0.35, 0.07}, {0.1, 0.10}}};
+constexpr std::array<Patch, 5> kPatches{{{14, 0.05}, {5, 0.05}, {1.3, 0.05}, {0.35, 0.06}, {0.1, 0.12}}};
 
 Rgb mix(const Rgb& a, const Rgb& b, double share) {
   Rgb result{};
@@ -130,7 +130,7 @@ class Painter {
     const double round = std::atan2(ray.y(), ray.x());
     const double high = camera_.centre().z() + rise * 95;  // m, at about where the wall is
     if (high < kBoards) return times(kBoard, 1 + 0.15 * value_noise({round * 60, 0}, seed_ + 20));
-    const double tops = 10 + 3 * value_noise({round * 25, 1}, seed_ + 21) + 1.5 * value_noise({round * 120, 2}, seed_ + 22);
+    const double tops = 9.5 + 1.6 * value_noise({round * 25, 1}, seed_ + 21) + 0.7 * value_noise({round * 120, 2}, seed_ + 22);
     const Vector<2> leaves(round * 200, high * 2);
     if (high < tops)
       return times(kTrees, 1 + 0.35 * value_noise(leaves, seed_ + 23) + 0.25 * value_noise(3.1 * leaves, seed_ + 24));
