@@ -1,0 +1,267 @@
+#include "marey/calibrate/ground_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace marey {
+namespace {
+
+constexpr double kSegment_s = 2;       // long enough to show how somebody moves, short enough to be one person's
+constexpr double kSample_s = 0.2;      // between the places that are compared
+constexpr double kMemory_s = 0.5;      // errors hang together for about so long
+constexpr double kFloor_m = 0.12;      // noise that a smoothed place has at least
+constexpr double kStrangers_m = 1.0;   // how much the distance of two different people changes within a segment
+constexpr double kDensity = 0.01;      // other people per m²
+constexpr double kFarthest_m = 4;      // who is farther apart is not one person
+constexpr double kPaired = 2;          // nats above which a pair takes part in the fine search
+constexpr double kBlock_s = 6;         // the systematic part of a pair is taken to stay for so long
+constexpr double kStep_s = 0.1;        // of the coarse search
+constexpr std::size_t kPeaks = 6;      // that are refined
+constexpr int kIterations = 20;        // of the fine search
+constexpr double kStandsOut = 4;       // times what peaks differ by chance
+constexpr double kExplained = 0.2;     // of who walks before both cameras, that must be seen by both
+constexpr double kOptimism = 1.5;      // by which errors that hang together for longer make the answer worse than least squares say
+constexpr double kBeside_s = 0.5;      // a peak so near is the same one
+constexpr double kWalks_m = 1.5;       // who gets no farther within a segment stands
+constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that can tell anything
+constexpr double kLeastMeeting_s = 3;  // person-seconds in places that both see, that make an overlap
+constexpr double kCell_m = 4;
+
+double log_det(const Matrix<2>& m) {
+  return std::log(m.determinant());
+}
+
+std::pair<int, int> cell_of(const Vector<2>& place) {
+  return {static_cast<int>(std::floor(place.x() / kCell_m)), static_cast<int>(std::floor(place.y() / kCell_m))};
+}
+
+std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
+  double begin = 1e300, end = -1e300;
+  for (const SmoothPath& path : paths) begin = std::min(begin, path.begin_s()), end = std::max(end, path.end_s());
+  return {begin, end};
+}
+
+}  // namespace
+
+GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options)
+    : b_(b), options_(options) {
+  constexpr int kSamples = static_cast<int>(kSegment_s / kSample_s);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    Segment segment;
+    for (double t = a[i].begin_s(); t < a[i].end_s(); t += kSample_s) {
+      const auto state = a[i].at(t);
+      if (state) segment.times_s.push_back(t), segment.states.push_back(*state);
+      if (!state || segment.states.size() == kSamples) {
+        segment.path = i;
+        if (segment.states.size() == kSamples) segments_.push_back(std::move(segment));
+        segment = {};
+      }
+    }
+  }
+  for (const SmoothPath& path : b) {
+    for (double t = path.begin_s(); t < path.end_s(); t += kSample_s) {
+      if (const auto state = path.at(t)) cells_.insert(cell_of(state->place));
+    }
+  }
+  if (a.empty() || b.empty()) return;
+  const auto [a_begin, a_end] = span_of(a);
+  const auto [b_begin, b_end] = span_of(b);
+  first_s_ = std::max(-options.most_offset_s, a_begin + options.least_common_s - b_end);
+  last_s_ = std::min(options.most_offset_s, a_end - options.least_common_s - b_begin);
+}
+
+/// Of the segment being the same person's as `other` against another's; nothing where they are not to be compared.
+std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const {
+  const std::size_t count = segment.states.size();
+  const auto middle = other.at(segment.times_s[count / 2] - shift_s);
+  if (!middle || (middle->place - segment.states[count / 2].place).norm() > kFarthest_m) return std::nullopt;
+  Vector<2> mean = Vector<2>::Zero();
+  Matrix<2> square = Matrix<2>::Zero(), noise = kFloor_m * kFloor_m * Matrix<2>::Identity();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto there = other.at(segment.times_s[k] - shift_s);
+    if (!there) return std::nullopt;
+    const Vector<2> apart = segment.states[k].place - there->place;
+    const double share = 1.0 / static_cast<double>(count);
+    mean += share * apart;
+    square += share * apart * apart.transpose();
+    noise += share * (segment.states[k].noise + there->noise);
+  }
+  const Matrix<2> spread = square - mean * mean.transpose();
+  constexpr double kWorth = kSegment_s / kMemory_s;  // independent samples
+  const double systematic = options_.systematic_m * options_.systematic_m;
+  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / kWorth;
+  const Matrix<2> strangers = noise + kStrangers_m * kStrangers_m * Matrix<2>::Identity();
+  const double same_mean =
+      -0.5 * mean.dot(of_mean.inverse() * mean) - std::log(2 * std::numbers::pi) - 0.5 * log_det(of_mean) - std::log(kDensity);
+  const double same_motion =
+      -0.5 * (kWorth - 1) *
+      ((noise.inverse() * spread).trace() + log_det(noise) - (strangers.inverse() * spread).trace() - log_det(strangers));
+  return same_mean + same_motion;
+}
+
+std::optional<GroundPair::Match> GroundPair::match(const Segment& segment, double shift_s) const {
+  std::optional<Match> best;
+  for (std::size_t j = 0; j < b_.size(); ++j) {
+    const auto ratio = likelihood_ratio(segment, b_[j], shift_s);
+    if (ratio && (!best || *ratio > best->score)) best = Match{j, *ratio};
+  }
+  return best;
+}
+
+double GroundPair::score(double shift_s) const {
+  double sum = 0;
+  for (const Segment& segment : segments_) {
+    const auto found = match(segment, shift_s);
+    // As likely as not the other camera did not see the person at all: what speaks against costs little.
+    if (found) sum += found->score > 0 ? found->score + std::log1p(std::exp(-found->score)) : std::log1p(std::exp(found->score));
+  }
+  return sum;
+}
+
+/// Shifts that are better than those beside, and by how much peaks differ by chance.
+GroundPair::Peaks GroundPair::peaks() const {
+  std::vector<double> scores;
+  for (double shift = first_s_; shift <= last_s_; shift += kStep_s) scores.push_back(score(shift));
+  std::vector<std::pair<double, double>> found;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (scores[i] <= 0 || (i > 0 && scores[i - 1] >= scores[i]) || (i + 1 < scores.size() && scores[i + 1] > scores[i])) continue;
+    found.emplace_back(-scores[i], first_s_ + kStep_s * static_cast<double>(i));
+  }
+  std::sort(found.begin(), found.end());
+  Peaks result;
+  for (const auto& peak : found) {
+    if (result.shifts_s.size() < kPeaks) result.shifts_s.push_back(peak.second);
+  }
+  // The best may be the true one; of the others half lie below the second quarter's end.
+  if (found.size() >= 5) {
+    const auto others = std::span(found).subspan(1);
+    result.chance = others[others.size() / 2].first - others[others.size() / 8].first;
+  }
+  return result;
+}
+
+/// One step of least squares: the shift, the systematic part of all pairs, and that of each, which is eliminated.
+std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
+  struct Block {
+    Matrix<2> own;
+    Eigen::Matrix<double, 2, 3> shared = Eigen::Matrix<double, 2, 3>::Zero();
+    Vector<2> right = Vector<2>::Zero();
+  };
+  const double prior = 1 / (options_.systematic_m * options_.systematic_m);
+  std::map<std::array<std::int64_t, 3>, Block> blocks;
+  Matrix<3> normal = Eigen::Vector3d(0, prior, prior).asDiagonal();
+  Vector<3> right = Vector<3>::Zero();
+  for (const Segment& segment : segments_) {
+    const auto found = match(segment, shift_s);
+    if (!found || found->score < kPaired) continue;
+    const auto when = static_cast<std::int64_t>(std::floor(segment.times_s[0] / kBlock_s));
+    auto& block = blocks
+                      .try_emplace({static_cast<std::int64_t>(segment.path), static_cast<std::int64_t>(found->path), when},
+                                   Block{prior * Matrix<2>::Identity()})
+                      .first->second;
+    for (std::size_t k = 0; k < segment.states.size(); ++k) {
+      const auto there = b_[found->path].at(segment.times_s[k] - shift_s);
+      if (!there) continue;
+      const Matrix<2> noise = segment.states[k].noise + there->noise + kFloor_m * kFloor_m * Matrix<2>::Identity();
+      const Matrix<2> weight = kSample_s / kMemory_s * noise.inverse();
+      // apart + velocity · shift = systematic of all + of the pair + noise
+      const Vector<2> apart = segment.states[k].place - there->place;
+      Eigen::Matrix<double, 2, 3> shared;
+      shared << there->velocity, -Matrix<2>::Identity();
+      normal += shared.transpose() * weight * shared;
+      right -= shared.transpose() * weight * apart;
+      block.own += weight;
+      block.shared -= weight * shared;
+      block.right += weight * apart;
+    }
+  }
+  for (const auto& [key, block] : blocks) {
+    const Matrix<2> inverse = block.own.inverse();
+    normal -= block.shared.transpose() * inverse * block.shared;
+    right -= block.shared.transpose() * inverse * block.right;
+  }
+  const Eigen::LDLT<Matrix<3>> solver(normal);
+  if (blocks.empty() || solver.info() != Eigen::Success || !solver.isPositive() || !(normal(0, 0) > 1e-9)) return std::nullopt;
+  const Vector<3> by = solver.solve(right);
+  const double variance = solver.solve(Vector<3>::UnitX()).x();
+  if (!(variance > 0) || !std::isfinite(by.x())) return std::nullopt;
+  return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0};
+}
+
+std::optional<GroundPair::Fit> GroundPair::refine(double shift_s) const {
+  std::optional<Fit> fit;
+  for (int i = 0; i < kIterations; ++i) {
+    const double from = fit ? fit->shift_s : shift_s;
+    fit = step(from);
+    if (!fit) return std::nullopt;
+    if (std::abs(fit->shift_s - from) < 1e-5) break;
+  }
+  fit->score = score(fit->shift_s);
+  return fit;
+}
+
+/// Whether somebody gets anywhere in this segment.
+bool GroundPair::walks(const Segment& segment) {
+  return (segment.states.back().place - segment.states.front().place).norm() > kWalks_m;
+}
+
+OffsetVerdict GroundPair::without_answer() const {
+  double meeting = 0, moving = 0;
+  for (const Segment& segment : segments_) {
+    const auto common = std::count_if(segment.states.begin(), segment.states.end(),
+                                      [&](const SmoothPath::State& state) { return cells_.contains(cell_of(state.place)); });
+    meeting += kSample_s * static_cast<double>(common);
+    if (walks(segment)) moving += kSample_s * static_cast<double>(common);
+  }
+  if (meeting < kLeastMeeting_s) return OffsetVerdict::no_overlap;
+  return moving < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
+}
+
+/// Of those who walk where the other camera sees people, and while it films, the share that it sees walk there too.
+double GroundPair::explained(double shift_s) const {
+  const auto [begin, end] = span_of(b_);
+  double all = 0, matched = 0;
+  for (const Segment& segment : segments_) {
+    if (segment.times_s.front() - shift_s < begin || segment.times_s.back() - shift_s > end) continue;
+    if (!walks(segment) || !cells_.contains(cell_of(segment.states[segment.states.size() / 2].place))) continue;
+    all += 1;
+    const auto found = match(segment, shift_s);
+    if (found && found->score > kPaired) matched += 1;
+  }
+  return all > 0 ? matched / all : 0;
+}
+
+GroundOffset GroundPair::find() const {
+  GroundOffset result;
+  result.verdict = without_answer();
+  if (result.verdict != OffsetVerdict::ambiguous) return result;
+  std::vector<Fit> fits;
+  const auto [coarse, chance] = peaks();
+  for (const double peak : coarse) {
+    if (const auto fit = refine(peak); fit && fit->shift_s >= first_s_ - kStep_s && fit->shift_s <= last_s_ + kStep_s)
+      fits.push_back(*fit);
+  }
+  if (fits.empty()) return result;
+  std::stable_sort(fits.begin(), fits.end(), [](const Fit& x, const Fit& y) { return x.score > y.score; });
+  const Fit& best = fits[0];
+  const auto rival =
+      std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kBeside_s; });
+  const double gap = best.score - (rival == fits.end() ? 0 : rival->score);
+  result.offset_s = best.shift_s;
+  result.deviation_s = best.deviation_s;
+  if (gap >= std::max(options_.least_score, kStandsOut * chance) && explained(best.shift_s) >= kExplained &&
+      best.deviation_s <= options_.most_deviation_s)
+    result.verdict = OffsetVerdict::found;
+  return result;
+}
+
+}  // namespace marey

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "marey/calibrate/ground_offset.h"
+#include "marey/calibrate/ground_paths.h"
+
+namespace marey {
+
+/// Two cameras' ways over one ground, and how well they agree when the second's clock is shifted.
+class GroundPair {
+ public:
+  GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options);
+
+  /// The shift, added to b's times, that explains both best.
+  GroundOffset find() const;
+
+  /// Logarithm of the likelihood of the ways at this shift, but for a constant; nats.
+  double score(double shift_s) const;
+
+ private:
+  struct Segment {
+    std::size_t path = 0;
+    std::vector<double> times_s;
+    std::vector<SmoothPath::State> states;
+  };
+  struct Match {
+    std::size_t path = 0;
+    double score = 0;
+  };
+  struct Peaks {
+    std::vector<double> shifts_s;  // the best first
+    double chance = 0;             // nats
+  };
+  struct Fit {
+    double shift_s = 0, deviation_s = 0, score = 0;
+  };
+
+  std::optional<Match> match(const Segment& segment, double shift_s) const;
+  std::optional<double> likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const;
+  Peaks peaks() const;
+  std::optional<Fit> refine(double shift_s) const;
+  std::optional<Fit> step(double shift_s) const;
+  OffsetVerdict without_answer() const;
+  static bool walks(const Segment& segment);
+  double explained(double shift_s) const;
+
+  const std::vector<SmoothPath>& b_;
+  GroundOffsetOptions options_;
+  std::vector<Segment> segments_;
+  std::set<std::pair<int, int>> cells_;  // of the ground, where b saw somebody
+  double first_s_ = 0, last_s_ = 0;      // shifts to be tried
+};
+
+}  // namespace marey
