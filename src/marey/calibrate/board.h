@@ -24,7 +24,10 @@ struct Board {
 
   int corner_count() const { return corners.width * corners.height; }
   /// Where corner `id` lies in the board's frame, m.
-  Vector<3> corner(int id) const { return {(id % corners.width) * square_m, (id / corners.width) * square_m, 0.0}; }
+  Vector<3> corner(int id) const {
+    const int row = id / corners.width, column = id % corners.width;
+    return {column * square_m, row * square_m, 0.0};
+  }
 };
 
 /// `chess:9x6:0.025` (inner corners, side of a square in m) or `charuco:COLSxROWS:SQUARE:MARKER:DICTIONARY` (squares, sides in m,
