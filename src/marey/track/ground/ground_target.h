@@ -17,6 +17,7 @@
 #include "marey/core/observation.h"
 #include "marey/core/track.h"
 #include "marey/geometry/chi_square.h"
+#include "marey/track/ground/ground_presence.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey {
@@ -29,6 +30,8 @@ struct GroundTarget {
   Timestamp born{};
   Timestamp last_seen{};                        ///< by any camera
   double evidence = 0;                          ///< grows with observations, shrinks with misses; until it is confirmed
+  GroundPresence presence = {1, 1};             ///< whether it is there, and can be seen
+  double away = 0;                              ///< s for which no camera could have seen it, since it was last seen
   double owed = 0;                              ///< s for which somebody should have seen it since then
   double missed = 0;                            ///< evidence lost at this instant
   double should = 0;                            ///< the greatest probability that a camera of this instant sees it
@@ -68,7 +71,8 @@ class GroundRules {
   /// To the instant `dt` > 0 seconds after the one before.
   void predict(Target& target, double dt) const {
     target.filter.predict(dt);
-    target.owed += target.cameras == 0 ? dt * target.should : 0;
+    target.presence.predict(dt);
+    if (target.cameras == 0) (target.should > 0 ? target.owed : target.away) += target.should > 0 ? dt * target.should : dt;
     target.cameras = 0;
     target.missed = 0;
     target.should = 0;
@@ -114,6 +118,8 @@ class GroundRules {
   void take(Target& target, const Observation<2>& seen, Timestamp now) const {
     target.last_seen = now;
     target.owed = 0;
+    target.away = 0;
+    target.presence.see();
     target.evidence = std::min(most_evidence, target.evidence + evidence_of(seen.score));
     if (target.evidence >= options_.confirm) target.confirmed = true;
     note(target, seen);
@@ -122,6 +128,7 @@ class GroundRules {
   /// A look brought nothing of this target, which was `visible` with that probability (ground_sight.h).
   void miss(Target& target, double visible) const {
     target.should = std::max(target.should, visible);
+    target.presence.miss(visible * options_.detected);
     const double cost = std::min(miss_evidence * visible, miss_evidence - target.missed);
     target.missed += cost;
     target.evidence -= cost;
@@ -142,7 +149,7 @@ class GroundRules {
     const double unseen = seconds(now - target.last_seen);
     if (!target.confirmed) return target.evidence < 0 || unseen > tentative_patience;
     const double patience = std::min(options_.patience, seconds(target.last_seen - target.born) + tentative_patience);
-    return target.owed > patience || unseen > 2 * options_.patience;
+    return target.owed > patience || target.away > away_patience || unseen > 2 * options_.patience;
   }
 
   Track<2> report(const Target& target) const {
@@ -198,6 +205,7 @@ class GroundRules {
   static constexpr double miss_evidence = 0.7;  // at most, an instant
   static constexpr double most_evidence = 10;
   static constexpr double tentative_patience = 0.4;  // s
+  static constexpr double away_patience = 1;         // s out of all pictures, after which who comes in is somebody else
   static constexpr float colour_rate = 0.05F;        // of a new colour in what is learned
   static constexpr double light = 8;                 // Lab: what sun, shade and another camera make of one colour
   static constexpr double people_differ = 30;        // Lab: spread of colours over people
