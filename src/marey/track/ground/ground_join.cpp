@@ -28,12 +28,6 @@ constexpr double lightness_counts = 0.6;              // of a difference in ligh
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t most_kinds = 300;
 
-Matrix<4> covariance_of(const GroundState& state) {
-  Matrix<4> P;
-  P << state.Ppp, state.Ppv, state.Ppv.transpose(), state.Pvv;
-  return P;
-}
-
 template <int N>
 double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
   const Eigen::LLT<Matrix<N>> llt(S);
@@ -56,7 +50,7 @@ double colour_log_normal(const Appearance& a, const Appearance& b) {
 /// Whether somebody there may be about to be out of sight: some place a second's way around is.
 bool near_border(const GroundState& state, double direction, const InSight& in_sight) {
   if (!in_sight) return false;
-  const Vector<2> ahead = state.place + direction * 0.7 * state.velocity;
+  const Vector<2> ahead = state.place() + direction * 0.7 * state.velocity();
   for (int k = 0; k < 8; ++k) {
     const double angle = k * std::numbers::pi / 4;
     if (!in_sight(ahead + 1.5 * Vector<2>(std::cos(angle), std::sin(angle)))) return true;
@@ -161,18 +155,18 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   const double gap = seconds(head.time - tail.time);
   if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
   const GroundState expected = predicted(tail.state, gap, options.motion);
-  const double way = (head.state.place - tail.state.place).norm();
-  const double unsure = 3 * std::sqrt(tail.state.Ppp.trace() + head.state.Ppp.trace() + 2 * place_strays * place_strays);
+  const double way = (head.state.place() - tail.state.place()).norm();
+  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * place_strays * place_strays);
   if (way > options.max_speed * gap + unsure) return std::nullopt;
   Vector<4> residual;
-  residual << head.state.place - expected.place, head.state.velocity - expected.velocity;
-  Matrix<4> S = covariance_of(expected) + covariance_of(head.state);
+  residual << head.state.place() - expected.place(), head.state.velocity() - expected.velocity();
+  Matrix<4> S = expected.covariance() + head.state.covariance();
   S.diagonal().head<2>().array() += 2 * place_strays * place_strays;
   S.diagonal().tail<2>().array() += 2 * speed_strays * speed_strays;
-  const Matrix<2> anyhow = head.state.Pvv + options.motion.speed_variance() * Matrix<2>::Identity();
+  const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double left = tail.at_border ? left_at_border : left_inside;
   const double found_again = std::log((1 - left) / left) - 2 * std::log1p(gap);
-  const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity, anyhow);
+  const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity(), anyhow);
   return log_normal<4>(residual, S) + found_again - came + colours.same(tail.appearance, head.appearance);
 }
 

@@ -108,9 +108,10 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
       head.time = timestamp_from_seconds(begun);
       tail.time = timestamp_from_seconds(begun + uniform(0.2, 3));
       for (GroundEnd* end : {&head, &tail}) {
-        end->state.place = Vector<2>(uniform(0, 12), uniform(0, 12));
-        end->state.velocity = Vector<2>(uniform(-3, 3), uniform(-3, 3));
-        end->state.Ppp *= 0.1;
+        end->state.x[0] = Vector<2>(uniform(0, 12), uniform(0, 12));
+        end->state.x[1] = Vector<2>(uniform(-3, 3), uniform(-3, 3));
+        end->state.P[0] = 0.1 * Matrix<2>::Identity();
+        end->state.P[3] = end->state.P[5] = Matrix<2>::Identity();
         end->at_border = uniform(0, 1) < 0.3;
       }
       if (uniform(0, 1) < 0.8) {

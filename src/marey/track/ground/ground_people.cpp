@@ -13,7 +13,7 @@ namespace {
 class Writer {
  public:
   Writer(std::span<const std::int32_t> frames, std::span<const Timestamp> times, const GroundJoinOptions& options)
-      : frames_(frames), times_(times), options_(options), motion_{.acceleration = options.acceleration} {}
+      : frames_(frames), times_(times), options_(options), motion_(options.motion) {}
 
   /// Too brief, or seen too seldom, to be somebody.
   bool is_false_alarm(const std::vector<GroundTracklet>& tracklets, const std::vector<int>& chain) const {

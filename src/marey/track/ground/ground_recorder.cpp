@@ -115,10 +115,9 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   }
   open_.clear();
   std::sort(closed_.begin(), closed_.end(), [](const GroundTracklet& a, const GroundTracklet& b) { return a.track < b.track; });
-  const GroundMotion motion{.acceleration = options.acceleration};
   std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
   const std::vector<std::vector<int>> chains =
-      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = motion});
+      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = options.motion});
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
 }
 

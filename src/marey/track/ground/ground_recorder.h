@@ -22,7 +22,7 @@ struct GroundJoinOptions {
   double shortest = 0.5;      ///< who is seen for less is taken for a false alarm
   double rarest = 0.2;        ///< who is seen in a smaller share of the instants between first and last likewise
   double max_speed = 12;      ///< m/s; nobody runs faster
-  double acceleration = 2.5;  ///< m/s^1.5; how restlessly people move, for the smoother
+  GroundMotion motion;        ///< how people move
 };
 
 /// What was seen of people on the ground, instant by instant, kept for a second pass that may look ahead: 48 bytes a person and

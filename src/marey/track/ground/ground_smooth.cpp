@@ -11,57 +11,133 @@ namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
 
-/// One step of the damped walk: place += drift · velocity, velocity *= kept, and what noise adds per axis.
-struct Step {
-  double drift = 0, kept = 1;
-  double pp = 0, pv = 0, vv = 0;
+constexpr int upper(int i, int j) {
+  constexpr std::array<std::array<int, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+  return at[i][j];
+}
 
-  Step(double dt, const GroundMotion& motion) {
-    const double q = motion.acceleration * motion.acceleration;
-    const double tau = motion.settling;
-    kept = std::exp(-dt / tau);
-    const double lost = -std::expm1(-dt / tau);
-    drift = tau * lost;
-    vv = q * tau / 2 * lost * (1 + kept);
-    pv = q * drift * drift / 2;
-    // The closed form loses its digits in short steps, where damping does not matter.
-    pp = dt < 1e-3 * tau ? q * dt * dt * dt / 3 : q * tau * tau * (dt - 2 * drift + tau / 2 * lost * (1 + kept));
+/// What a step of time does to each axis: x becomes F x, and Q is added. F is upper triangular.
+struct Step {
+  Matrix<3> F = Matrix<3>::Identity();
+  Matrix<3> Q = Matrix<3>::Zero();
+};
+
+/// Covariance of velocity and acceleration that the motion tends to, per axis.
+Matrix<2> settled(const GroundMotion& motion) {
+  const double a = motion.acceleration * motion.acceleration / (2 * motion.push);
+  const double both = motion.settling * motion.push / (motion.settling + motion.push);
+  return (Matrix<2>() << a * motion.settling * both, a * both, a * both, a).finished();
+}
+
+/// A step so short that a few terms of its series are exact, by quadrature; doubled until it is as long as asked for.
+Step step_of(double dt, const GroundMotion& motion) {
+  const int doublings =
+      std::max(0, static_cast<int>(std::ceil(std::log2(dt / (0.1 * std::min(motion.push, motion.settling)) + 1e-9))));
+  const double h = std::ldexp(dt, -doublings);
+  Matrix<3> A = Matrix<3>::Zero();
+  A(0, 1) = A(1, 2) = 1;
+  A(1, 1) = -1 / motion.settling;
+  A(2, 2) = -1 / motion.push;
+  const auto flow = [&](double t) {
+    Matrix<3> sum = Matrix<3>::Identity(), term = Matrix<3>::Identity();
+    for (int k = 1; k < 10; ++k) {
+      term = (term * A * (t / k)).eval();
+      sum += term;
+    }
+    return sum;
+  };
+  Step step;
+  step.F = flow(h);
+  const double density = motion.acceleration * motion.acceleration / (motion.push * motion.push);
+  constexpr std::array<std::array<double, 2>, 4> gauss = {{{0.0694318442029737, 0.1739274225687269},
+                                                           {0.3300094782075719, 0.3260725774312731},
+                                                           {0.6699905217924281, 0.3260725774312731},
+                                                           {0.9305681557970263, 0.1739274225687269}}};
+  for (const auto& [place, weight] : gauss) {
+    const Vector<3> reached = flow(h * place).col(2);
+    step.Q += density * h * weight * reached * reached.transpose();
   }
+  for (int k = 0; k < doublings; ++k) {
+    step.Q = (step.F * step.Q * step.F.transpose() + step.Q).eval();
+    step.F = (step.F * step.F).eval();
+  }
+  return step;
+}
+
+/// Steps, of which most are as long as the one before.
+class Steps {
+ public:
+  explicit Steps(const GroundMotion& motion) : motion_(motion) {}
+  const Step& operator()(double dt) {
+    if (std::abs(dt - last_) > 1e-7) {
+      last_ = dt;
+      step_ = step_of(dt, motion_);
+    }
+    return step_;
+  }
+
+ private:
+  const GroundMotion& motion_;
+  double last_ = -1;
+  Step step_;
 };
 
 void advance(GroundState& state, const Step& step) {
-  state.place += step.drift * state.velocity;
-  state.velocity *= step.kept;
-  state.Ppp += step.drift * (state.Ppv + state.Ppv.transpose()) + step.drift * step.drift * state.Pvv;
-  state.Ppv = step.kept * (state.Ppv + step.drift * state.Pvv);
-  state.Pvv *= step.kept * step.kept;
-  state.Ppp.diagonal().array() += step.pp;
-  state.Ppv.diagonal().array() += step.pv;
-  state.Pvv.diagonal().array() += step.vv;
+  const Matrix<3>& F = step.F;
+  std::array<Matrix<2>, 6> P;
+  // Rows of F P, then times Fᵀ: sums over what lies on or right of the diagonal.
+  std::array<std::array<Matrix<2>, 3>, 3> FP;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      FP[i][j].setZero();
+      for (int k = i; k < 3; ++k) {
+        if (k <= j) {
+          FP[i][j] += F(i, k) * state.P[upper(k, j)];
+        } else {
+          FP[i][j] += F(i, k) * state.P[upper(j, k)].transpose();
+        }
+      }
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      Matrix<2>& block = P[upper(i, j)];
+      block = F(j, j) * FP[i][j];
+      for (int k = j + 1; k < 3; ++k) block += F(j, k) * FP[i][k];
+      block.diagonal().array() += step.Q(i, j);
+    }
+  }
+  state.P = P;
+  state.x[0] += F(0, 1) * state.x[1] + F(0, 2) * state.x[2];
+  state.x[1] = (F(1, 1) * state.x[1] + F(1, 2) * state.x[2]).eval();
+  state.x[2] *= F(2, 2);
 }
 
 void correct(GroundState& state, const Vector<2>& z, const Matrix<2>& R) {
-  const Matrix<2> S_inverse = (state.Ppp + R).inverse();
-  const Vector<2> residual = z - state.place;
-  const Matrix<2> Kp = state.Ppp * S_inverse;
-  const Matrix<2> Kv = state.Ppv.transpose() * S_inverse;
-  state.place += Kp * residual;
-  state.velocity += Kv * residual;
+  const Matrix<2> S_inverse = (state.P[0] + R).inverse();
+  const Vector<2> residual = z - state.x[0];
+  const std::array<Matrix<2>, 3> K = {state.P[0] * S_inverse, state.P[1].transpose() * S_inverse,
+                                      state.P[2].transpose() * S_inverse};
+  for (int i = 0; i < 3; ++i) state.x[i] += K[i] * residual;
   // P − K S Kᵀ; the blocks of the place as R S⁻¹ P, which loses no digits where P is far larger than R.
-  state.Pvv -= Kv * state.Ppv;
-  state.Ppv = (R * S_inverse * state.Ppv).eval();
-  state.Ppp = (R * S_inverse * state.Ppp).eval();
-  state.Ppp = (0.5 * (state.Ppp + state.Ppp.transpose())).eval();
-  state.Pvv = (0.5 * (state.Pvv + state.Pvv.transpose())).eval();
+  for (int i = 1; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) state.P[upper(i, j)] -= K[i] * state.P[j];
+  }
+  const Matrix<2> left = R * S_inverse;
+  for (int j = 0; j < 3; ++j) state.P[j] = (left * state.P[j]).eval();
+  for (const int i : {0, 3, 5}) state.P[i] = (0.5 * (state.P[i] + state.P[i].transpose())).eval();
 }
 
 /// One who is first seen at z, before that is taken in.
 GroundState unknown(const Vector<2>& z, const Matrix<2>& R, const GroundMotion& motion) {
   constexpr double vague = 1e4;  // times the variance of the first observation: as good as nothing
+  const Matrix<2> moves = settled(motion);
   GroundState state;
-  state.place = z;
-  state.Ppp = vague * R;
-  state.Pvv = motion.speed_variance() * Matrix<2>::Identity();
+  state.x[0] = z;
+  state.P[0] = vague * R;
+  state.P[3] = moves(0, 0) * Matrix<2>::Identity();
+  state.P[4] = moves(0, 1) * Matrix<2>::Identity();
+  state.P[5] = moves(1, 1) * Matrix<2>::Identity();
   return state;
 }
 
@@ -75,26 +151,26 @@ double weight_of(const GroundSample& sample, const Vector<2>& place) {
 void smooth_once(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
                  std::vector<GroundState>& before, std::vector<GroundMoment>& moments) {
   const auto spread = [&](std::size_t i) -> Matrix<2> { return samples[i].spread() / moments[i].fit; };
-  const auto step_to = [&](std::size_t i) {
-    return Step(seconds(times[samples[i].instant] - times[samples[i - 1].instant]), motion);
-  };
+  const auto seconds_to = [&](std::size_t i) { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); };
+  Steps steps(motion);
   GroundState state = unknown(samples[0].at(), spread(0), motion);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i > 0) advance(state, step_to(i));
+    if (i > 0) advance(state, steps(seconds_to(i)));
     before[i] = state;
     correct(state, samples[i].at(), spread(i));
   }
-  Vector<2> lp = Vector<2>::Zero();  // adjoint of the place
-  Vector<2> lv = Vector<2>::Zero();  // and of the velocity
+  std::array<Vector<2>, 3> l{Vector<2>::Zero(), Vector<2>::Zero(), Vector<2>::Zero()};  // the adjoint
   for (std::size_t i = samples.size(); i-- > 0;) {
     const GroundState& b = before[i];
-    const Vector<2> residual = samples[i].at() - b.place;
-    lp -= (b.Ppp + spread(i)).inverse() * (residual + b.Ppp * lp + b.Ppv * lv);
-    moments[i].place = b.place - b.Ppp * lp - b.Ppv * lv;
-    moments[i].velocity = b.velocity - b.Ppv.transpose() * lp - b.Pvv * lv;
+    const std::array<Matrix<2>, 6>& P = b.P;
+    l[0] -= (P[0] + spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
+    moments[i].place = b.x[0] - P[0] * l[0] - P[1] * l[1] - P[2] * l[2];
+    moments[i].velocity = b.x[1] - P[1].transpose() * l[0] - P[3] * l[1] - P[4] * l[2];
+    moments[i].acceleration = b.x[2] - P[2].transpose() * l[0] - P[4].transpose() * l[1] - P[5] * l[2];
     if (i == 0) break;
-    const Step step = step_to(i);
-    lv = (step.drift * lp + step.kept * lv).eval();
+    const Matrix<3>& F = steps(seconds_to(i)).F;
+    l[2] = (F(0, 2) * l[0] + F(1, 2) * l[1] + F(2, 2) * l[2]).eval();
+    l[1] = (F(0, 1) * l[0] + F(1, 1) * l[1]).eval();
   }
 }
 
@@ -104,10 +180,11 @@ GroundState filtered(std::span<const GroundSample> samples, std::span<const Grou
   const std::size_t n = samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
   const auto spread = [&](std::size_t i) -> Matrix<2> { return samples[i].spread() / moments[i].fit; };
+  Steps steps(motion);
   GroundState state = unknown(samples[at(0)].at(), spread(at(0)), motion);
   for (std::size_t k = 0; k < n; ++k) {
     const GroundSample& sample = samples[at(k)];
-    if (k > 0) advance(state, Step(std::abs(seconds(times[sample.instant] - times[samples[at(k - 1)].instant])), motion));
+    if (k > 0) advance(state, steps(std::abs(seconds(times[sample.instant] - times[samples[at(k - 1)].instant]))));
     correct(state, sample.at(), spread(at(k)));
   }
   return state;
@@ -115,9 +192,13 @@ GroundState filtered(std::span<const GroundSample> samples, std::span<const Grou
 
 }  // namespace
 
+double speed_variance(const GroundMotion& motion) {
+  return settled(motion)(0, 0);
+}
+
 GroundState predicted(const GroundState& state, double dt, const GroundMotion& motion) {
   GroundState later = state;
-  advance(later, Step(dt, motion));
+  advance(later, step_of(dt, motion));
   return later;
 }
 
@@ -139,8 +220,13 @@ GroundState first_state(std::span<const GroundSample> samples, std::span<const T
   const auto past = std::find_if(samples.begin(), samples.end(), [&](const GroundSample& s) { return times[s.instant] > last; });
   const auto some = samples.first(static_cast<std::size_t>(past - samples.begin()));
   GroundState state = filtered(some, smooth_ground(some, times, motion), times, motion, false);
-  state.velocity = -state.velocity;  // the walk looks the same backwards
-  state.Ppv = -state.Ppv;
+  state.x[1] = -state.x[1];  // velocities stray backwards as they do forwards
+  state.P[1] = -state.P[1];
+  // Pushes do not: nothing is known of them.
+  state.x[2].setZero();
+  state.P[2].setZero();
+  state.P[4].setZero();
+  state.P[5] = settled(motion)(1, 1) * Matrix<2>::Identity();
   return state;
 }
 
@@ -155,20 +241,18 @@ GroundState last_state(std::span<const GroundSample> samples, std::span<const Ti
 
 GroundMoment between(const GroundMoment& earlier, double since, const GroundMoment& later, double until,
                      const GroundMotion& motion) {
-  const Step one(since, motion);
-  const Step two(until, motion);
+  const Step one = step_of(since, motion);
+  const Step two = step_of(until, motion);
   // Per axis: x = F₁ a + C (b − F₂ F₁ a), C = Q₁ F₂ᵀ (F₂ Q₁ F₂ᵀ + Q₂)⁻¹.
-  const Matrix<2> F2 = (Matrix<2>() << 1, two.drift, 0, two.kept).finished();
-  const Matrix<2> Q1 = (Matrix<2>() << one.pp, one.pv, one.pv, one.vv).finished();
-  const Matrix<2> Q2 = (Matrix<2>() << two.pp, two.pv, two.pv, two.vv).finished();
-  const Matrix<2> C = Q1 * F2.transpose() * (F2 * Q1 * F2.transpose() + Q2).inverse();
-  const Matrix<2> from = (Matrix<2>() << 1, one.drift, 0, one.kept).finished();
+  const Matrix<3> C = one.Q * two.F.transpose() * (two.F * one.Q * two.F.transpose() + two.Q).inverse();
   GroundMoment moment;
   for (int axis = 0; axis < 2; ++axis) {
-    const Vector<2> a = from * Vector<2>(earlier.place[axis], earlier.velocity[axis]);
-    const Vector<2> x = a + C * (Vector<2>(later.place[axis], later.velocity[axis]) - F2 * a);
+    const Vector<3> a = one.F * Vector<3>(earlier.place[axis], earlier.velocity[axis], earlier.acceleration[axis]);
+    const Vector<3> b(later.place[axis], later.velocity[axis], later.acceleration[axis]);
+    const Vector<3> x = a + C * (b - two.F * a);
     moment.place[axis] = x[0];
     moment.velocity[axis] = x[1];
+    moment.acceleration[axis] = x[2];
   }
   return moment;
 }
