@@ -14,7 +14,7 @@ namespace marey {
 struct MatchFilmOptions {
   bool shadows = true;         ///< that people and goal posts cast
   double shadow_level = 0.7;   ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
-  double noise = 2;            ///< standard deviation of luma, grey levels
+  double noise = 1.2;          ///< standard deviation of luma, grey levels
   double light_change = 0.08;  ///< the light swings by this share of itself, over half a minute and more
 };
 
