@@ -1,7 +1,7 @@
 #include "marey/track/ground/ground_cut.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -127,20 +127,12 @@ std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet>
   std::vector<GroundTracklet> pieces;
   for (GroundTracklet& tracklet : tracklets) {
     const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
-    if (cuts.empty()) {
-      pieces.push_back(std::move(tracklet));
-      continue;
+    std::vector<GroundTracklet> later;  // the last first
+    for (auto cut = cuts.rbegin(); cut != cuts.rend(); ++cut) {
+      if (*cut > 0 && *cut < tracklet.samples.size()) later.push_back(split(tracklet, *cut));
     }
-    std::size_t from = 0;
-    for (std::size_t k = 0; k <= cuts.size(); ++k) {
-      const std::size_t to = k < cuts.size() ? cuts[k] : tracklet.samples.size();
-      if (to <= from) continue;
-      GroundTracklet piece{tracklet.track, tracklet.confirmed, {}};
-      piece.samples.assign(tracklet.samples.begin() + static_cast<std::ptrdiff_t>(from),
-                           tracklet.samples.begin() + static_cast<std::ptrdiff_t>(to));
-      pieces.push_back(std::move(piece));
-      from = to;
-    }
+    pieces.push_back(std::move(tracklet));
+    std::move(later.rbegin(), later.rend(), std::back_inserter(pieces));
   }
   return pieces;
 }

@@ -150,24 +150,28 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
   return std::clamp(colour_log_normal(*a, *b) - newcomer, surest_apart, surest_same);
 }
 
-std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,
-                                      const GroundChainOptions& options) {
-  const double gap = seconds(head.time - tail.time);
-  if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
-  const GroundState expected = predicted(tail.state, gap, options.motion);
-  const double way = (head.state.place() - tail.state.place()).norm();
-  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * place_strays * place_strays);
-  if (way > options.max_speed * gap + unsure) return std::nullopt;
+double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion) {
+  const GroundState expected = predicted(tail.state, seconds(head.time - tail.time), motion);
   Vector<4> residual;
   residual << head.state.place() - expected.place(), head.state.velocity() - expected.velocity();
   Matrix<4> S = expected.covariance() + head.state.covariance();
   S.diagonal().head<2>().array() += 2 * place_strays * place_strays;
   S.diagonal().tail<2>().array() += 2 * speed_strays * speed_strays;
+  return log_normal<4>(residual, S) + colours.same(tail.appearance, head.appearance);
+}
+
+std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,
+                                      const GroundChainOptions& options) {
+  const double gap = seconds(head.time - tail.time);
+  if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
+  const double way = (head.state.place() - tail.state.place()).norm();
+  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * place_strays * place_strays);
+  if (way > options.max_speed * gap + unsure) return std::nullopt;
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double left = tail.at_border ? left_at_border : left_inside;
   const double found_again = std::log((1 - left) / left) - 2 * std::log1p(gap);
   const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity(), anyhow);
-  return log_normal<4>(residual, S) + found_again - came + colours.same(tail.appearance, head.appearance);
+  return log_continuity(tail, head, colours, options.motion) + found_again - came;
 }
 
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,

@@ -59,6 +59,9 @@ class GroundColours {
   std::vector<Seen> kinds_;
 };
 
+/// Logarithm of how likely whoever made `tail` is to be found as `head` is: place, velocity and clothes. `tail` is the earlier.
+double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion);
+
 /// Logarithm of how much likelier it is that one person made both ends than that one left and another came; nothing where one
 /// person cannot have.
 std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,

@@ -118,7 +118,11 @@ GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets,
     std::vector<GroundSample> samples;
     for (const int member : *chain) {
       const GroundTracklet piece = std::move(tracklets[member]);
-      joined.pieces.push_back({piece.track, frames[piece.samples.front().instant], frames[piece.samples.back().instant], person});
+      for (std::size_t r = 0; r < piece.runs.size(); ++r) {
+        const std::size_t end = r + 1 < piece.runs.size() ? piece.runs[r + 1].first : piece.samples.size();
+        joined.pieces.push_back({piece.runs[r].track, frames[piece.samples[piece.runs[r].first].instant],
+                                 frames[piece.samples[end - 1].instant], person});
+      }
       samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
     }
     joined.recording.people.push_back({.id = person + 1, .label = {}, .team = {}});

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "marey/track/ground/ground_cut.h"
+#include "marey/track/ground/ground_meetings.h"
 #include "marey/track/ground/ground_people.h"
 
 namespace marey {
@@ -89,9 +90,9 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
     ++open;
   };
   for (const Track<2>& track : tracks) {
-    while (open != open_.end() && open->track < track.id) close();
-    const bool known = open != open_.end() && open->track == track.id;
-    still_open.push_back(known ? std::move(*open++) : GroundTracklet{.track = track.id, .confirmed = false, .samples = {}});
+    while (open != open_.end() && open->runs.front().track < track.id) close();
+    const bool known = open != open_.end() && open->runs.front().track == track.id;
+    still_open.push_back(known ? std::move(*open++) : GroundTracklet{{{track.id, 0}}, false, {}});
     GroundTracklet& tracklet = still_open.back();
     tracklet.confirmed |= track.confirmed;
     const Melted melted = melt(track, time, looks, claims);
@@ -114,10 +115,12 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
     if (open.confirmed && !open.samples.empty()) closed_.push_back(std::move(open));
   }
   open_.clear();
-  std::sort(closed_.begin(), closed_.end(), [](const GroundTracklet& a, const GroundTracklet& b) { return a.track < b.track; });
+  std::sort(closed_.begin(), closed_.end(),
+            [](const GroundTracklet& a, const GroundTracklet& b) { return a.runs.front().track < b.runs.front().track; });
+  exchange_where_they_met(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
   std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
-  const std::vector<std::vector<int>> chains =
-      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = options.motion});
+  const std::vector<std::vector<int>> chains = chain(
+      tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = options.motion});
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
 }
 

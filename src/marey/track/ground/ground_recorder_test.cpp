@@ -177,6 +177,44 @@ TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
   EXPECT_NE(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{1}, 249));
 }
 
+/// Where the first of two who run past each other is at time t, and the second; s and m.
+Vector<2> runs_right(double t) {
+  return {20 + 4 * t, 10};
+}
+Vector<2> runs_left(double t) {
+  return {20 - 4 * t, 10.3};
+}
+
+/// The story of two who run past each other at t = 0; from then on with their names exchanged, or not.
+GroundRecorder::Joined two_pass(bool exchanged) {
+  Story story;
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 150; ++k) {
+    const double t = 0.04 * k - 3;
+    const bool swapped = exchanged && t >= 0;
+    const Vector<2> first = swapped ? runs_left(t) : runs_right(t);
+    const Vector<2> second = swapped ? runs_right(t) : runs_left(t);
+    const auto noise = [&] { return 0.1 * normal(engine); };
+    story.instant({{.track = 1, .x = first.x() + noise(), .y = first.y() + noise()},
+                   {.track = 2, .x = second.x() + noise(), .y = second.y() + noise()}});
+  }
+  return story.join();
+}
+
+TEST(GroundRecorder, WhoRunsPastAnotherRunsOn) {
+  for (const bool exchanged : {false, true}) {
+    const auto joined = two_pass(exchanged);
+    ASSERT_EQ(joined.recording.people.size(), 2U);
+    for (const GroundRecording::Sample& sample : joined.recording.samples) {
+      const double t = 0.04 * sample.frame - 3;
+      const bool right = sample.person == *joined.person_of(TrackId{1}, 0);
+      EXPECT_LT((sample.place - (right ? runs_right(t) : runs_left(t))).norm(), 0.3) << "frame " << sample.frame;
+    }
+    EXPECT_EQ(joined.person_of(TrackId{1}, 0) == joined.person_of(TrackId{1}, 149), !exchanged);
+  }
+}
+
 /// Twenty people who run about as people do, seen by two cameras with a tenth of looks missed: truth is known.
 TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::mt19937_64 engine(11);

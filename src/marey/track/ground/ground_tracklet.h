@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -29,11 +30,22 @@ struct GroundSample {
   Vector<3> lab() const { return {static_cast<double>(colour[0]), static_cast<double>(colour[1]), static_cast<double>(colour[2])}; }
 };
 
-/// One stretch of one track: the instants at which it was seen.
+/// What is taken for one person for a while: the instants at which it was seen.
 struct GroundTracklet {
-  TrackId track{};
+  /// From this sample on, until the next run, the tracker called it `track`.
+  struct Run {
+    TrackId track{};
+    std::size_t first = 0;
+  };
+  std::vector<Run> runs;  ///< by `first`; the first begins at 0
   bool confirmed = false;
   std::vector<GroundSample> samples;
 };
+
+/// Takes from sample `from` on off and gives it back as a tracklet of its own. 0 < from < samples.
+GroundTracklet split(GroundTracklet& tracklet, std::size_t from);
+
+/// Puts `later`, whose samples are all later, at the end.
+void append(GroundTracklet& tracklet, const GroundTracklet& later);
 
 }  // namespace marey

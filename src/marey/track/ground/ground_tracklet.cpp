@@ -1,0 +1,26 @@
+#include "marey/track/ground/ground_tracklet.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace marey {
+
+GroundTracklet split(GroundTracklet& tracklet, std::size_t from) {
+  assert(from > 0 && from < tracklet.samples.size() && "both parts hold something");
+  GroundTracklet later{{}, tracklet.confirmed, {}};
+  later.samples.assign(tracklet.samples.begin() + static_cast<std::ptrdiff_t>(from), tracklet.samples.end());
+  tracklet.samples.resize(from);
+  auto run =
+      std::find_if(tracklet.runs.begin(), tracklet.runs.end(), [&](const GroundTracklet::Run& r) { return r.first >= from; });
+  if (run == tracklet.runs.end() || run->first > from) later.runs.push_back({std::prev(run)->track, 0});
+  for (auto it = run; it != tracklet.runs.end(); ++it) later.runs.push_back({it->track, it->first - from});
+  tracklet.runs.erase(run, tracklet.runs.end());
+  return later;
+}
+
+void append(GroundTracklet& tracklet, const GroundTracklet& later) {
+  for (const GroundTracklet::Run& run : later.runs) tracklet.runs.push_back({run.track, run.first + tracklet.samples.size()});
+  tracklet.samples.insert(tracklet.samples.end(), later.samples.begin(), later.samples.end());
+}
+
+}  // namespace marey
