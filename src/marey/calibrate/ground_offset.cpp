@@ -116,7 +116,7 @@ std::vector<GroundOffset> find_ground_offsets(std::span<const std::vector<Ground
   std::vector<GroundPair> pairs;
   for (std::size_t a = 0; a < cameras.size(); ++a) {
     for (std::size_t b = a + 1; b < cameras.size(); ++b) {
-      const GroundPair pair(paths[a], paths[b], options);
+      GroundPair pair(paths[a], paths[b], options);
       Edge edge{a, b, pair.find()};
       edge.shift.deviation_s = std::hypot(edge.shift.deviation_s, kSystematic);
       all.push_back(edge);

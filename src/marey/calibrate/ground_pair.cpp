@@ -15,21 +15,28 @@
 namespace marey {
 namespace {
 
-constexpr double kSegment_s = 2;       // long enough to show how somebody moves, short enough to be one person's
-constexpr double kSample_s = 0.2;      // between the places that are compared
-constexpr double kMemory_s = 0.5;      // errors hang together for about so long
-constexpr double kFloor_m = 0.12;      // noise that a smoothed place has at least
-constexpr double kStrangers_m = 1.0;   // how much the distance of two different people changes within a segment
-constexpr double kDensity = 0.01;      // other people per m²
-constexpr double kFarthest_m = 4;      // who is farther apart is not one person
-constexpr double kPaired = 2;          // nats above which a pair takes part in the fine search
-constexpr double kBlock_s = 6;         // the systematic part of a pair is taken to stay for so long
-constexpr double kStep_s = 0.1;        // of the coarse search
-constexpr std::size_t kPeaks = 6;      // that are refined
-constexpr int kIterations = 20;        // of the fine search
-constexpr double kStandsOut = 4;       // times what peaks differ by chance
-constexpr double kExplained = 0.2;     // of who walks before both cameras, that must be seen by both
-constexpr double kOptimism = 1.5;      // by which errors that hang together for longer make the answer worse than least squares say
+constexpr double kSegment_s = 2;                    // long enough to show how somebody moves, short enough to be one person's
+constexpr double kStride_s = 1;                     // from one segment to the next: they overlap,
+constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
+constexpr double kSample_s = 0.2;                   // between the places that are compared
+constexpr int kSamples = 10;                        // of a segment,
+constexpr std::size_t kLeastSamples = 5;            // where one of both was not seen throughout
+constexpr double kMemory_s = 0.5;                   // errors hang together for about so long
+constexpr double kFloor_m = 0.05;                   // noise that a smoothed place has at least
+constexpr double kStrangers_m = 1.0;                // how much the distance of two different people changes within a segment
+constexpr double kDensity = 0.01;                   // other people per m²
+constexpr double kFarthest_m = 4;                   // who is farther apart is not one person
+constexpr double kPaired = 2;                       // nats above which a pair takes part in the fine search
+constexpr double kBlock_s = 6;                      // the systematic part of a pair is taken to stay for so long
+constexpr double kStep_s = 0.1;                     // of the coarse search
+constexpr std::size_t kPeaks = 6;                   // that are refined
+constexpr int kIterations = 20;                     // of the fine search
+constexpr double kStandsOut = 4;                    // times what peaks differ by chance
+constexpr double kExplained = 0.2;                  // of who walks before both cameras, that must be seen by both
+constexpr double kOptimism = 1.5;     // by which errors that hang together for longer make the answer worse than least squares say
+constexpr double kLeastFree = 20;     // degrees of freedom that tell how large the noise is
+constexpr double kLeastNoise = 0.02;  // and by how much less, or more, than covariances say
+constexpr int kNoiseRounds = 2;
 constexpr double kBeside_s = 0.5;      // a peak so near is the same one
 constexpr double kWalks_m = 1.5;       // who gets no farther within a segment stands
 constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that can tell anything
@@ -54,17 +61,14 @@ std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
 
 GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options)
     : b_(b), options_(options) {
-  constexpr int kSamples = static_cast<int>(kSegment_s / kSample_s);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    Segment segment;
-    for (double t = a[i].begin_s(); t < a[i].end_s(); t += kSample_s) {
-      const auto state = a[i].at(t);
-      if (state) segment.times_s.push_back(t), segment.states.push_back(*state);
-      if (!state || segment.states.size() == kSamples) {
-        segment.path = i;
-        if (segment.states.size() == kSamples) segments_.push_back(std::move(segment));
-        segment = {};
+    for (double begin = a[i].begin_s(); begin < a[i].end_s(); begin += kStride_s) {
+      Segment segment{i, {}, {}};
+      for (int k = 0; k < kSamples; ++k) {
+        const double time = begin + kSample_s * k;
+        if (const auto state = a[i].at(time)) segment.times_s.push_back(time), segment.states.push_back(*state);
       }
+      if (segment.states.size() >= kLeastSamples) segments_.push_back(std::move(segment));
     }
   }
   for (const SmoothPath& path : b) {
@@ -81,29 +85,31 @@ GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<Smoot
 
 /// Of the segment being the same person's as `other` against another's; nothing where they are not to be compared.
 std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const {
-  const std::size_t count = segment.states.size();
-  const auto middle = other.at(segment.times_s[count / 2] - shift_s);
-  if (!middle || (middle->place - segment.states[count / 2].place).norm() > kFarthest_m) return std::nullopt;
+  double count = 0;
   Vector<2> mean = Vector<2>::Zero();
-  Matrix<2> square = Matrix<2>::Zero(), noise = kFloor_m * kFloor_m * Matrix<2>::Identity();
-  for (std::size_t k = 0; k < count; ++k) {
+  Matrix<2> square = Matrix<2>::Zero(), noise = Matrix<2>::Zero();
+  for (std::size_t k = 0; k < segment.states.size(); ++k) {
     const auto there = other.at(segment.times_s[k] - shift_s);
-    if (!there) return std::nullopt;
+    if (!there) continue;
     const Vector<2> apart = segment.states[k].place - there->place;
-    const double share = 1.0 / static_cast<double>(count);
-    mean += share * apart;
-    square += share * apart * apart.transpose();
-    noise += share * (segment.states[k].noise + there->noise);
+    if (count == 0 && apart.norm() > kFarthest_m) return std::nullopt;
+    count += 1;
+    mean += apart;
+    square += apart * apart.transpose();
+    noise += noise_scale_ * (segment.states[k].noise + there->noise);
   }
-  const Matrix<2> spread = square - mean * mean.transpose();
-  constexpr double kWorth = kSegment_s / kMemory_s;  // independent samples
+  if (count < kLeastSamples) return std::nullopt;
+  mean /= count;
+  noise = noise / count + kFloor_m * kFloor_m * Matrix<2>::Identity();
+  const Matrix<2> spread = square / count - mean * mean.transpose();
+  const double worth = count * kSample_s / kMemory_s;  // independent samples
   const double systematic = options_.systematic_m * options_.systematic_m;
-  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / kWorth;
+  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / worth;
   const Matrix<2> strangers = noise + kStrangers_m * kStrangers_m * Matrix<2>::Identity();
   const double same_mean =
       -0.5 * mean.dot(of_mean.inverse() * mean) - std::log(2 * std::numbers::pi) - 0.5 * log_det(of_mean) - std::log(kDensity);
   const double same_motion =
-      -0.5 * (kWorth - 1) *
+      -0.5 * (worth - 1) *
       ((noise.inverse() * spread).trace() + log_det(noise) - (strangers.inverse() * spread).trace() - log_det(strangers));
   return same_mean + same_motion;
 }
@@ -122,7 +128,8 @@ double GroundPair::score(double shift_s) const {
   for (const Segment& segment : segments_) {
     const auto found = match(segment, shift_s);
     // As likely as not the other camera did not see the person at all: what speaks against costs little.
-    if (found) sum += found->score > 0 ? found->score + std::log1p(std::exp(-found->score)) : std::log1p(std::exp(found->score));
+    if (found)
+      sum += kWeight * (found->score > 0 ? found->score + std::log1p(std::exp(-found->score)) : std::log1p(std::exp(found->score)));
   }
   return sum;
 }
@@ -160,6 +167,7 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
   std::map<std::array<std::int64_t, 3>, Block> blocks;
   Matrix<3> normal = Eigen::Vector3d(0, prior, prior).asDiagonal();
   Vector<3> right = Vector<3>::Zero();
+  double cost = 0, samples = 0;
   for (const Segment& segment : segments_) {
     const auto found = match(segment, shift_s);
     if (!found || found->score < kPaired) continue;
@@ -171,8 +179,8 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
     for (std::size_t k = 0; k < segment.states.size(); ++k) {
       const auto there = b_[found->path].at(segment.times_s[k] - shift_s);
       if (!there) continue;
-      const Matrix<2> noise = segment.states[k].noise + there->noise + kFloor_m * kFloor_m * Matrix<2>::Identity();
-      const Matrix<2> weight = kSample_s / kMemory_s * noise.inverse();
+      const Matrix<2> noise = noise_scale_ * (segment.states[k].noise + there->noise) + kFloor_m * kFloor_m * Matrix<2>::Identity();
+      const Matrix<2> weight = kWeight * kSample_s / kMemory_s * noise.inverse();
       // apart + velocity · shift = systematic of all + of the pair + noise
       const Vector<2> apart = segment.states[k].place - there->place;
       Eigen::Matrix<double, 2, 3> shared;
@@ -182,19 +190,24 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
       block.own += weight;
       block.shared -= weight * shared;
       block.right += weight * apart;
+      cost += apart.dot(weight * apart);
+      samples += kWeight * kSample_s / kMemory_s;
     }
   }
   for (const auto& [key, block] : blocks) {
     const Matrix<2> inverse = block.own.inverse();
     normal -= block.shared.transpose() * inverse * block.shared;
     right -= block.shared.transpose() * inverse * block.right;
+    cost -= block.right.dot(inverse * block.right);
   }
   const Eigen::LDLT<Matrix<3>> solver(normal);
   if (blocks.empty() || solver.info() != Eigen::Success || !solver.isPositive() || !(normal(0, 0) > 1e-9)) return std::nullopt;
   const Vector<3> by = solver.solve(right);
   const double variance = solver.solve(Vector<3>::UnitX()).x();
   if (!(variance > 0) || !std::isfinite(by.x())) return std::nullopt;
-  return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0};
+  const double free = 2 * samples - 2 * static_cast<double>(blocks.size()) - 1;
+  const double misfit = free > kLeastFree ? std::max(0.0, cost - right.dot(by)) / free : 1;
+  return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0, misfit};
 }
 
 std::optional<GroundPair::Fit> GroundPair::refine(double shift_s) const {
@@ -219,8 +232,8 @@ OffsetVerdict GroundPair::without_answer() const {
   for (const Segment& segment : segments_) {
     const auto common = std::count_if(segment.states.begin(), segment.states.end(),
                                       [&](const SmoothPath::State& state) { return cells_.contains(cell_of(state.place)); });
-    meeting += kSample_s * static_cast<double>(common);
-    if (walks(segment)) moving += kSample_s * static_cast<double>(common);
+    meeting += kWeight * kSample_s * static_cast<double>(common);
+    if (walks(segment)) moving += kWeight * kSample_s * static_cast<double>(common);
   }
   if (meeting < kLeastMeeting_s) return OffsetVerdict::no_overlap;
   return moving < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
@@ -240,25 +253,37 @@ double GroundPair::explained(double shift_s) const {
   return all > 0 ? matched / all : 0;
 }
 
-GroundOffset GroundPair::find() const {
-  GroundOffset result;
-  result.verdict = without_answer();
-  if (result.verdict != OffsetVerdict::ambiguous) return result;
+/// Peaks, refined, the best first.
+std::vector<GroundPair::Fit> GroundPair::fits(const std::vector<double>& peaks) const {
   std::vector<Fit> fits;
-  const auto [coarse, chance] = peaks();
-  for (const double peak : coarse) {
+  for (const double peak : peaks) {
     if (const auto fit = refine(peak); fit && fit->shift_s >= first_s_ - kStep_s && fit->shift_s <= last_s_ + kStep_s)
       fits.push_back(*fit);
   }
-  if (fits.empty()) return result;
   std::stable_sort(fits.begin(), fits.end(), [](const Fit& x, const Fit& y) { return x.score > y.score; });
+  return fits;
+}
+
+GroundOffset GroundPair::find() {
+  GroundOffset result;
+  result.verdict = without_answer();
+  if (result.verdict != OffsetVerdict::ambiguous) return result;
+  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the ways tell.
+  Peaks coarse = peaks();
+  std::vector<Fit> fits = this->fits(coarse.shifts_s);
+  for (int i = 0; i < kNoiseRounds && !fits.empty(); ++i) {
+    noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kLeastNoise, 1 / kLeastNoise);
+    coarse = peaks();
+    fits = this->fits(coarse.shifts_s);
+  }
+  if (fits.empty()) return result;
   const Fit& best = fits[0];
   const auto rival =
       std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kBeside_s; });
   const double gap = best.score - (rival == fits.end() ? 0 : rival->score);
   result.offset_s = best.shift_s;
   result.deviation_s = best.deviation_s;
-  if (gap >= std::max(options_.least_score, kStandsOut * chance) && explained(best.shift_s) >= kExplained &&
+  if (gap >= std::max(options_.least_score, kStandsOut * coarse.chance) && explained(best.shift_s) >= kExplained &&
       best.deviation_s <= options_.most_deviation_s)
     result.verdict = OffsetVerdict::found;
   return result;

@@ -16,7 +16,7 @@ class GroundPair {
   GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options);
 
   /// The shift, added to b's times, that explains both best.
-  GroundOffset find() const;
+  GroundOffset find();
 
   /// Logarithm of the likelihood of the ways at this shift, but for a constant; nats.
   double score(double shift_s) const;
@@ -37,11 +37,13 @@ class GroundPair {
   };
   struct Fit {
     double shift_s = 0, deviation_s = 0, score = 0;
+    double misfit = 1;  // of the noise, as a variance, to what it was taken for
   };
 
   std::optional<Match> match(const Segment& segment, double shift_s) const;
   std::optional<double> likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const;
   Peaks peaks() const;
+  std::vector<Fit> fits(const std::vector<double>& peaks) const;
   std::optional<Fit> refine(double shift_s) const;
   std::optional<Fit> step(double shift_s) const;
   OffsetVerdict without_answer() const;
@@ -52,6 +54,7 @@ class GroundPair {
   GroundOffsetOptions options_;
   std::vector<Segment> segments_;
   std::set<std::pair<int, int>> cells_;  // of the ground, where b saw somebody
+  double noise_scale_ = 1;               // of covariances
   double first_s_ = 0, last_s_ = 0;      // shifts to be tried
 };
 
