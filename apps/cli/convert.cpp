@@ -10,10 +10,12 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/format/ground_exchange.h"
 #include "marey/format/motion.h"
 #include "marey/format/rig_exchange.h"
 
 #include "commands.h"
+#include "convert_ground.h"
 #include "known.h"
 #include "progress_bar.h"
 
@@ -26,6 +28,7 @@ struct ConvertOptions {
   std::string from, to;
   std::string format;
   std::string up, from_up;
+  GroundConversion ground;
   bool labelled = false;
   bool quiet = false;
 };
@@ -110,6 +113,11 @@ void convert(const ConvertOptions& options) {
   std::error_code error;
   if (fs::equivalent(options.from, options.to, error))
     throw Error("{}: cannot be converted into itself; name another file", options.to);
+  if (ground_format_of_content(options.from)) {
+    if (!options.up.empty() || !options.from_up.empty())
+      throw Error("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
+    return convert_ground(options.from, options.to, options.format, options.ground);
+  }
   const bool motion = fs::is_regular_file(options.from, error) && motion_format_of_content(options.from);
   if (!motion && rig_format_of_content(options.from)) return convert_rig(options);
   convert_motion(options);
@@ -119,23 +127,32 @@ void convert(const ConvertOptions& options) {
 
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand("convert", "Write a recording of points, or a calibration, in another format");
-  command->add_option("A", options->from, "take, C3D, TRC, CSV (tidy, Motive's, Nexus's) or calibration; known by its content")
+  CLI::App* command =
+      app.add_subcommand("convert", "Write a recording of points, people on the ground, or a calibration, in another format");
+  command
+      ->add_option("A", options->from,
+                   "take, C3D, TRC, CSV (tidy, Motive's, Nexus's), people on the ground, or calibration; known by its content")
       ->required();
   command
-      ->add_option(
-          "B", options->to,
-          "what to write; its ending tells the format: .marey, .c3d, .trc, .csv; of a calibration .toml, .yml, .qca.txt, .xml")
+      ->add_option("B", options->to,
+                   "what to write; its ending tells the format: .marey, .c3d, .trc, .csv; of people on the ground .csv, .txt "
+                   "(MOT), _home.csv "
+                   "(Metrica), .dat (TRACAB), .xml (EPTS), .json (SoccerNet); of a calibration .toml, .yml, .qca.txt, .xml")
       ->required();
   command
       ->add_option("--format", options->format,
-                   "B's format in place of its ending: " + motion_format_names() + "; of a calibration " + rig_format_names())
+                   "B's format in place of its ending: " + motion_format_names() + "; of people on the ground " +
+                       ground_format_names() + "; of a calibration " + rig_format_names())
       ->check(known([](const std::string& name) {
-        try {
-          parse_motion_format(name);
-        } catch (const Error&) {
-          parse_rig_format(name);
-        }
+        const auto is = [&](auto parse) {
+          try {
+            parse(name);
+            return true;
+          } catch (const Error&) {
+            return false;
+          }
+        };
+        if (!is(parse_motion_format) && !is(parse_rig_format)) parse_ground_format(name);
       }));
   command->add_option("--up", options->up, "the axis that is up in B (in A, where B is a take); coordinates are turned accordingly")
       ->check(CLI::IsMember({"y", "z"}))
@@ -145,6 +162,7 @@ void add_convert(CLI::App& app) {
       ->default_str("z");
   command->add_flag("--labelled", options->labelled, "leave out tracks that have no label");
   command->add_flag("-q,--quiet", options->quiet, "show no progress");
+  add_ground_conversion(*command, options->ground);
   command->callback([options] { convert(*options); });
 }
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_file.h"
+#include "marey/format/ground_exchange.h"
 #include "marey/pipeline/judge_match.h"
 
 namespace marey::cli {
@@ -158,7 +158,7 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 }  // namespace
 
 void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
-  const GroundRecording truth = read_ground(truth_name), tracks = read_ground(tracks_name);
+  const GroundRecording truth = read_ground_any(truth_name).recording, tracks = read_ground_any(tracks_name).recording;
   const MatchJudgement judgement = judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);

@@ -12,17 +12,20 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/format/ground_exchange.h"
 #include "marey/format/motion.h"
 #include "marey/format/rig_exchange.h"
 #include "marey/format/take_file.h"
 
 #include "commands.h"
+#include "info_ground.h"
 
 namespace marey::cli {
 namespace {
 
 struct InfoOptions {
   std::string file;
+  std::string metadata;
   bool json = false;
 };
 
@@ -222,13 +225,15 @@ void tell_rig(const InfoOptions& options) {
 void run(const InfoOptions& options) {
   const bool folder = std::filesystem::is_directory(options.file);
   const auto format = folder ? std::nullopt : motion_format_of_content(options.file);
-  if (format) {
+  if (!folder && ground_format_of_content(options.file)) {
+    tell_ground(options.file, options.metadata, options.json);
+  } else if (format) {
     tell_motion(options, *format);
   } else if (rig_format_of_content(options.file)) {
     tell_rig(options);
   } else {
-    throw Error("{}: is none of the files that Marey knows: points: {}; calibrations: {}", options.file, motion_format_names(),
-                rig_format_names());
+    throw Error("{}: is none of the files that Marey knows: points: {}; people on the ground: {}; calibrations: {}", options.file,
+                motion_format_names(), ground_format_names(), rig_format_names());
   }
   if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }
@@ -238,7 +243,8 @@ void run(const InfoOptions& options) {
 void add_info(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a file");
-  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, or calibration")->required();
+  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, people on the ground, or calibration")->required();
+  command->add_option("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside FILE under a like name");
   command->add_flag("--json", options->json, "print it as JSON");
   command->callback([options] { run(*options); });
 }

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_file.h"
+#include "marey/format/ground_exchange.h"
 #include "marey/format/whole_file.h"
 #include "marey/pipeline/measure_match.h"
 
@@ -22,6 +22,8 @@ struct MeasureCommand {
   std::string tracks, out, report;
   std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68";
   MeasureOptions options;
+  std::string metadata;
+  double rate_hz = 25;
   bool json = false;
   bool quiet = false;
 };
@@ -80,7 +82,8 @@ void run(const MeasureCommand& command) {
   options.path.method = parse_path_method(command.method);
   options.zones = parse_zones(command.zones);
   options.pitch = parse_pitch_size(command.size);
-  const Measurement measured = measure(read_ground(command.tracks), options);
+  const Measurement measured =
+      measure(read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", command.tracks);
   WholeFile file(command.out);
   file.write(measurement_csv(measured, options));
@@ -100,7 +103,10 @@ void run(const MeasureCommand& command) {
 void add_measure(CLI::App& app) {
   auto options = std::make_shared<MeasureCommand>();
   CLI::App* command = app.add_subcommand("measure", "How far and how fast everyone ran, from places on the ground");
-  command->add_option("TRACKS", options->tracks, "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y")
+  command
+      ->add_option(
+          "TRACKS", options->tracks,
+          "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y; or TRACAB, EPTS, Metrica, ...: see marey convert")
       ->required();
   command->add_option("-o,--output", options->out, "CSV with a row for each person")->required();
   command->add_option("--report", options->report, "folder for a page with plots, tables, heat maps and ways");
@@ -115,6 +121,10 @@ void add_measure(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--size", options->size, "of the pitch, LENGTHxWIDTH in m")
       ->check(known([](const std::string& text) { parse_pitch_size(text); }))
+      ->capture_default_str();
+  command->add_option("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
+  command->add_option("--rate", options->rate_hz, "frames a second, where TRACKS does not tell")
+      ->check(CLI::Range(0.1, 10'000.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "print the figures as JSON");
   command->add_flag("-q,--quiet", options->quiet, "print nothing");

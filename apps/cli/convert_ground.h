@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace marey::cli {
+
+/// What `marey convert` must be told of people on the ground beyond the files.
+struct GroundConversion {
+  std::string metadata, rig, home, away, size = "105x68";
+  std::vector<std::string> periods;
+  double rate_hz = 25;
+  bool y_down = false, centred = false;
+};
+
+void add_ground_conversion(CLI::App& command, GroundConversion& options);
+
+/// Reads `from` and writes `to`; `format` is a name, or empty where the ending tells. Throws Error.
+void convert_ground(const std::string& from, const std::string& to, const std::string& format, const GroundConversion& options);
+
+}  // namespace marey::cli

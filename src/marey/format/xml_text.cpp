@@ -1,0 +1,36 @@
+#include "marey/format/xml_text.h"
+
+#include <algorithm>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+struct StringWriter : pugi::xml_writer {
+  std::string text;
+  void write(const void* data, std::size_t size) override { text.append(static_cast<const char*>(data), size); }
+};
+
+}  // namespace
+
+pugi::xml_document parse_xml(std::string_view text, const std::string& name) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  if (result) return document;
+  const auto read = text.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, result.offset)));
+  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
+  throw Error("{}:{}: is no XML from here on ({}); the file may be cut off", name, line, result.description());
+}
+
+std::string to_text(const pugi::xml_document& document) {
+  StringWriter writer;
+  document.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);
+  return std::move(writer.text);
+}
+
+void add_text(pugi::xml_node& parent, const char* element, const std::string& text) {
+  parent.append_child(element).text().set(text.c_str());
+}
+
+}  // namespace marey
