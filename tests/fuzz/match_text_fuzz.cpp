@@ -1,0 +1,63 @@
+// Matches in the formats of vendors: whatever the files hold, reading them ends in a recording in order or in one Error. The
+// input's first byte chooses the format; what comes behind the first zero byte is the second file, where there is one.
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "marey/core/error.h"
+#include "marey/format/ground_exchange.h"
+#include "marey/format/ground_file.h"
+
+namespace {
+
+void check(bool holds) {
+  if (!holds) std::abort();
+}
+
+marey::GroundMatch parse(unsigned which, std::string_view first, std::string_view second) {
+  switch (which % 8) {
+    case 0:
+      return marey::parse_mot_world(first, "file", 25);
+    case 1:
+      return marey::parse_metrica(first, "file", second, "file", {});
+    case 2:
+      return marey::parse_tracab(first, "file", second, "file");
+    case 3:
+      return marey::parse_epts(first, "file", second, "file");
+    case 4:
+      return marey::parse_soccernet(first, "file", {});
+    case 5:
+      return marey::parse_sportec(first, "file", second, "file");
+    case 6:
+      return marey::parse_statsperform(first, "file", {});
+    default: {
+      marey::GroundMatch match;
+      match.recording = marey::parse_ground(first, "file");
+      return match;
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
+  const std::size_t end = text.find('\0');
+  const std::string_view second = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  try {
+    const marey::GroundMatch match = parse(data[0], text.substr(0, end), second);
+    check(match.rate_hz > 0 && match.pitch.length > 0 && match.pitch.width > 0);
+    std::int32_t last = -1;
+    for (const auto& sample : match.recording.samples) {
+      check(sample.frame >= last && sample.place.allFinite());
+      check(sample.person >= 0 && static_cast<std::size_t>(sample.person) < match.recording.people.size());
+      last = sample.frame;
+    }
+    for (const auto& person : match.recording.people) check(person.id > 0);
+  } catch (const marey::Error& error) {
+    const std::string_view message = error.what();
+    check(message.starts_with("file") && message.find('\n') == std::string_view::npos);
+  }
+  return 0;
+}
