@@ -1,13 +1,7 @@
-#include <atomic>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-
-#include <fmt/core.h>
 
 #include "marey/core/error.h"
 #include "marey/pipeline/track_people.h"
@@ -16,7 +10,8 @@
 #include "known.h"
 #include "marker_options.h"
 #include "people_options.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
+#include "track_ground.h"
 #include "track_summary.h"
 
 namespace marey::cli {
@@ -32,22 +27,11 @@ struct TrackCommand {
   std::string targets = "people";
   PeopleFlags people;
   MarkerFlags markers;
+  GroundFlags ground;
   bool live = false;
   bool quiet = false;
   bool json = false;
 };
-
-// The exit code of a program that Ctrl-C ended, by the shell's convention.
-constexpr int kInterrupted = 130;
-
-std::atomic<bool> interrupted = false;
-
-/// The first Ctrl-C asks the run to end and write what it has; the second ends the program as ever.
-void interrupt(int) {
-  interrupted = true;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
 
 /// What the command line names and the format's own ending: video.mp4 becomes video.csv, here.
 std::string default_output(const PeopleInput& input, TrackFormat format) {
@@ -73,35 +57,41 @@ TrackOutput output_of(const TrackCommand& command) {
   return output;
 }
 
-/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order, and tells what came of it.
+/// Runs `track(hooks)` and tells what came of it.
 template <typename Track>
 void run(const TrackCommand& command, const TrackOutput& output, Track&& track) {
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto summary = [&] {
-    ProgressBar bar(command.quiet);
-    RunHooks hooks;
-    hooks.stop = [] { return interrupted.load(); };
-    hooks.progress = [&](const TrackProgress& progress) {
-      bar.show(progress.step == TrackProgress::Step::tracking ? "tracking" : "drawing", progress.done, progress.total);
-    };
-    return track(hooks);
-  }();
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
-  if (command.json) {
-    print_json(summary, output, elapsed);
-  } else if (!command.quiet) {
-    print_summary(summary, output, elapsed);
-  }
-  if (summary.stopped) {
-    fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
-    throw CLI::RuntimeError(kInterrupted);
-  }
+  run_with_progress(command.quiet, track, [&](const auto& summary, double elapsed) {
+    if (command.json) {
+      print_json(summary, output, elapsed);
+    } else if (!command.quiet) {
+      print_summary(summary, output, elapsed);
+    }
+  });
+}
+
+void run_on_ground(const TrackCommand& command) {
+  if (command.targets != "people") throw Error("--ground follows people; markers stand on no ground: leave out one of the two");
+  if (!command.input.detections.empty())
+    throw Error("--ground takes a rig: name the cameras' detections there, or give CAMERA=FILE after it");
+  if (!command.plot.empty()) throw Error("--plot shows ways in one picture; with --ground there is --pitch-view");
+  track_on_ground({.rig = command.input.pictures,
+                   .out = command.out,
+                   .format = command.format,
+                   .overlay = command.overlay,
+                   .filter = command.filter,
+                   .rate_hz = command.input.rate_hz,
+                   .live = command.live,
+                   .quiet = command.quiet,
+                   .json = command.json},
+                  command.ground, command.people);
 }
 
 void run(const TrackCommand& command) {
+  if (command.ground.ground) return run_on_ground(command);
+  if (command.input.pictures.ends_with(".toml"))
+    throw Error("{} is a rig: add --ground to follow people on the ground that its cameras look at", command.input.pictures);
+  if (!command.ground.sources.empty())
+    throw Error("\"{}\" is one input too many; several cameras need a rig and --ground", command.ground.sources.front());
   const TrackOutput output = output_of(command);
   if (command.targets == "markers") {
     if (command.people.outline) throw Error("--outline follows people; markers are points: leave out one of the two");
@@ -126,9 +116,12 @@ std::string filter_names() {
 
 void add_track(CLI::App& app) {
   auto options = std::make_shared<TrackCommand>();
-  CLI::App* command = app.add_subcommand("track", "Follow people or markers in a recording of one fixed camera");
-  auto* input = command->add_option("INPUT", options->input.pictures,
-                                    "a video file, a folder of pictures, or a pattern such as 'shot_%04d.png' or '*.jpg'");
+  CLI::App* command = app.add_subcommand(
+      "track", "Follow people or markers in a recording of one fixed camera, or people on the ground with several");
+  auto* input =
+      command->add_option("INPUT", options->input.pictures,
+                          "a video file, a folder of pictures, or a pattern such as 'shot_%04d.png' or '*.jpg'; with --ground a "
+                          "rig file");
   command
       ->add_option("--detections", options->input.detections,
                    "in place of INPUT, what another program detected: MOT text, frame,-1,left,top,width,height,score")
@@ -139,7 +132,9 @@ void add_track(CLI::App& app) {
       ->add_option("--format", options->format,
                    "one of " + track_format_names() + " (default: by OUT's ending, else mot, with --outline jsonl)")
       ->check(known([](const std::string& text) { parse_track_format(text); }));
-  command->add_option("--overlay", options->overlay, "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4");
+  command->add_option("--overlay", options->overlay,
+                      "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4; with --ground a folder, which gets "
+                      "CAMERA.mp4");
   command->add_option("--plot", options->plot, "a picture of the ways that were gone, in the image's coordinates: FILE.svg");
   command->add_option("--rate", options->input.rate_hz, "frames a second, where the file does not tell or is wrong")
       ->check(CLI::Validator(
@@ -160,6 +155,7 @@ void add_track(CLI::App& app) {
   command->add_flag("--json", options->json, "print the summary as JSON on standard output");
   add_people_options(*command, options->people);
   add_marker_options(*command, options->markers);
+  add_ground_options(*command, options->ground);
   command->callback([options] {
     if (options->input.pictures.empty() && options->input.detections.empty()) {
       throw CLI::ValidationError("track", "give INPUT or --detections: what is to be tracked?");

@@ -122,6 +122,7 @@ PeopleDetector::PeopleDetector(std::unique_ptr<Background> background, const Peo
 
 void PeopleDetector::prime(std::span<const Frame> samples) {
   background_->prime(samples);
+  if (options_.sizes) return;
   for (const Frame& sample : samples) {
     // Held everywhere: the model says what it sees and learns nothing, so that the first frame finds it as it was primed.
     const cv::Size image = sample.picture.size();
@@ -145,7 +146,7 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   for (const Cluster& cluster : clusters) {
     if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
       result.detections.push_back(whole(cluster, result.foreground));
-      if (sizes_.known()) hidden_.note(cluster.body, result.foreground.mask);
+      if (size_known()) hidden_.note(cluster.body, result.foreground.mask);
     } else {
       explain(cluster, expected, result.foreground, result.detections);
     }
@@ -157,8 +158,8 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
 
 double PeopleDetector::least_area(const Region& region) const {
   const auto foot = region.box.foot();
-  const auto size = sizes_.at(foot.x(), foot.y());
-  if (!size) return sizes_.known() ? std::numeric_limits<double>::infinity() : options_.min_area;
+  const auto size = size_at(foot.x(), foot.y());
+  if (!size) return size_known() ? std::numeric_limits<double>::infinity() : options_.min_area;
   return options_.min_share * size->height * size->width;
 }
 
@@ -178,7 +179,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
       const Box& a = regions[i].box;
       const Box& b = regions[j].box;
       const auto foot = hull(a, b).foot();
-      const auto size = sizes_.at(foot.x(), foot.y());
+      const auto size = size_at(foot.x(), foot.y());
       if (!size) continue;
       if (gap(a.left, a.right(), b.left, b.right()) > kGapAcross * size->width) continue;
       if (gap(a.top, a.bottom(), b.top, b.bottom()) > kGapDown * size->height) continue;
@@ -217,6 +218,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
 }
 
 void PeopleDetector::learn(const std::vector<Cluster>& clusters, cv::Size image) {
+  if (options_.sizes) return;  // there is nothing to learn
   for (const Cluster& cluster : clusters) {
     if (cluster.expected.size() > 1 || at_border(cluster.box, image)) continue;
     if (cluster.area < kLeastFilled * cluster.box.area()) continue;
@@ -227,9 +229,9 @@ void PeopleDetector::learn(const std::vector<Cluster>& clusters, cv::Size image)
 bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double widest) const {
   const Box& box = cluster.body;
   const auto foot = box.foot();
-  const auto size = sizes_.at(foot.x(), foot.y());
+  const auto size = size_at(foot.x(), foot.y());
   if (!size) {
-    if (sizes_.known()) return false;
+    if (size_known()) return false;
     const double tall = box.height / box.width;
     return box.area() >= kUnknownSmallest && tall > kUnknownFlattest && tall < kUnknownTallest;
   }
@@ -239,7 +241,7 @@ bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double 
 
 Detection PeopleDetector::whole(const Cluster& cluster, const Foreground& foreground) const {
   const auto foot = cluster.body.foot();
-  const auto size = sizes_.at(foot.x(), foot.y());
+  const auto size = size_at(foot.x(), foot.y());
   const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
   if (!size) return detection_of(cluster.body, cluster.runs, 0.5 * filled, foreground);
   const double off = (cluster.body.height / size->height - 1) / 0.3;
@@ -258,7 +260,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   std::vector<Box> known;
   known.reserve(cluster.expected.size());
   for (const int who : cluster.expected) known.push_back(expected[who].box);
-  const FitScene scene{image, [&](double x, double y) { return sizes_.at(x, y); },
+  const FitScene scene{image, [&](double x, double y) { return size_at(x, y); },
                        [&](double x, double y) { return hidden_.at(x, y); }};
   const std::vector<Placed> placed = fit_people(cluster.runs, known, scene, options_.fit);
   for (const Placed& one : placed) {

@@ -9,6 +9,7 @@
 #include "marey/detect/people_fit.h"
 #include "marey/detect/people_hidden.h"
 #include "marey/detect/people_size.h"
+#include "marey/detect/person_size_map.h"
 
 namespace marey {
 
@@ -16,6 +17,8 @@ struct PeopleOptions {
   FitOptions fit;
   double min_share = 0.04;  ///< of a person's box; smaller regions are noise
   double min_area = 12;     ///< px²; smaller regions are noise, while the size of people is not known
+  /// The size of people at each place, from a camera that is calibrated; nothing: learned from the recording.
+  std::shared_ptr<const PersonSizeMap> sizes = nullptr;
 };
 
 /// People who move, or moved, before a fixed camera: foreground of a background model, cut into people by the size that they
@@ -37,7 +40,10 @@ class PeopleDetector final : public Detector {
   Detections detect(const Frame& frame, std::span<const Expected> expected) override;
 
   const Counts& counts() const { return counts_; }
-  const PersonSizeModel& sizes() const { return sizes_; }
+  /// How large a person is whose feet are at (x, y), px: as it was given, or as it was learned so far.
+  std::optional<PersonSize> size_at(double x, double y) const {
+    return options_.sizes ? options_.sizes->at(x, y) : sizes_.at(x, y);
+  }
 
  private:
   struct Cluster {
@@ -49,6 +55,7 @@ class PeopleDetector final : public Detector {
     std::vector<int> expected;  ///< whose box lies on it
   };
 
+  bool size_known() const { return options_.sizes != nullptr || sizes_.known(); }
   double least_area(const Region& region) const;
   std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
   void learn(const std::vector<Cluster>& clusters, cv::Size image);

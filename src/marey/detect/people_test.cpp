@@ -57,7 +57,7 @@ int found(const std::vector<Detection>& detections, const std::vector<Box>& trut
 TEST(PeopleDetector, LearnsTheSizeWhilePrimed) {
   const PeopleDetector detector = trained(30, 1);
   for (const double y : {200.0, 350.0, 500.0}) {
-    EXPECT_NEAR(detector.sizes().at(384, y).value().height / height_at(y), 1, 0.05) << y;
+    EXPECT_NEAR(detector.size_at(384, y).value().height / height_at(y), 1, 0.05) << y;
   }
 }
 

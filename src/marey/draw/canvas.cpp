@@ -12,6 +12,9 @@ namespace {
 // Positions within a pixel are given to OpenCV in sixteenths.
 constexpr int kShift = 4;
 
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double kCapitalHeight = 21;  // of this font at scale 1
+
 cv::Point fine(cv::Point2f point) {
   constexpr float kOne = 1 << kShift;
   return {cvRound(point.x * kOne), cvRound(point.y * kOne)};
@@ -132,9 +135,26 @@ void Canvas::rectangle(const cv::Rect2f& where, const Colour& colour, double thi
   lay(stencil, part.tl(), colour);
 }
 
+void Canvas::fill(const cv::Rect2f& where, const Colour& colour) {
+  const cv::Rect part = even_part(where, 0);
+  if (!part.empty()) lay(cv::Mat(part.size(), CV_8UC1, cv::Scalar(255)), part.tl(), colour);
+}
+
+void Canvas::text(const std::string& text, cv::Point2f centre, const Colour& colour, double text_height) {
+  const double scale = text_height / kCapitalHeight;
+  const int thickness = std::max(1, cvRound(text_height / 8));
+  int baseline = 0;
+  const cv::Size extent = cv::getTextSize(text, kFont, scale, thickness, &baseline);
+  const cv::Point2f corner(centre.x - static_cast<float>(extent.width) / 2, centre.y - static_cast<float>(extent.height) / 2);
+  const cv::Rect part = even_part({corner, cv::Size2f(extent)}, 2);
+  if (part.empty()) return;
+  cv::Mat stencil = cv::Mat::zeros(part.size(), CV_8UC1);
+  cv::putText(stencil, text, cv::Point(cvRound(corner.x), cvRound(corner.y) + extent.height) - part.tl(), kFont, scale,
+              cv::Scalar(255), thickness, cv::LINE_AA);
+  lay(stencil, part.tl(), colour);
+}
+
 void Canvas::tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height) {
-  constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-  constexpr double kCapitalHeight = 21;  // of this font at scale 1
   const double scale = text_height / kCapitalHeight;
   const int thickness = std::max(1, cvRound(text_height / 8));
   int baseline = 0;

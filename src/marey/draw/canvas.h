@@ -31,6 +31,9 @@ class Canvas {
   /// Filled discs of one colour.
   void discs(const std::vector<cv::Point2f>& centres, double radius, const Colour& colour, double opacity = 1);
   void rectangle(const cv::Rect2f& where, const Colour& colour, double thickness, double opacity = 1);
+  void fill(const cv::Rect2f& where, const Colour& colour);
+  /// Text with its middle at `centre`.
+  void text(const std::string& text, cv::Point2f centre, const Colour& colour, double text_height);
   /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the picture.
   void tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height);
 

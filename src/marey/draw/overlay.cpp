@@ -57,6 +57,11 @@ void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, do
 
 }  // namespace
 
+Colour Overlay::colour(TrackId id) const {
+  const auto own = options_.colours.find(id);
+  return own != options_.colours.end() ? own->second : colour_of(number(id));
+}
+
 Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks) {
   Canvas canvas(picture);
   // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
@@ -76,24 +81,24 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Tra
       const double age = seconds(now - steps[i].time) / seconds(options_.trail);
       strokes.push_back({to_point(steps[i - 1].foot), to_point(steps[i].foot), 0.9 * (1 - age)});
     }
-    canvas.strokes(strokes, colour_of(number(trail->first)), 2 * unit);
+    canvas.strokes(strokes, colour(trail->first), 2 * unit);
     ++trail;
   }
 
   for (const Track<2>& track : tracks) {
     if (track.outline) {
       draw_lines(canvas, *track.outline, unit);
-      draw_curve(canvas, *track.outline, colour_of(number(track.id)), unit);
+      draw_curve(canvas, *track.outline, colour(track.id), unit);
       continue;
     }
     if (!track.box) continue;
     const bool seen = track.state == Track<2>::State::observed;
-    canvas.rectangle(edge_of(*track.box), colour_of(number(track.id)), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+    canvas.rectangle(edge_of(*track.box), colour(track.id), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
   }
   for (const Track<2>& track : tracks) {
     const Vector<2> corner = track.box ? Vector<2>(track.box->left - unit, track.box->top - unit) : track.position;
     const std::string text = track.label.empty() ? std::to_string(number(track.id)) : track.label;
-    canvas.tag(text, to_point(corner), colour_of(number(track.id)), 10 * unit);
+    canvas.tag(text, to_point(corner), colour(track.id), 10 * unit);
   }
   return canvas.take();
 }

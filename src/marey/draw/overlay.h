@@ -8,6 +8,7 @@
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
+#include "marey/draw/canvas.h"
 #include "marey/geometry/vector.h"
 
 namespace marey {
@@ -15,6 +16,7 @@ namespace marey {
 struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
   bool trail_of_centres = false;             ///< trails show where centres went, not feet
+  std::map<TrackId, Colour> colours = {};    ///< of targets that have one of their own
 };
 
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
@@ -29,6 +31,8 @@ class Overlay {
   Picture draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks);
 
  private:
+  Colour colour(TrackId id) const;
+
   struct Step {
     Timestamp time;
     Vector<2> foot;

@@ -72,6 +72,7 @@ class KnownDetections final : public Detector {
     Detections result;
     for (; at_ < boxes_.size() && boxes_[at_].frame <= frame.index; ++at_) {
       const LabelledBox& seen = boxes_[at_];
+      if (seen.frame < frame.index) continue;  // of a frame that nobody asked for
       Detection detection;
       detection.centre = seen.box.centre();
       detection.covariance = std::pow(kPlaceNoise * seen.box.height, 2) * Matrix<2>::Identity();

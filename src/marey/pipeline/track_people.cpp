@@ -6,58 +6,17 @@
 #include <utility>
 
 #include "marey/core/error.h"
-#include "marey/detect/people.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
-#include "marey/pipeline/detections_input.h"
 #include "marey/pipeline/plot_file.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/pipeline/rows_by_frame.h"
-#include "marey/source/open_source.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
 namespace marey {
 namespace {
-
-// A detector learns the empty scene from this many pictures, spread over this long a beginning.
-constexpr int kSamples = 30;
-constexpr double kSampledSeconds = 30;
-constexpr int kMostFramesRead = 300;
-constexpr double kUsualRate = 25;
-
-std::vector<Frame> sample(Source& source) {
-  const double span = std::min<double>(kSampledSeconds * source.info().rate_hz.value_or(kUsualRate), kMostFramesRead);
-  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kSamples));
-  std::vector<Frame> samples;
-  while (samples.size() < kSamples) {
-    auto frame = source.next();
-    if (!frame) break;
-    if (frame->index % step == 0) samples.push_back(std::move(*frame));
-  }
-  return samples;
-}
-
-/// Where frames come from, and what finds people in them.
-struct Eyes {
-  std::unique_ptr<Source> source;
-  std::unique_ptr<Detector> detector;
-  const PeopleDetector* people = nullptr;  // the same detector, where it is Marey's own
-};
-
-Eyes open_eyes(const PeopleInput& input, const TrackPeopleOptions& options) {
-  if (!input.detections.empty()) {
-    DetectionsInput known = open_detections(input.detections, input.rate_hz);
-    return {std::move(known.source), std::move(known.detector)};
-  }
-  auto people = std::make_unique<PeopleDetector>(make_background(options.background), options.people);
-  Eyes eyes{open_source(input.pictures, input.rate_hz), nullptr, people.get()};
-  eyes.detector = std::move(people);
-  if (!options.live) eyes.detector->prime(sample(*open_source(input.pictures, input.rate_hz)));
-  eyes.source = read_ahead(std::move(eyes.source));
-  return eyes;
-}
 
 std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
   std::vector<Expected> result;
@@ -95,7 +54,7 @@ class Run {
       : input_(input),
         options_(options),
         hooks_(hooks),
-        eyes_(open_eyes(input, options)),
+        eyes_(open_eyes(input, {options.background, options.people, !options.live})),
         tracker_(make_tracker<2>(tracker_options(input, options))),
         file_(output.tracks, output.format),
         overlay_({.trail_of_centres = options.outlines.has_value()}) {
@@ -194,7 +153,7 @@ class Run {
 
   /// A second look at the pictures, because the tracks of a frame are known only after the last one.
   void draw(const std::vector<TrackRow>& rows) {
-    const auto source = read_ahead(open_source(input_.pictures, input_.rate_hz));
+    const auto source = read_ahead(open_pictures(input_));
     RowsByFrame by_frame = rows_by_frame(rows);
     const bool stopped_before = summary_.stopped;  // then the film shows what was tracked until then
     for (std::int64_t done = 0; done < summary_.frames;) {
@@ -210,7 +169,7 @@ class Run {
   PeopleInput input_;
   TrackPeopleOptions options_;
   RunHooks hooks_;
-  Eyes eyes_;
+  PeopleEyes eyes_;
   std::unique_ptr<Tracker<2>> tracker_;
   std::optional<OutlineFollower> follower_;
   std::optional<OutlineRecording> outlines_;

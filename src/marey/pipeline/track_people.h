@@ -5,21 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "marey/detect/background.h"
-#include "marey/detect/people.h"
+#include "marey/pipeline/people_eyes.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/join.h"
 #include "marey/track/tracker.h"
 
 namespace marey {
-
-/// Where people are looked for: in pictures, or in what another program detected. One of the two paths is given.
-struct PeopleInput {
-  std::string pictures = {};           ///< a video file, a folder of pictures or a pattern of their names
-  std::string detections = {};         ///< MOT text
-  std::optional<double> rate_hz = {};  ///< frames a second, in place of what the pictures' header says
-};
 
 struct TrackPeopleOptions {
   BackgroundOptions background;

@@ -1,0 +1,77 @@
+#include "ground_summary.h"
+
+#include <cstdio>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+namespace marey::cli {
+namespace {
+
+nlohmann::json path_or_null(const std::string& path) {
+  return path.empty() ? nlohmann::json() : nlohmann::json(path);
+}
+
+std::int64_t camera_frames(const GroundSummary& summary) {
+  std::int64_t sum = 0;
+  for (const auto& camera : summary.cameras) sum += camera.counts.frames;
+  return sum;
+}
+
+double share(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+}  // namespace
+
+void print_json(const GroundSummary& summary, const GroundOutput& output, double elapsed) {
+  nlohmann::json cameras = nlohmann::json::array();
+  for (const auto& [name, counts] : summary.cameras) {
+    cameras.push_back({{"name", name},
+                       {"frames", counts.frames},
+                       {"missed", counts.missed},
+                       {"detections", counts.detections},
+                       {"dropped", {{"outside", counts.outside}, {"noise", counts.noise}, {"misfits", counts.misfits}}}});
+  }
+  const nlohmann::json json = {{"frames", summary.frames},
+                               {"seconds", summary.seconds},
+                               {"people", summary.people},
+                               {"rows", summary.rows},
+                               {"predicted", summary.predicted},
+                               {"off_pitch", summary.off_pitch},
+                               {"cameras", cameras},
+                               {"elapsed", elapsed},
+                               {"tracking_s", summary.tracking_s},
+                               {"joining_s", summary.joining_s},
+                               {"stopped", summary.stopped},
+                               {"warnings", summary.warnings},
+                               {"tracks", output.tracks},
+                               {"overlays", path_or_null(output.overlays)},
+                               {"pitch_view", path_or_null(output.pitch_view)}};
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_summary(const GroundSummary& summary, const GroundOutput& output, double elapsed) {
+  const std::size_t count = summary.cameras.size();
+  fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.people,
+             summary.people == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
+             static_cast<double>(camera_frames(summary)) / elapsed);
+  if (summary.predicted > 0)
+    fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
+               share(summary.predicted, summary.rows));
+  if (summary.off_pitch > 0) fmt::print(stderr, "left out: {} who were never on the pitch\n", summary.off_pitch);
+  for (const auto& [name, counts] : summary.cameras) {
+    fmt::print(stderr, "{}: {} frames, {:.1f} people in each", name, counts.frames,
+               static_cast<double>(counts.detections) / static_cast<double>(std::max<std::int64_t>(1, counts.frames)));
+    if (counts.missed > 0) fmt::print(stderr, "; no frame for {} instants", counts.missed);
+    if (counts.outside > 0) fmt::print(stderr, "; left out: {} seen beyond the pitch", counts.outside);
+    if (counts.misfits > 0) fmt::print(stderr, "; {} moving regions that no body explains", counts.misfits);
+    fmt::print(stderr, "\n");
+  }
+  fmt::print(stderr, "tracks: {}\n", output.tracks);
+  if (!output.overlays.empty()) fmt::print(stderr, "overlays: {}\n", output.overlays);
+  if (!output.pitch_view.empty()) fmt::print(stderr, "pitch view: {}\n", output.pitch_view);
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "marey/pipeline/track_ground.h"
+
+namespace marey::cli {
+
+/// On standard output. `elapsed` in s.
+void print_json(const GroundSummary& summary, const GroundOutput& output, double elapsed);
+
+/// On standard error, so that tracks may go to standard output.
+void print_summary(const GroundSummary& summary, const GroundOutput& output, double elapsed);
+
+}  // namespace marey::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "marey/pipeline/run.h"
+
+#include "progress_bar.h"
+
+namespace marey::cli {
+
+/// Makes the first Ctrl-C ask the run to end and write what it has; the second ends the program as ever.
+void catch_interrupts();
+/// Whether it was pressed.
+bool interrupted();
+/// The exit code of a program that Ctrl-C ended, by the shell's convention.
+inline constexpr int kInterrupted = 130;
+
+/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `tell(summary, elapsed)` says what came of it,
+/// elapsed in s. Warnings go to standard error before.
+template <typename Track, typename Tell>
+void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
+  catch_interrupts();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto summary = [&] {
+    ProgressBar bar(quiet);
+    RunHooks hooks;
+    hooks.stop = [] { return interrupted(); };
+    hooks.progress = [&](const TrackProgress& progress) {
+      bar.show(progress.step == TrackProgress::Step::tracking ? "tracking" : "drawing", progress.done, progress.total);
+    };
+    return track(hooks);
+  }();
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
+  tell(summary, elapsed);
+  if (summary.stopped) {
+    fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
+    throw CLI::RuntimeError(kInterrupted);
+  }
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,98 @@
+#include "track_ground.h"
+
+#include <filesystem>
+
+#include "marey/core/error.h"
+#include "marey/format/rig_file.h"
+#include "marey/format/rig_sources.h"
+#include "marey/pipeline/track_ground.h"
+
+#include "ground_summary.h"
+#include "known.h"
+#include "pitch_size.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+/// The filters' own parameters are in pixels, for things that move as people do who are this high.
+constexpr double kBodyHeight = 100;
+constexpr double kBodyMetres = 1.75;
+
+GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
+  GroundOutput output{
+      .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
+  const std::string format = command.format.empty() ? (flags.camera.empty() ? "csv" : "mot") : command.format;
+  if (format != "csv" && format != "mot")
+    throw Error("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
+  if (format == "mot" && flags.camera.empty())
+    throw Error("--format mot holds the boxes in one camera's view; name the camera with --camera");
+  if (format == "csv" && !flags.camera.empty())
+    throw Error("--camera {} is for --format mot; places on the ground are those of all cameras together", flags.camera);
+  if (command.out == "-") output.tracks = "/dev/stdout";
+  if (command.out.empty())
+    output.tracks = std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : "_ground.csv");
+  return output;
+}
+
+/// A rig that was calibrated over a pitch has one; any other has none unless it is told.
+TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people, const Rig& rig) {
+  TrackGroundOptions options;
+  options.eyes.background = parse_background(people.background);
+  options.rate_hz = command.rate_hz;
+  options.live = command.live;
+  if (!command.filter.empty()) options.tracker.filter = scaled(filter_named(command.filter), kBodyMetres / kBodyHeight);
+  if (!flags.associate.empty()) options.tracker.associate = ground_association_named(flags.associate);
+  const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
+  if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? PitchSize{} : parse_pitch_size(flags.size);
+  if (flags.margin && !options.pitch)
+    throw Error("--margin is counted from the edge of a pitch, and {} tells of none; give its --size", command.rig);
+  options.margin = flags.margin.value_or(options.margin);
+  return options;
+}
+
+}  // namespace
+
+void add_ground_options(CLI::App& command, GroundFlags& flags) {
+  const auto group = "Options for --ground";
+  auto* ground = command.add_flag("--ground", flags.ground, "INPUT is a rig file: follow people on the ground its cameras look at")
+                     ->group(group);
+  command.add_option("SOURCES", flags.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
+  command
+      .add_option("--size", flags.size,
+                  "of the pitch, LENGTHxWIDTH in m (default: 105x68 where the rig was calibrated over one, else there is none)")
+      ->check(known([](const std::string& text) { parse_pitch_size(text); }))
+      ->needs(ground)
+      ->group(group);
+  command.add_option("--margin", flags.margin, "m round the pitch where people still count (default: 2)")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(ground)
+      ->group(group);
+  command.add_option("--associate", flags.associate, "how what is seen finds whom it is of: gnn, jpda or mht (default: gnn)")
+      ->check(known([](const std::string& text) { ground_association_named(text); }))
+      ->needs(ground)
+      ->group(group);
+  command.add_option("--camera", flags.camera, "with --format mot: in whose view")->needs(ground)->group(group);
+  command.add_option("--pitch-view", flags.pitch_view, "a film of the ground from above, with everybody's trail: FILE.mp4")
+      ->needs(ground)
+      ->group(group);
+}
+
+void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
+  if (people.outline) throw Error("--outline follows outlines in one picture; leave it out with --ground");
+  Rig rig = read_rig(command.rig);
+  set_sources(rig, flags.sources);
+  const GroundOutput output = output_of(command, flags);
+  const TrackGroundOptions options = options_of(command, flags, people, rig);
+  run_with_progress(
+      command.quiet, [&](const RunHooks& hooks) { return track_ground(rig, output, options, hooks); },
+      [&](const GroundSummary& summary, double elapsed) {
+        if (command.json) {
+          print_json(summary, output, elapsed);
+        } else if (!command.quiet) {
+          print_summary(summary, output, elapsed);
+        }
+      });
+}
+
+}  // namespace marey::cli

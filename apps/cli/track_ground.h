@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "people_options.h"
+
+namespace marey::cli {
+
+/// What `marey track RIG --ground` understands beyond what every target needs.
+struct GroundFlags {
+  bool ground = false;
+  std::vector<std::string> sources;
+  std::string size;
+  std::optional<double> margin;
+  std::string associate;
+  std::string camera;
+  std::string pitch_view;
+};
+
+/// What it shares with tracking in one picture.
+struct GroundCommand {
+  std::string rig, out, format, overlay, filter;
+  std::optional<double> rate_hz;
+  bool live = false, quiet = false, json = false;
+};
+
+void add_ground_options(CLI::App& command, GroundFlags& flags);
+
+/// Follows people on the ground and tells what came of it. Throws Error.
+void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people);
+
+}  // namespace marey::cli

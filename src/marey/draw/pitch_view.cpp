@@ -1,0 +1,91 @@
+#include "marey/draw/pitch_view.h"
+
+#include <cmath>
+
+namespace marey {
+namespace {
+
+constexpr Colour kGrass{52, 110, 58}, kStripe{57, 118, 63}, kPaint{235, 240, 235}, kInk{15, 15, 15};
+constexpr double kStripeWidth = 5.25;  // m; twenty to the usual length
+constexpr double kGrid = 5;            // m
+constexpr double kDisc = 0.011;        // radius, of the picture's width
+
+cv::Mat plane(cv::Size size, double value) {
+  return {size, CV_8UC1, cv::Scalar(value)};
+}
+
+/// Whether dark text is easier to read on it than white.
+bool is_light(const Colour& colour) {
+  return 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue > 140;
+}
+
+}  // namespace
+
+PitchView::PitchView(const PitchViewOptions& options) : options_(options) {
+  const Vector<2> extent = options.high - options.low;
+  scale_ = options.width / extent.x();
+  const int height = std::max(2, static_cast<int>(std::lround(scale_ * extent.y() / 2)) * 2);
+  const cv::Size size(options.width & ~1, height);
+  ground_ = Picture(plane(size, 0), plane(size / 2, 128), plane(size / 2, 128), Picture::Range::limited);
+  draw_ground();
+}
+
+cv::Point2f PitchView::pixel(const Vector<2>& place) const {
+  const double across = (place.x() - options_.low.x()) * scale_;
+  const double down = (options_.y_down ? place.y() - options_.low.y() : options_.high.y() - place.y()) * scale_;
+  return {static_cast<float>(across - 0.5), static_cast<float>(down - 0.5)};
+}
+
+void PitchView::draw_ground() {
+  Canvas canvas(ground_);
+  const cv::Size size = ground_.size();
+  canvas.fill({{}, cv::Size2f(size)}, kGrass);
+  const double unit = std::max(1.0, size.width / 1280.0);
+  std::vector<Canvas::Stroke> strokes;
+  if (options_.pitch) {
+    const PitchSize& pitch = *options_.pitch;
+    for (double x = 0; x + kStripeWidth <= pitch.length + 1e-9; x += 2 * kStripeWidth)
+      canvas.fill({pixel({x, 0}), pixel({x + kStripeWidth, pitch.width})}, kStripe);
+    for (const PitchLine& line : pitch_lines(pitch, 0.5)) {
+      for (std::size_t i = 1; i < line.points.size(); ++i) strokes.push_back({pixel(line.points[i - 1]), pixel(line.points[i])});
+    }
+    canvas.strokes(strokes, kPaint, 1.5 * unit);
+  } else {
+    for (double x = std::ceil(options_.low.x() / kGrid) * kGrid; x <= options_.high.x(); x += kGrid)
+      strokes.push_back({pixel({x, options_.low.y()}), pixel({x, options_.high.y()}), 0.35});
+    for (double y = std::ceil(options_.low.y() / kGrid) * kGrid; y <= options_.high.y(); y += kGrid)
+      strokes.push_back({pixel({options_.low.x(), y}), pixel({options_.high.x(), y}), 0.35});
+    canvas.strokes(strokes, kPaint, unit);
+  }
+  ground_ = canvas.take();
+}
+
+Picture PitchView::draw(Timestamp now, std::span<const Mark> marks) {
+  Canvas canvas(ground_);
+  const double radius = kDisc * ground_.size().width;
+  for (const Mark& mark : marks) trails_[mark.number].push_back({now, mark.place, mark.colour});
+  for (auto trail = trails_.begin(); trail != trails_.end();) {
+    auto& steps = trail->second;
+    while (!steps.empty() && now - steps.front().time > options_.trail) steps.pop_front();
+    if (steps.empty()) {
+      trail = trails_.erase(trail);
+      continue;
+    }
+    std::vector<Canvas::Stroke> strokes;
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+      const double age = seconds(now - steps[i].time) / seconds(options_.trail);
+      strokes.push_back({pixel(steps[i - 1].place), pixel(steps[i].place), 0.8 * (1 - age)});
+    }
+    canvas.strokes(strokes, steps.back().colour, 0.3 * radius);
+    ++trail;
+  }
+  for (const Mark& mark : marks) {
+    const cv::Point2f at = pixel(mark.place);
+    canvas.discs({at}, radius, mark.observed ? kInk : mark.colour);
+    canvas.discs({at}, 0.86 * radius, mark.observed ? mark.colour : kGrass);
+    canvas.text(mark.text, at, is_light(mark.colour) && mark.observed ? kInk : kPaint, 0.85 * radius);
+  }
+  return canvas.take();
+}
+
+}  // namespace marey

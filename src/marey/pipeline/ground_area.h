@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "marey/core/rig.h"
+#include "marey/geometry/pitch.h"
+
+namespace marey {
+
+/// The part of the ground whose people count: a pitch with a margin round it, in the user's frame. Without a pitch all of it.
+class GroundArea {
+ public:
+  GroundArea() = default;
+
+  /// The pitch's corner is the origin of the user's frame, which is the world through `ground_from_world`. `margin` in m.
+  GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<PitchSize>& pitch, double margin);
+
+  /// The user's coordinates of a place in the world, and a velocity's.
+  Vector<2> ground(const Vector<2>& world) const;
+  Vector<2> ground_velocity(const Vector<2>& velocity) const;
+  Vector<2> world(const Vector<2>& ground) const;
+
+  /// Whether somebody at this place of the world counts; with `slack` m more on all sides.
+  bool holds(const Vector<2>& world, double slack = 0) const;
+
+  /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
+  bool mirrored() const { return ground_from_world_.topLeftCorner<2, 2>().determinant() < 0; }
+  const std::optional<PitchSize>& pitch() const { return pitch_; }
+  double margin() const { return margin_; }
+
+ private:
+  Matrix<3> ground_from_world_ = Matrix<3>::Identity(), world_from_ground_ = Matrix<3>::Identity();
+  std::optional<PitchSize> pitch_;
+  double margin_ = 0;
+};
+
+}  // namespace marey

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+
+#include "marey/geometry/box.h"
+#include "marey/geometry/camera.h"
+
+namespace marey {
+
+/// An upright person, m: what is taken for granted where nothing is known of who it is.
+struct PersonShape {
+  double height = 1.75;
+  double width = 0.62;  ///< of the silhouette, arms and stride included
+};
+
+/// The box of a person who stands at `ground` (m, on z = 0), as the camera sees it, px: also where it lies outside the picture.
+/// Nothing where the person is behind the camera or beyond what the lens shows.
+std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, const PersonShape& shape = {});
+
+}  // namespace marey
