@@ -34,6 +34,8 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
                        {"detections", counts.detections},
                        {"dropped", {{"outside", counts.outside}, {"noise", counts.noise}, {"misfits", counts.misfits}}}});
   }
+  nlohmann::json teams = nlohmann::json::array();
+  for (const Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
   const nlohmann::json json = {{"frames", summary.frames},
                                {"seconds", summary.seconds},
                                {"people", summary.people},
@@ -41,6 +43,7 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
                                {"predicted", summary.predicted},
                                {"off_pitch", summary.off_pitch},
                                {"cameras", cameras},
+                               {"teams", teams},
                                {"elapsed", elapsed},
                                {"tracking_s", summary.tracking_s},
                                {"joining_s", summary.joining_s},
@@ -57,6 +60,7 @@ void print_summary(const GroundSummary& summary, const GroundOutput& output, dou
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.people,
              summary.people == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
              static_cast<double>(camera_frames(summary)) / elapsed);
+  for (const Teams::Team& team : summary.teams) fmt::print(stderr, "team {}: {} people\n", team.name, team.people);
   if (summary.predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
                share(summary.predicted, summary.rows));

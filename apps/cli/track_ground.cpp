@@ -20,8 +20,7 @@ constexpr double kBodyHeight = 100;
 constexpr double kBodyMetres = 1.75;
 
 GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
-  GroundOutput output{
-      .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
+  GroundOutput output{.tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
   const std::string format = command.format.empty() ? (flags.camera.empty() ? "csv" : "mot") : command.format;
   if (format != "csv" && format != "mot")
     throw Error("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
@@ -40,6 +39,7 @@ TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& f
   TrackGroundOptions options;
   options.eyes.background = parse_background(people.background);
   options.rate_hz = command.rate_hz;
+  if (!flags.teams.empty()) options.teams.names = parse_teams(flags.teams);
   options.live = command.live;
   if (!command.filter.empty()) options.tracker.filter = scaled(filter_named(command.filter), kBodyMetres / kBodyHeight);
   if (!flags.associate.empty()) options.tracker.associate = ground_association_named(flags.associate);
@@ -66,6 +66,12 @@ void add_ground_options(CLI::App& command, GroundFlags& flags) {
       ->group(group);
   command.add_option("--margin", flags.margin, "m round the pitch where people still count (default: 2)")
       ->check(CLI::NonNegativeNumber)
+      ->needs(ground)
+      ->group(group);
+  command
+      .add_option("--teams", flags.teams,
+                  "what the teams wear, \"white,blue\", or what they are called, \"City=white,United=blue\"")
+      ->check(known([](const std::string& text) { parse_teams(text); }))
       ->needs(ground)
       ->group(group);
   command.add_option("--associate", flags.associate, "how what is seen finds whom it is of: gnn, jpda or mht (default: gnn)")

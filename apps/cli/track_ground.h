@@ -16,6 +16,7 @@ struct GroundFlags {
   std::vector<std::string> sources;
   std::string size;
   std::optional<double> margin;
+  std::string teams;
   std::string associate;
   std::string camera;
   std::string pitch_view;

@@ -6,6 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/core/lab.h"
+
 namespace marey {
 namespace {
 
@@ -51,6 +53,12 @@ Colour colour_of(int number) {
     return static_cast<unsigned char>(std::lround(255 * level));
   };
   return {channel(5), channel(3), channel(1)};
+}
+
+Colour colour_of(const Appearance& wears) {
+  const auto rgb = srgb_from_lab(wears.lightness, wears.a, wears.b);
+  const auto channel = [](float value) { return static_cast<unsigned char>(std::lround(value)); };
+  return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
 Canvas::Canvas(const Picture& picture) {

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
+#include "marey/detect/appearance.h"
 #include "marey/detect/person_size_map.h"
 #include "marey/format/rig_sources.h"
 #include "marey/reconstruct/person_view.h"
@@ -114,17 +115,24 @@ struct GroundCameras::Lane {
     }
     Detections found = eyes.detector->detect(*taken, expected);
     if (view.camera() == nullptr && eyes.people == nullptr) learn(found, view.size());
-    place(std::move(found.detections), view, area);
+    place(found, view, area);
   }
 
-  void place(std::vector<Detection> found, const GroundView& view, const GroundArea& area) {
-    for (Detection& detection : found) detection.box = moved(detection.box, corner);
-    PlacedPeople placed = place_people(found, view, id);
-    const auto outside = [&](const Observation<2>& one) { return !area.holds(one.value, kBeyondArea); };
-    std::erase_if(placed.seen, outside);
-    counts.outside += std::ssize(found) - std::ssize(placed.seen);
-    counts.detections += std::ssize(placed.seen);
-    seen = std::move(placed.seen);
+  void place(Detections& found, const GroundView& view, const GroundArea& area) {
+    std::vector<std::optional<Appearance>> wears;
+    for (Detection& detection : found.detections) {
+      wears.push_back(upper_body(taken->picture, found.foreground, detection));
+      detection.box = moved(detection.box, corner);
+    }
+    const PlacedPeople placed = place_people(found.detections, view, id);
+    seen.clear();
+    for (std::size_t i = 0; i < placed.seen.size(); ++i) {
+      if (!area.holds(placed.seen[i].value, kBeyondArea)) continue;
+      seen.push_back(placed.seen[i]);
+      seen.back().appearance = wears[static_cast<std::size_t>(placed.detection[i])];
+    }
+    counts.outside += std::ssize(found.detections) - std::ssize(seen);
+    counts.detections += std::ssize(seen);
   }
 
   void learn(const Detections& found, cv::Size size) {

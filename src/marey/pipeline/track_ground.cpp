@@ -164,11 +164,20 @@ class Run {
 
   /// The second pass: who is whom over the whole recording, in the user's coordinates, without those who never were on the pitch.
   void join() {
-    GroundRecorder::Joined joined = std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
+    GroundRecorder::Joined joined =
+        std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
     std::vector<std::string> names = std::move(recording_.cameras);
     recording_ = std::move(joined.recording);
     recording_.cameras = std::move(names);
     const std::vector<std::int32_t> now = keep_in_area();
+    std::vector<std::optional<Appearance>> wears(recording_.people.size());
+    for (std::size_t person = 0; person < now.size(); ++person) {
+      if (now[person] >= 0) wears[static_cast<std::size_t>(now[person])] = joined.wears[person];
+    }
+    TeamOptions teams = options_.teams;
+    teams.pitch = area_.pitch();
+    teams_ = find_teams(recording_, wears, teams);
+    note_teams(teams_, recording_);
     pieces_ = std::move(joined);
     for (ViewLog& log : logs_) {
       log.name([&](TrackId track, std::int32_t frame) -> std::optional<int> {
@@ -238,7 +247,12 @@ class Run {
 
   std::vector<Colour> colours() const {
     std::vector<Colour> colours;
-    for (const GroundRecording::Person& person : recording_.people) colours.push_back(colour_of(person.id));
+    for (std::size_t i = 0; i < recording_.people.size(); ++i) {
+      const auto team = i < teams_.members.size() ? teams_.members[i].team : std::nullopt;
+      const bool alone = !team || teams_.members[i].role != Teams::Role::player;
+      colours.push_back(alone ? colour_of(recording_.people[i].id)
+                              : colour_of(teams_.teams[static_cast<std::size_t>(*team)].colour));
+    }
     return colours;
   }
 
@@ -246,6 +260,7 @@ class Run {
     summary_.people = std::ssize(recording_.people);
     if (options_.live) summary_.people = std::ssize(live_people_);
     summary_.warnings = cameras_.warnings();
+    summary_.teams = teams_.teams;
     for (std::size_t i = 0; i < recording_.cameras.size(); ++i) {
       const GroundCameras::Counts counts = cameras_.counts(i);
       if (counts.frames == 0) {
@@ -267,6 +282,7 @@ class Run {
   GroundRecorder recorder_;
   GroundRecorder::Joined pieces_;
   GroundRecording recording_;
+  Teams teams_;
   std::vector<double> times_;  // s, of each instant by the first camera's clock
   std::vector<ViewLog> logs_;  // of each camera, where something is to be shown
   bool shows_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/analyse/teams.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
 #include "marey/pipeline/ground_cameras.h"
@@ -19,6 +20,7 @@ struct TrackGroundOptions {
   PeopleEyesOptions eyes;
   GroundTrackerOptions tracker;
   GroundJoinOptions join;
+  TeamOptions teams;               ///< `pitch` is taken from below
   std::optional<double> rate_hz;   ///< of cameras of which the rig does not say it
   std::optional<PitchSize> pitch;  ///< only people on it count; nothing: everybody does
   double margin = 2;               ///< m round the pitch where people still count
@@ -46,8 +48,9 @@ struct GroundSummary {
   std::int64_t predicted = 0;   ///< rows in which nobody saw the person
   std::int64_t off_pitch = 0;   ///< people left out: never on the pitch or its margin
   std::vector<Camera> cameras;  ///< in the rig's order
-  double tracking_s = 0;        ///< wall time of the first pass: decoding, detecting, tracking
-  double joining_s = 0;         ///< of the second
+  std::vector<Teams::Team> teams;
+  double tracking_s = 0;  ///< wall time of the first pass: decoding, detecting, tracking
+  double joining_s = 0;   ///< of the second
 
   bool stopped = false;               ///< before the end, because a hook said so
   std::vector<std::string> warnings;  ///< one sentence each
