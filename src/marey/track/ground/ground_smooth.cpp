@@ -10,6 +10,9 @@ namespace marey {
 namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
+constexpr int usual_passes = 3;
+constexpr double round_moment = 0.5;  // s before and after within which pushes tell how strong they are
+constexpr double strongest = 3;       // in units of the pushes' usual power
 
 constexpr int upper(int i, int j) {
   constexpr std::array<std::array<int, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
@@ -82,7 +85,8 @@ class Steps {
   Step step_;
 };
 
-void advance(GroundState& state, const Step& step) {
+/// `push`: the power of the pushes in units of the usual.
+void advance(GroundState& state, const Step& step, double push = 1) {
   const Matrix<3>& F = step.F;
   std::array<Matrix<2>, 6> P;
   // Rows of F P, then times Fᵀ: sums over what lies on or right of the diagonal.
@@ -104,7 +108,7 @@ void advance(GroundState& state, const Step& step) {
       Matrix<2>& block = P[upper(i, j)];
       block = F(j, j) * FP[i][j];
       for (int k = j + 1; k < 3; ++k) block += F(j, k) * FP[i][k];
-      block.diagonal().array() += step.Q(i, j);
+      block.diagonal().array() += push * step.Q(i, j);
     }
   }
   state.P = P;
@@ -147,45 +151,95 @@ double weight_of(const GroundSample& sample, const Vector<2>& place) {
   return (student_degrees + 2) / (student_degrees + distance);
 }
 
+/// Samples with what is made of them: each one's weight is its moment's fit, less for errors that it shares with its neighbours.
+struct Evidence {
+  std::span<const GroundSample> samples;
+  std::span<const Timestamp> times;
+  const GroundMotion& motion;
+  std::vector<GroundMoment> moments;
+  std::vector<double> echoes;  ///< factor on covariances
+  std::vector<double> pushes;  ///< up to the sample, in units of the usual power
+
+  Evidence(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
+      : samples(s), times(t), motion(m), moments(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
+    if (!(motion.error_memory > 0) || samples.size() < 2) return;
+    // Samples of an autoregressive process of the first order, ρ from one to the next: n of them tell as much of its mean as
+    // n (1 − ρ) / (1 + ρ) that err on their own.
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double before = i > 0 ? seconds_to(i) : seconds_to(1);
+      const double after = i + 1 < samples.size() ? seconds_to(i + 1) : before;
+      echoes[i] = 1 / std::tanh((before + after) / 4 / motion.error_memory);
+    }
+  }
+
+  Matrix<2> spread(std::size_t i) const { return samples[i].spread() * (echoes[i] / moments[i].fit); }
+  /// From the sample before.
+  double seconds_to(std::size_t i) const { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); }
+};
+
+/// The power of the pushes round each moment, from the accelerations found there.
+void weigh_pushes(Evidence& seen) {
+  const std::size_t n = seen.samples.size();
+  const double usual = 2 * settled(seen.motion)(1, 1);
+  const auto mix = [&](std::size_t i) { return std::exp(-seen.seconds_to(i) / round_moment); };
+  std::vector<double> power(n);
+  for (std::size_t i = 0; i < n; ++i) power[i] = seen.moments[i].acceleration.squaredNorm() / usual;
+  seen.pushes = power;
+  for (std::size_t i = 1; i < n; ++i) seen.pushes[i] += mix(i) * (seen.pushes[i - 1] - power[i]);
+  for (std::size_t i = n - 1; i-- > 0;) power[i] += mix(i + 1) * (power[i + 1] - power[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    seen.pushes[i] = std::min(strongest, seen.motion.calm + (1 - seen.motion.calm) * (seen.pushes[i] + power[i]) / 2);
+  }
+}
+
 /// Forwards, keeping each state before its observation; then back with the adjoint.
-void smooth_once(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
-                 std::vector<GroundState>& before, std::vector<GroundMoment>& moments) {
-  const auto spread = [&](std::size_t i) -> Matrix<2> { return samples[i].spread() / moments[i].fit; };
-  const auto seconds_to = [&](std::size_t i) { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); };
-  Steps steps(motion);
-  GroundState state = unknown(samples[0].at(), spread(0), motion);
+void smooth_once(Evidence& seen, std::vector<GroundState>& before) {
+  const std::span<const GroundSample> samples = seen.samples;
+  std::vector<GroundMoment>& moments = seen.moments;
+  Steps steps(seen.motion);
+  GroundState state = unknown(samples[0].at(), seen.spread(0), seen.motion);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i > 0) advance(state, steps(seconds_to(i)));
+    if (i > 0) advance(state, steps(seen.seconds_to(i)), seen.pushes[i]);
     before[i] = state;
-    correct(state, samples[i].at(), spread(i));
+    correct(state, samples[i].at(), seen.spread(i));
   }
   std::array<Vector<2>, 3> l{Vector<2>::Zero(), Vector<2>::Zero(), Vector<2>::Zero()};  // the adjoint
   for (std::size_t i = samples.size(); i-- > 0;) {
     const GroundState& b = before[i];
     const std::array<Matrix<2>, 6>& P = b.P;
-    l[0] -= (P[0] + spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
+    l[0] -= (P[0] + seen.spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
     moments[i].place = b.x[0] - P[0] * l[0] - P[1] * l[1] - P[2] * l[2];
     moments[i].velocity = b.x[1] - P[1].transpose() * l[0] - P[3] * l[1] - P[4] * l[2];
     moments[i].acceleration = b.x[2] - P[2].transpose() * l[0] - P[4].transpose() * l[1] - P[5] * l[2];
     if (i == 0) break;
-    const Matrix<3>& F = steps(seconds_to(i)).F;
+    const Matrix<3>& F = steps(seen.seconds_to(i)).F;
     l[2] = (F(0, 2) * l[0] + F(1, 2) * l[1] + F(2, 2) * l[2]).eval();
     l[1] = (F(0, 1) * l[0] + F(1, 1) * l[1]).eval();
   }
 }
 
-/// The filter alone, over `count` samples from `from` on, in steps of 1 or −1.
-GroundState filtered(std::span<const GroundSample> samples, std::span<const GroundMoment> moments, std::span<const Timestamp> times,
-                     const GroundMotion& motion, bool forwards) {
-  const std::size_t n = samples.size();
+Evidence smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion, int passes) {
+  Evidence seen(samples, times, motion);
+  std::vector<GroundState> before(samples.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i) seen.moments[i].fit = weight_of(samples[i], seen.moments[i].place);
+    if (pass > 0 && motion.calm < 1) weigh_pushes(seen);
+    smooth_once(seen, before);
+  }
+  return seen;
+}
+
+/// The filter alone, over all samples, from the first or from the last on. Of what comes beyond nothing is known: all push alike.
+GroundState filtered(std::span<const GroundSample> samples, std::span<const Timestamp> times, GroundMotion motion, bool forwards) {
+  motion.calm = 1;
+  const Evidence seen = smoothed(samples, times, motion, usual_passes);
+  const std::size_t n = seen.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
-  const auto spread = [&](std::size_t i) -> Matrix<2> { return samples[i].spread() / moments[i].fit; };
-  Steps steps(motion);
-  GroundState state = unknown(samples[at(0)].at(), spread(at(0)), motion);
+  Steps steps(seen.motion);
+  GroundState state = unknown(seen.samples[at(0)].at(), seen.spread(at(0)), seen.motion);
   for (std::size_t k = 0; k < n; ++k) {
-    const GroundSample& sample = samples[at(k)];
-    if (k > 0) advance(state, steps(std::abs(seconds(times[sample.instant] - times[samples[at(k - 1)].instant]))));
-    correct(state, sample.at(), spread(at(k)));
+    if (k > 0) advance(state, steps(seen.seconds_to(std::max(at(k), at(k - 1)))));
+    correct(state, seen.samples[at(k)].at(), seen.spread(at(k)));
   }
   return state;
 }
@@ -205,13 +259,7 @@ GroundState predicted(const GroundState& state, double dt, const GroundMotion& m
 std::vector<GroundMoment> smooth_ground(std::span<const GroundSample> samples, std::span<const Timestamp> times,
                                         const GroundMotion& motion, int passes) {
   assert(!samples.empty() && passes > 0 && "there is something to smooth");
-  std::vector<GroundMoment> moments(samples.size());
-  std::vector<GroundState> before(samples.size());
-  for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i) moments[i].fit = weight_of(samples[i], moments[i].place);
-    smooth_once(samples, times, motion, before, moments);
-  }
-  return moments;
+  return std::move(smoothed(samples, times, motion, passes).moments);
 }
 
 GroundState first_state(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
@@ -219,7 +267,7 @@ GroundState first_state(std::span<const GroundSample> samples, std::span<const T
   const Timestamp last = times[samples.front().instant] + duration_from_seconds(span);
   const auto past = std::find_if(samples.begin(), samples.end(), [&](const GroundSample& s) { return times[s.instant] > last; });
   const auto some = samples.first(static_cast<std::size_t>(past - samples.begin()));
-  GroundState state = filtered(some, smooth_ground(some, times, motion), times, motion, false);
+  GroundState state = filtered(some, times, motion, false);
   state.x[1] = -state.x[1];  // velocities stray backwards as they do forwards
   state.P[1] = -state.P[1];
   // Pushes do not: nothing is known of them.
@@ -236,7 +284,7 @@ GroundState last_state(std::span<const GroundSample> samples, std::span<const Ti
   const auto some_rev =
       std::find_if(samples.rbegin(), samples.rend(), [&](const GroundSample& s) { return times[s.instant] < first; });
   const auto some = samples.last(static_cast<std::size_t>(some_rev - samples.rbegin()));
-  return filtered(some, smooth_ground(some, times, motion), times, motion, true);
+  return filtered(some, times, motion, true);
 }
 
 GroundMoment between(const GroundMoment& earlier, double since, const GroundMoment& later, double until,

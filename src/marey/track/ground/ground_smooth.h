@@ -3,13 +3,16 @@
 // People push for some tenths of a second in one direction and then in another, and what velocity they have settles towards rest
 // within some seconds where nothing keeps it up: acceleration is an Ornstein-Uhlenbeck process (Singer 1970), and velocity is
 // damped. So what is faster than a push is taken for noise and not for motion, while a track that runs on blindly slows down and
-// its uncertainty of place grows as time does, not as its cube: gaps of twenty seconds can be judged. Observations that do not fit
-// (half a body hidden, the wrong foot) count for less: after each pass the covariance of each grows by its distance from the path,
-// as Student's distribution would have it. The way back is taken in the form of Bryson & Frazier (Bierman 1973): an adjoint of four
-// numbers instead of a covariance to invert. Cost: about 15 products of 2 × 2 matrices a sample and pass; 150 bytes a sample of one
-// person while that one is smoothed. References: Rauch, Tung & Striebel, "Maximum likelihood estimates of linear dynamic systems",
-// AIAA Journal 3 (1965); Bierman, "Fixed interval smoothing with discrete measurements", Int. J. Control 18 (1973); Lange, Little &
-// Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989).
+// its uncertainty of place grows as time does, not as its cube: gaps of twenty seconds can be judged. Who stands or strolls pushes
+// less than who plays: after each pass the strength of the pushes is taken from those found round each moment, so that the jitter
+// of places does not make people walk who stand. Neighbouring observations err alike (the same foot ahead, the same shadow), and
+// count as so much less. Observations that do not fit (half a body hidden, the wrong foot) count for less: after each pass the
+// covariance of each grows by its distance from the path, as Student's distribution would have it. The way back is taken in the
+// form of Bryson & Frazier (Bierman 1973): an adjoint of four numbers instead of a covariance to invert. Cost: about 15 products of
+// 2 × 2 matrices a sample and pass; 150 bytes a sample of one person while that one is smoothed. References: Rauch, Tung &
+// Striebel, "Maximum likelihood estimates of linear dynamic systems", AIAA Journal 3 (1965); Bierman, "Fixed interval smoothing
+// with discrete measurements", Int. J. Control 18 (1973); Lange, Little & Taylor, "Robust statistical modeling using the t
+// distribution", JASA 84 (1989).
 #pragma once
 
 #include <array>
@@ -22,9 +25,11 @@
 namespace marey {
 
 struct GroundMotion {
-  double acceleration = 1.5;  ///< by which velocity strays in a second, m/s: root of the density of slow changes, m/s^1.5
-  double push = 0.5;          ///< for so long people push in one direction, s
-  double settling = 3;        ///< time in which velocity falls to 1/e where nothing keeps it up, s
+  double acceleration = 1.5;   ///< by which velocity strays in a second, m/s: root of the density of slow changes, m/s^1.5
+  double push = 0.5;           ///< for so long people push in one direction, s
+  double settling = 3;         ///< time in which velocity falls to 1/e where nothing keeps it up, s
+  double calm = 0.1;           ///< share of the pushes' usual power that who stands is still granted; 1: all push alike
+  double error_memory = 0.05;  ///< for so long errors of places persist, s; 0: each errs on its own
 };
 
 /// Place, velocity and acceleration with their covariance, by blocks: m, m/s, m/s².

@@ -1,5 +1,7 @@
 #include "marey/track/ground/ground_smooth.h"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <Eigen/LU>
@@ -102,7 +104,7 @@ std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
 }
 
 TEST(GroundSmooth, IsTheLeastSquaresPath) {
-  const GroundMotion motion;
+  const GroundMotion motion{.error_memory = 0};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Scene scene = random_scene(seed);
     const auto path = smooth_ground(scene.samples, scene.times, motion, 1);
@@ -116,7 +118,7 @@ TEST(GroundSmooth, IsTheLeastSquaresPath) {
 }
 
 TEST(GroundSmooth, BetweenTwoMomentsIsWhereTheSmootherPutsWhatIsHardlySeen) {
-  const GroundMotion motion;
+  const GroundMotion motion{.calm = 1, .error_memory = 0};
   Scene scene = random_scene(7);
   const std::size_t middle = 20;
   scene.samples[middle].covariance = {1e6F, 0, 1e6F};
@@ -129,7 +131,7 @@ TEST(GroundSmooth, BetweenTwoMomentsIsWhereTheSmootherPutsWhatIsHardlySeen) {
 }
 
 TEST(GroundSmooth, EndsAreWhatTheSmootherSaysOfThem) {
-  const GroundMotion motion;
+  const GroundMotion motion{.calm = 1};
   const Scene scene = random_scene(3);
   const auto path = smooth_ground(scene.samples, scene.times, motion);
   const GroundState first = first_state(scene.samples, scene.times, motion, 1e6);
@@ -153,6 +155,50 @@ TEST(GroundSmooth, WhatDoesNotFitCountsLess) {
   EXPECT_LT(std::abs(path[51].place.y()), 0.15);
   EXPECT_LT(path[51].fit, 0.1);
   EXPECT_GT(path[20].fit, 1);
+}
+
+/// m that a smoothed path goes, and its fastest moment.
+struct Way {
+  double length = 0, fastest = 0;
+};
+
+/// Somebody who stands, sprints for two seconds and stands again, seen with errors that persist for `memory` s.
+Way sprint(double rate_hz, double memory, const GroundMotion& motion) {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  Scene scene;
+  const double dt = 1 / rate_hz, kept = memory > 0 ? std::exp(-dt / memory) : 0;
+  Vector<2> error = Vector<2>::Zero();
+  double place = 0, speed = 0;
+  for (int k = 0; k < 40 * rate_hz; ++k) {
+    const double t = k * dt;
+    speed += dt * std::clamp((t > 20 && t < 23 ? 8.0 : 0.0) - speed, -1.0, 1.0) * 5;
+    place += dt * speed;
+    error = kept * error + 0.3 * std::sqrt(1 - kept * kept) * Vector<2>(normal(engine), normal(engine));
+    scene.times.push_back(timestamp_from_seconds(t));
+    scene.samples.push_back(sample(k, Vector<2>(place, 0) + error, 0.09, 0, 0.09));
+  }
+  const auto path = smooth_ground(scene.samples, scene.times, motion);
+  Way way;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    way.length += (path[i].place - path[i - 1].place).norm();
+    way.fastest = std::max(way.fastest, path[i].velocity.norm());
+  }
+  return way;
+}
+
+TEST(GroundSmooth, WhoStandsDoesNotWalkByTheJitterOfHisPlacesAndWhoSprintsDoes) {
+  const Way plain = sprint(25, 0.05, {.calm = 1, .error_memory = 0});
+  const Way calm = sprint(25, 0.05, {});
+  EXPECT_GT(plain.length, 30) << "the scene is too easy";
+  EXPECT_LT(calm.length, plain.length - 5);
+  EXPECT_GT(calm.fastest, 7.2);
+  EXPECT_LT(calm.fastest, 8.8);
+}
+
+TEST(GroundSmooth, MoreFramesOfErrorsThatPersistAreNoMoreEvidence) {
+  const Way slow = sprint(25, 0.05, {}), fast = sprint(100, 0.05, {});
+  EXPECT_NEAR(fast.length, slow.length, 0.15 * slow.length);
 }
 
 }  // namespace
