@@ -7,27 +7,23 @@
 #include <numeric>
 #include <optional>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/perceived.h"
 
 namespace marey {
 namespace {
 
-constexpr double lightness_counts = 0.6;           // beside a* and b*: sun and shade change it
-constexpr double narrowest = 4, widest = 14;       // of one kind: standard deviation, L*a*b*
-constexpr double all_colours = 100.0 * 120 * 120;  // volume over which odd colours are spread
+constexpr double narrowest = 3, widest = 10;    // of one kind: standard deviation, as perceived
+constexpr double all_colours = 60 * 70 * 70.0;  // volume over which odd colours are spread, as perceived
+constexpr double thinned = 0.6;                 // deviation as perceived, of one in L*a*b*
 constexpr double fewest_odd = 0.02;
 constexpr int beginnings = 12;
 constexpr int iterations = 60;
-
-Vector<3> point_of(const Appearance& colour) {
-  return {lightness_counts * colour.lightness, colour.a, colour.b};
-}
 
 struct Fit {
   std::vector<Vector<3>> centres;
   std::vector<double> shares;
   double odd = 0.1;
-  double variance = 64;
+  double variance = 36;
   double log_likelihood = -std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> whose;
 };
@@ -36,8 +32,8 @@ class Fitter {
  public:
   explicit Fitter(std::span<const ColourSeen> seen) {
     for (const ColourSeen& one : seen) {
-      points_.push_back(point_of(one.colour));
-      own_.push_back(static_cast<double>(one.colour.deviation) * one.colour.deviation);
+      points_.push_back(perceived(one.colour));
+      own_.push_back(std::pow(thinned * one.colour.deviation, 2));
       weights_.push_back(one.weight);
     }
     total_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
@@ -91,7 +87,7 @@ class Fitter {
     fit.whose.assign(points_.size(), {});
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double variance = fit.variance + own_[i];
-      double sum = fit.odd / (lightness_counts * all_colours);
+      double sum = fit.odd / all_colours;
       for (std::size_t k = 0; k < fit.centres.size(); ++k) {
         const double distance = (points_[i] - fit.centres[k]).squaredNorm() / variance;
         fit.whose[i].push_back(fit.shares[k] * std::exp(-distance / 2) * std::pow(2 * std::numbers::pi * variance, -1.5));
@@ -153,12 +149,7 @@ ColourMixture find_colours(std::span<const ColourSeen> seen, int most) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return best->shares[a] > best->shares[b]; });
   for (const std::size_t k : order) {
-    const Vector<3>& centre = best->centres[k];
-    mixture.kinds.push_back({{.lightness = static_cast<float>(centre[0] / lightness_counts),
-                              .a = static_cast<float>(centre[1]),
-                              .b = static_cast<float>(centre[2]),
-                              .deviation = static_cast<float>(std::sqrt(best->variance))},
-                             best->shares[k]});
+    mixture.kinds.push_back({colour_at(best->centres[k], std::sqrt(best->variance) / thinned), best->shares[k]});
   }
   mixture.odd = best->odd;
   for (const std::vector<double>& probabilities : best->whose) {

@@ -7,15 +7,16 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/perceived.h"
 
 namespace marey {
 namespace {
 
 // Shirts in the open, filmed from afar: duller than a painter's colours.
 constexpr std::array<ColourName, 14> names = {{
-    {"white", {85, 0, 0}},
+    {"white", {80, 0, 0}},
     {"black", {18, 0, 0}},
-    {"grey", {52, 0, 0}},
+    {"grey", {46, 0, 0}},
     {"red", {42, 48, 28}},
     {"orange", {60, 35, 50}},
     {"yellow", {80, -5, 62}},
@@ -77,12 +78,7 @@ std::string name_of_colour(const Appearance& colour) {
 }
 
 double colours_apart(const Appearance& a, const Appearance& b) {
-  const double lightness = static_cast<double>(a.lightness) - b.lightness;
-  const double da = static_cast<double>(a.a) - b.a;
-  const double db = static_cast<double>(a.b) - b.b;
-  const double strength = std::hypot(a.a, a.b) - std::hypot(b.a, b.b);
-  const double hue = std::max(0.0, da * da + db * db - strength * strength);
-  return std::sqrt((lightness * lightness + strength * strength) / 4 + hue);
+  return (perceived(a) - perceived(b)).norm();
 }
 
 }  // namespace marey

@@ -20,6 +20,7 @@ constexpr double keepers_width = 20;   // m to either side of the middle
 constexpr double keepers_time = 0.85;  // nearly always
 constexpr double officials = 0.2;      // share that referees have at most
 constexpr double another_colour = 14;  // L*a*b*: by how much an official's colour differs from each team's
+constexpr float most_cast = 35;        // chroma
 constexpr double longest_step = 0.5;   // s from one row of a person to the next that counts as seen
 constexpr double colours_differ = 25;  // L*a*b*: how far a team's colour may lie from the one that is named
 
@@ -84,9 +85,28 @@ std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::v
   return best;
 }
 
+/// What cameras and light make of grey: the colour of the kind of people that has least, if that is little enough to be it.
+Appearance cast_of(const ColourMixture& mixture) {
+  Appearance cast{.lightness = 0};
+  float least = most_cast;
+  for (const ColourMixture::Kind& kind : mixture.kinds) {
+    const float chroma = std::hypot(kind.colour.a, kind.colour.b);
+    if (chroma >= least) continue;
+    least = chroma;
+    cast.a = kind.colour.a;
+    cast.b = kind.colour.b;
+  }
+  return cast;
+}
+
 /// Names for teams that the user has not named: by colour, told apart by lightness where they have the same.
-void name_by_colour(std::vector<Teams::Team>& teams) {
-  for (Teams::Team& team : teams) team.name = name_of_colour(team.colour);
+void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
+  for (Teams::Team& team : teams) {
+    Appearance colour = team.colour;
+    colour.a -= cast.a;
+    colour.b -= cast.b;
+    team.name = name_of_colour(colour);
+  }
   if (teams.size() < 2 || teams[0].name != teams[1].name) return;
   const bool first_lighter = teams[0].colour.lightness > teams[1].colour.lightness;
   teams[0].name = (first_lighter ? "light " : "dark ") + teams[0].name;
@@ -160,7 +180,7 @@ class Finder {
       if (!options_.names.empty()) team.name = options_.names[t].name;
       teams_.teams.push_back(team);
     }
-    if (options_.names.empty()) name_by_colour(teams_.teams);
+    if (options_.names.empty()) name_by_colour(teams_.teams, cast_of(mixture_));
     vote(kinds);
     for (std::size_t i = 0; i < candidates_.people.size(); ++i) place_official(i);
     return std::move(teams_);
@@ -194,7 +214,7 @@ class Finder {
     const ColourSeen& seen = candidates_.seen[candidate];
     double apart = 1e9;
     for (const Teams::Team& team : teams_.teams) apart = std::min(apart, colours_apart(seen.colour, team.colour));
-    if (apart < another_colour + seen.colour.deviation) return;
+    if (apart < another_colour + seen.colour.deviation / 2) return;
     const double confidence = std::clamp(1 - another_colour / (2 * apart), 0.0, 1.0);
     const Presence& presence = presence_[static_cast<std::size_t>(who)];
     for (const int end : {0, 1}) {

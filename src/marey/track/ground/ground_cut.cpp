@@ -1,35 +1,43 @@
 #include "marey/track/ground/ground_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/perceived.h"
 
 namespace marey {
 namespace {
 
 constexpr double bin_seconds = 0.5;
-constexpr double lightness_counts = 0.6;  // shade changes lightness
 
 /// What was seen of the colour in half a second.
 struct Bin {
-  std::size_t first = 0, last = 0;  // samples, the second not included
-  Vector<3> colour = Vector<3>::Zero();
+  std::size_t first = 0, last = 0;       // samples, the second not included
+  Vector<3> colour = Vector<3>::Zero();  // as perceived
 };
+
+Vector<3> point_of(const GroundSample& sample) {
+  return perceived({.lightness = static_cast<float>(sample.colour[0]),
+                    .a = static_cast<float>(sample.colour[1]),
+                    .b = static_cast<float>(sample.colour[2])});
+}
 
 Vector<3> median(std::span<const GroundSample> samples) {
   Vector<3> colour;
-  for (int i = 0; i < 3; ++i) {
-    std::vector<int> values;
-    for (const GroundSample& sample : samples) {
-      if (sample.has_colour()) values.push_back(sample.colour[i]);
-    }
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    colour[i] = values[values.size() / 2];
+  std::array<std::vector<double>, 3> values;
+  for (const GroundSample& sample : samples) {
+    if (!sample.has_colour()) continue;
+    const Vector<3> point = point_of(sample);
+    for (int i = 0; i < 3; ++i) values[i].push_back(point[i]);
   }
-  colour[0] *= lightness_counts;
+  for (int i = 0; i < 3; ++i) {
+    const auto middle = values[i].begin() + static_cast<std::ptrdiff_t>(values[i].size() / 2);
+    std::nth_element(values[i].begin(), middle, values[i].end());
+    colour[i] = *middle;
+  }
   return colour;
 }
 
@@ -103,8 +111,7 @@ class Cutter {
     for (std::size_t i = best; i < bins_[cut].last; ++i) {
       const GroundSample& sample = samples_[i - 1];
       if (sample.has_colour()) {
-        Vector<3> colour = sample.lab();
-        colour[0] *= lightness_counts;
+        const Vector<3> colour = point_of(sample);
         sum += (colour - early).squaredNorm() - (colour - late).squaredNorm();
       }
       if (sum > least) continue;

@@ -18,9 +18,9 @@ namespace marey {
 
 struct GroundCutOptions {
   double shortest = 1;   ///< s; a piece whose colour is believed lasts at least so long
-  double least = 16;     ///< by how much the colours of two pieces differ, in L*a*b*
+  double least = 12;     ///< by how much the colours of two pieces differ, as perceived
   double surely = 40;    ///< and how much better two colours explain what was seen than one: twice a logarithm of likelihoods
-  double deviation = 9;  ///< of one person's colour from one half second to another
+  double deviation = 6;  ///< of one person's colour from one half second to another
 };
 
 /// The same tracklets, those in which the colour changes cut there; pieces keep the track's id. Order is kept.

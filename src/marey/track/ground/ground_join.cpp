@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "marey/assign/sparse_assignment.h"
+#include "marey/core/perceived.h"
 
 namespace marey {
 namespace {
@@ -23,8 +24,8 @@ constexpr double births_at_border = 2e-3;
 constexpr double left_inside = 0.02;  // probability that a track ends because the person left
 constexpr double left_at_border = 0.7;
 
-constexpr double clothes_vary = 6;  // deviation of one person's colour from one stretch to another: sun, shade, another camera
-constexpr double lightness_counts = 0.6;              // of a difference in lightness beside one in colour: shade changes it
+constexpr double clothes_vary = 5;  // as perceived, one person's colour from one stretch to another: sun, shade, another camera
+constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t most_kinds = 300;
 
@@ -40,11 +41,11 @@ double square(double x) {
   return x * x;
 }
 
-/// Of the difference of two colours; components weighed as they tell people apart.
+/// Of the difference of two colours, as perceived.
 double colour_log_normal(const Appearance& a, const Appearance& b) {
-  const double variance = square(a.deviation) + square(b.deviation) + 2 * clothes_vary * clothes_vary;
-  const Vector<3> apart(lightness_counts * (a.lightness - b.lightness), a.a - b.a, a.b - b.b);
-  return -0.5 * (apart.squaredNorm() / variance + 3 * std::log(2 * std::numbers::pi * variance));
+  const double measured = thinned * thinned * (square(a.deviation) + square(b.deviation));
+  const double variance = measured + 2 * clothes_vary * clothes_vary;
+  return -0.5 * ((perceived(a) - perceived(b)).squaredNorm() / variance + 3 * std::log(2 * std::numbers::pi * variance));
 }
 
 /// Whether somebody there may be about to be out of sight: some place a second's way around is.
