@@ -1,0 +1,151 @@
+"""`marey evaluate --distance`, `convert`, `info` and `measure` on files of people on the ground: several rates, other tools' files,
+and what cannot be used.
+
+Usage: ground_files_test.py MAREY [unittest options]. Nothing else is needed.
+"""
+
+import csv
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+
+
+class GroundFiles(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_ground_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def marey(self, *arguments, code=0):
+        done = subprocess.run([MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=120)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def refused(self, *arguments):
+        """Ends with one sentence and leaves nothing behind."""
+        before = sorted(self.folder.rglob("*"))
+        said = self.marey(*arguments, code=1).stderr.strip()
+        self.assertEqual(sorted(self.folder.rglob("*")), before, "something was left behind")
+        self.assertEqual(len(said.splitlines()), 1, said)
+        self.assertTrue(said.startswith("marey: "), said)
+        return said
+
+    def write_run(self, name, rate, seconds=20, shift=0.0, columns="frame,time,id,team,x,y"):
+        """One who runs at 8 m/s to and fro, one who walks at 1 m/s."""
+        with open(self.folder / name, "w") as out:
+            out.write(columns + "\n")
+            for i in range(round(seconds * rate) + 1):
+                time = i / rate
+                way = (8 * time) % 80
+                places = {1: (10 + min(way, 80 - way), 20 + shift), 2: (50, 20 + time + shift)}
+                for person, (x, y) in places.items():
+                    row = {"frame": i, "time": f"{time:.4f}", "id": person, "team": "white" if person == 1 else "blue", "x": f"{x:.3f}",
+                           "y": f"{y:.3f}"}
+                    out.write(",".join(str(row[column]) for column in columns.split(",")) + "\n")
+
+    def test_rates_make_no_difference(self):
+        for rate in (5, 10, 25, 50, 100):
+            self.write_run("run.csv", rate)
+            self.marey("measure", "run.csv", "-o", "summary.csv", "-q")
+            rows = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))
+            self.assertAlmostEqual(float(rows[1]["distance_m"]), 20, delta=0.2, msg=f"{rate} Hz")
+            self.assertAlmostEqual(float(rows[0]["distance_m"]), 160, delta=8, msg=f"{rate} Hz")  # turning at once is smoothed
+            self.assertAlmostEqual(float(rows[0]["top_mps"]), 8, delta=0.9, msg=f"{rate} Hz")
+            self.assertGreaterEqual(int(rows[0]["sprints"]), 2, f"{rate} Hz")
+
+    def test_another_tools_file_without_teams(self):
+        self.write_run("run.csv", 25, columns="id,frame,x,y,time")
+        self.marey("measure", "run.csv", "-o", "summary.csv", "--report", "report", "-q")
+        rows = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))
+        self.assertEqual([row["team"] for row in rows], ["", ""])
+        said = self.marey("convert", "run.csv", "run.dat").stderr
+        self.assertIn("nobody has a team", said)
+        self.marey("measure", "run.dat", "-o", "again.csv", "-q")
+        again = list(csv.DictReader((self.folder / "again.csv").read_text().splitlines()))
+        self.assertAlmostEqual(float(again[0]["distance_m"]), float(rows[0]["distance_m"]), delta=0.2)
+
+    def test_what_cannot_be_measured_is_refused(self):
+        for name, text, sentence in [
+            ("empty.csv", "", "empty"),
+            ("head.csv", "frame,time,id,x,y\n", "nobody"),
+            ("still.csv", "frame,time,id,x,y\n0,0,1,2,3\n0,0,2,2,3\n", "nobody"),
+            ("cut.csv", "frame,time,id,x,y\n0,0,1,2,3\n1,0.04,1,2", "cut.csv:3"),
+            ("hostile.csv", "frame,time,id,x,y\n99999999999,0,1,2,3\n", "hostile.csv:2"),
+            ("boxes.txt", "1,1,10,10,5,5,1,-1,-1,-1\n", "header"),
+            ("noise.csv", "\x00\x01\x02\n", "header"),
+        ]:
+            (self.folder / name).write_text(text)
+            self.assertIn(sentence, self.refused("measure", name, "-o", "never.csv"), name)
+        self.refused("measure", "missing.csv", "-o", "never.csv")
+        self.refused("measure", ".", "-o", "never.csv")
+
+    def test_who_never_moves_has_no_distance(self):
+        (self.folder / "zero.csv").write_text("frame,time,id,x,y\n" + "".join(f"{i},{i / 25},1,2,3\n" for i in range(50)))
+        self.marey("measure", "zero.csv", "-o", "summary.csv", "-q")
+        row = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))[0]
+        self.assertEqual((float(row["distance_m"]), float(row["top_mps"]), row["sprints"]), (0, 0, "0"))
+
+    def judged(self, *options):
+        return json.loads(self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--json", *options).stdout)
+
+    def test_judged_in_metres(self):
+        self.write_run("truth.csv", 25)
+        self.write_run("tracks.csv", 25, shift=0.4)
+        result = self.judged()
+        self.assertEqual((result["mota"], result["idf1"], result["idsw"], result["kept"], result["found"]), (1, 1, 0, 1, 1))
+        self.assertAlmostEqual(result["position_rms_m"], 0.4, delta=1e-6)
+        self.assertAlmostEqual(result["distance_error"], 0, delta=1e-6)
+        self.assertEqual(result["warnings"], [])
+        for rate in (5, 12.5, 100):
+            self.write_run("tracks.csv", rate, shift=0.4)
+            result = self.judged()
+            self.assertEqual((result["paired_by"], result["mota"]), ("time", 1), rate)
+            self.assertIn("every", result["warnings"][0])
+        table = self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5).stdout
+        self.assertIn("position", table)
+        self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--iou", 0.3, code=2)
+        self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", -1, code=2)
+
+    def test_nobody_is_judged_with_a_warning(self):
+        self.write_run("truth.csv", 25)
+        (self.folder / "tracks.csv").write_text("frame,time,id,x,y\n")
+        result = self.judged()
+        self.assertEqual((result["found"], result["mota"], result["position_rms_m"]), (0, 0, None))
+        self.assertIn("tracks.csv: nobody is in it", result["warnings"])
+
+    def test_frames_of_other_users(self):
+        (self.folder / "m.csv").write_text("frame,time,id,team,x,y\n0,0,1,a,-52.5,-34\n0,0,2,b,52.5,34\n1,0.04,1,a,-52.5,-34\n")
+        self.marey("convert", "m.csv", "m.dat", "--centred", "--y-down")
+        self.assertIn("0:1,1,1,-5250,3400,0.00;0,2,2,5250,-3400,0.00;:", (self.folder / "m.dat").read_text())
+        self.marey("convert", "m.dat", "back.csv", "--centred", "--y-down")
+        self.assertIn("0,0.0000,1,1,a,-52.500,-34.000", (self.folder / "back.csv").read_text())
+        info = json.loads(self.marey("info", "m.xml", "--json").stdout)
+        self.assertEqual((info["format"], info["instants"], info["home"]), ("tracab", 2, "a"))
+        for rig, y in ((("1, 0, 0", "0, -1, 0", "0, 0, 1"), -3400), (("1, 0, 0", "0, 1, 0", "0, 0, 1"), 3400)):
+            rows = ", ".join(f"[{row}]" for row in rig)
+            (self.folder / "rig.toml").write_text(f'[world]\nground_from_world = [{rows}]\n[[camera]]\nname = "a"\n')
+            self.marey("convert", "m.csv", "m.dat", "--centred", "--rig", "rig.toml")
+            self.assertIn(f"0,2,2,5250,{y},0.00", (self.folder / "m.dat").read_text())
+
+    def test_conversions_that_cannot_be_are_refused(self):
+        self.write_run("run.csv", 12.5)
+        self.assertIn("12.5", self.refused("convert", "run.csv", "run.dat"))
+        self.assertIn("read only", self.refused("convert", "run.csv", "run.xml", "--format", "sportec"))
+        self.assertIn("ending", self.refused("convert", "run.csv", "run.odt"))
+        self.assertIn("nobody is of the team", self.refused("convert", "run.csv", "run_home.csv", "--home", "green"))
+        self.assertIn("itself", self.refused("convert", "run.csv", "run.csv"))
+        self.assertIn("--up", self.refused("convert", "run.csv", "run_home.csv", "--up", "y"))
+        self.marey("convert", "run.csv", "run_home.csv", "--period", "9-3", code=2)
+        self.marey("convert", "run.csv", "run_home.csv", "--format", "nonsense", code=2)
+        (self.folder / "alone.dat").write_text("1:1,1,1,0,0,0.00;:0,0,0,0.00,H,Dead;:\n")
+        self.assertIn("--metadata", self.refused("convert", "alone.dat", "never.csv"))
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    unittest.main()
