@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/mapped_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
@@ -32,6 +35,7 @@ class Reader {
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
     read_header(line);
+    recording_.samples.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
     while (lines.next(line)) {
       line_ = lines.number();
       if (line.empty()) continue;
@@ -120,7 +124,8 @@ class Reader {
     const auto order = [&](const GroundRecording::Sample& one) {
       return std::pair(one.frame, recording_.people[static_cast<std::size_t>(one.person)].id);
     };
-    std::stable_sort(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
+    const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
+    if (!std::is_sorted(samples.begin(), samples.end(), before)) std::stable_sort(samples.begin(), samples.end(), before);
     const auto twice =
         std::adjacent_find(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) == order(b); });
     if (twice != samples.end())
@@ -143,34 +148,9 @@ GroundRecording parse_ground(std::string_view text, const std::string& name) {
 }
 
 GroundRecording read_ground(const std::string& path) {
-  const std::string text = read_file(path);
-  return parse_ground(text, path == "-" ? "standard input" : path);
-}
-
-GroundWriter::GroundWriter(const std::string& path, std::vector<std::string> cameras) : file_(path), cameras_(std::move(cameras)) {
-  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
-}
-
-void GroundWriter::write(const GroundRecording::Sample& sample, const GroundRecording::Person& person) {
-  seen_by_.clear();
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    if ((sample.cameras >> i & 1) == 0) continue;
-    if (!seen_by_.empty()) seen_by_ += ' ';
-    seen_by_ += cameras_[i];
-  }
-  fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
-                 person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
-                 sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by_));
-  if (text_.size() > (std::size_t{1} << 20)) {
-    file_.write(text_);
-    text_.clear();
-  }
-}
-
-void GroundWriter::finish() {
-  file_.write(text_);
-  text_.clear();
-  file_.finish();
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return parse_ground(MappedFile(path).text(), path);
+  return parse_ground(read_file(path), path == "-" ? "standard input" : path);
 }
 
 void write_ground(const GroundRecording& recording, const std::string& path) {

@@ -178,22 +178,23 @@ double length_of(const std::vector<TimedPlace>& way) {
 /// The ways of people and of their tracks, over the instants that both have; `times` are those of the truth's frames.
 std::vector<WayLengths> way_lengths(const std::vector<PersonPlace>& truth, const std::vector<PersonPlace>& tracks,
                                     const std::vector<PersonFate>& people, const std::map<std::int32_t, double>& times) {
-  std::map<std::pair<int, std::int32_t>, Vector<2>> place_of;  // of a track in a frame
-  for (const PersonPlace& place : tracks) place_of[{place.id, place.frame}] = place.place;
   std::map<int, int> track_of;
   for (const PersonFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;
   }
   std::map<int, SharedWay> ways;
+  std::size_t begin = 0;  // of the tracks' places in this frame
   for (const PersonPlace& place : truth) {
+    while (begin < tracks.size() && tracks[begin].frame < place.frame) ++begin;
     const auto track = track_of.find(place.id);
     if (track == track_of.end()) continue;
-    const auto theirs = place_of.find({track->second, place.frame});
-    if (theirs == place_of.end()) continue;
+    std::size_t theirs = begin;
+    while (theirs < tracks.size() && tracks[theirs].frame == place.frame && tracks[theirs].id != track->second) ++theirs;
+    if (theirs == tracks.size() || tracks[theirs].frame != place.frame) continue;
     SharedWay& way = ways[place.id];
     const double time = times.at(place.frame);
     way.truth.push_back({time, place.place});
-    way.track.push_back({time, theirs->second});
+    way.track.push_back({time, tracks[theirs].place});
   }
   std::vector<WayLengths> lengths;
   for (const auto& [id, way] : ways) lengths.push_back({id, length_of(way.truth), length_of(way.track)});

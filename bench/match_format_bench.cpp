@@ -1,0 +1,105 @@
+// A match of 90 minutes, 25 people at 25 Hz, read and written as our CSV and as TRACAB, beside writing and reading the same bytes
+// plainly (the bound).
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "marey/format/ground_exchange.h"
+
+namespace marey {
+namespace {
+
+constexpr int kPeople = 25;
+constexpr int kFrames = 90 * 60 * 25;
+
+const GroundMatch& match() {
+  static const GroundMatch all = [] {
+    GroundMatch one;
+    one.recording.cameras = {"left", "right"};
+    for (int id = 1; id <= kPeople; ++id)
+      one.recording.people.push_back({id, std::to_string(id), id <= 11 ? "white" : id <= 22 ? "blue" : "referee"});
+    for (std::int32_t frame = 0; frame < kFrames; ++frame) {
+      for (std::int32_t person = 0; person < kPeople; ++person) {
+        const double phase = 0.001 * frame + person;
+        GroundRecording::Sample sample;
+        sample.frame = frame, sample.person = person, sample.time = frame / 25.0, sample.cameras = 3;
+        sample.place = {52 + 40 * std::sin(phase), 34 + 30 * std::cos(1.3 * phase)};
+        sample.velocity = {std::cos(phase), -0.9 * std::sin(1.3 * phase)};
+        one.recording.samples.push_back(sample);
+      }
+    }
+    return one;
+  }();
+  return all;
+}
+
+struct Place {
+  explicit Place(const char* name)
+      : folder(std::filesystem::temp_directory_path() / "marey_match_bench"), path((folder / name).string()) {
+    std::filesystem::create_directories(folder);
+  }
+  ~Place() { std::filesystem::remove_all(folder); }
+  std::filesystem::path folder;
+  std::string path;
+};
+
+void count_bytes(benchmark::State& state, std::size_t bytes) {
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(bytes));
+  state.counters["rows/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * kPeople * kFrames, benchmark::Counter::kIsRate);
+}
+
+void write_match(benchmark::State& state, GroundFormat format, const char* name) {
+  const Place place(name);
+  const GroundMatch& all = match();
+  for (auto _ : state) write_ground_as(all, place.path, format);
+  count_bytes(state, std::filesystem::file_size(place.path));
+}
+
+void read_match(benchmark::State& state, GroundFormat format, const char* name) {
+  const Place place(name);
+  write_ground_as(match(), place.path, format);
+  for (auto _ : state) benchmark::DoNotOptimize(read_ground_as(place.path, format).recording.samples.data());
+  count_bytes(state, std::filesystem::file_size(place.path));
+}
+
+constexpr std::size_t kPlainBytes = std::size_t{75} * kPeople * kFrames;  // about those of the CSV
+
+void write_bytes(benchmark::State& state) {
+  const Place place("plain.bin");
+  const std::string piece(std::size_t{1} << 20, 'x');
+  for (auto _ : state) {
+    std::FILE* file = std::fopen(place.path.c_str(), "wb");
+    for (std::size_t done = 0; done < kPlainBytes; done += piece.size()) std::fwrite(piece.data(), 1, piece.size(), file);
+    std::fclose(file);
+  }
+  count_bytes(state, kPlainBytes);
+}
+
+void read_bytes(benchmark::State& state) {
+  const Place place("plain.bin");
+  std::string piece(std::size_t{1} << 20, 'x');
+  std::FILE* out = std::fopen(place.path.c_str(), "wb");
+  for (std::size_t done = 0; done < kPlainBytes; done += piece.size()) std::fwrite(piece.data(), 1, piece.size(), out);
+  std::fclose(out);
+  for (auto _ : state) {
+    std::FILE* file = std::fopen(place.path.c_str(), "rb");
+    while (std::fread(piece.data(), 1, piece.size(), file) == piece.size()) benchmark::DoNotOptimize(piece.data());
+    std::fclose(file);
+  }
+  count_bytes(state, kPlainBytes);
+}
+
+BENCHMARK(write_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(write_match, csv, GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(write_match, tracab, GroundFormat::tracab, "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(read_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(read_match, csv, GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(read_match, tracab, GroundFormat::tracab, "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
+
+}  // namespace
+}  // namespace marey
