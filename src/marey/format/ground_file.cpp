@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, columns> kNames = {"frame", "time", "id",
 constexpr std::array kNeeded = {frame, time_s, id, x, y};
 constexpr double kFarthest = 1e5;  // m
 constexpr std::size_t kMostCameras = 64;
+constexpr std::size_t kShortestRow = 10;  // bytes, as 0,0,1,2,3
 
 class Reader {
  public:
@@ -35,7 +36,8 @@ class Reader {
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
     read_header(line);
-    recording_.samples.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
+    const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    recording_.samples.reserve(std::min(rows, text.size() / kShortestRow));
     while (lines.next(line)) {
       line_ = lines.number();
       if (line.empty()) continue;
@@ -151,6 +153,32 @@ GroundRecording read_ground(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) return parse_ground(MappedFile(path).text(), path);
   return parse_ground(read_file(path), path == "-" ? "standard input" : path);
+}
+
+GroundWriter::GroundWriter(const std::string& path, std::vector<std::string> cameras) : file_(path), cameras_(std::move(cameras)) {
+  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
+}
+
+void GroundWriter::write(const GroundRecording::Sample& sample, const GroundRecording::Person& person) {
+  seen_by_.clear();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    if ((sample.cameras >> i & 1) == 0) continue;
+    if (!seen_by_.empty()) seen_by_ += ' ';
+    seen_by_ += cameras_[i];
+  }
+  fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
+                 person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
+                 sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by_));
+  if (text_.size() > (std::size_t{1} << 20)) {
+    file_.write(text_);
+    text_.clear();
+  }
+}
+
+void GroundWriter::finish() {
+  file_.write(text_);
+  text_.clear();
+  file_.finish();
 }
 
 void write_ground(const GroundRecording& recording, const std::string& path) {
