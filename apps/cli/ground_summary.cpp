@@ -48,6 +48,7 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
                                {"tracking_s", summary.tracking_s},
                                {"joining_s", summary.joining_s},
                                {"stopped", summary.stopped},
+                               {"notes", summary.notes},
                                {"warnings", summary.warnings},
                                {"tracks", output.tracks},
                                {"overlays", path_or_null(output.overlays)},
@@ -56,6 +57,7 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
 }
 
 void print_summary(const GroundSummary& summary, const GroundOutput& output, double elapsed) {
+  for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   const std::size_t count = summary.cameras.size();
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.people,
              summary.people == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",

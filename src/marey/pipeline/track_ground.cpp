@@ -15,6 +15,7 @@
 #include "marey/format/rig_sources.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_films.h"
+#include "marey/pipeline/ground_offsets.h"
 
 namespace marey {
 namespace {
@@ -37,6 +38,12 @@ struct KeptLooks {
   std::vector<std::vector<Observation<2>>> seen;
 };
 
+std::vector<double> offsets_of(const Rig& rig) {
+  std::vector<double> offsets;
+  for (const RigCamera& camera : rig.cameras) offsets.push_back(camera.offset_s.value_or(0));
+  return offsets;
+}
+
 std::vector<std::string> names_of(const Rig& rig) {
   std::vector<std::string> names;
   for (const RigCamera& camera : rig.cameras) names.push_back(camera.name);
@@ -52,6 +59,7 @@ class Run {
         area_(rig.ground_from_world, options.pitch, options.margin),
         cameras_(rig, area_, {with_read_ahead(options.eyes, !options.live), options.rate_hz}),
         tracker_(make_ground_tracker(options.tracker, cameras_.views())),
+        paths_(offsets_of(rig)),
         logs_(rig.cameras.size()),
         shows_(!output.boxes_of.empty() || !output.overlays.empty() || !output.pitch_view.empty()) {
     recording_.cameras = names_of(rig);
@@ -90,6 +98,7 @@ class Run {
       const auto looks = cameras_.look(tracker_->expected(cameras_.time()));
       const auto tracks = tracker_->step(cameras_.time(), looks);
       times_.push_back(seconds(cameras_.time()) - cameras_.rig().cameras.front().offset_s.value_or(0));
+      paths_.add(looks, tracker_->claims());
       log_frames();
       if (options_.live) {
         write_live(tracks);
@@ -261,6 +270,7 @@ class Run {
     if (options_.live) summary_.people = std::ssize(live_people_);
     summary_.warnings = cameras_.warnings();
     summary_.teams = teams_.teams;
+    for (std::string& sentence : contradicted_offsets(cameras_.rig(), paths_)) summary_.warnings.push_back(std::move(sentence));
     for (std::size_t i = 0; i < recording_.cameras.size(); ++i) {
       const GroundCameras::Counts counts = cameras_.counts(i);
       if (counts.frames == 0) {
@@ -280,6 +290,7 @@ class Run {
   std::unique_ptr<GroundTracker> tracker_;
   std::deque<KeptLooks> waiting_;
   GroundRecorder recorder_;
+  GroundPathLog paths_;
   GroundRecorder::Joined pieces_;
   GroundRecording recording_;
   Teams teams_;
@@ -305,7 +316,24 @@ void check(const Rig& rig, const GroundOutput& output, const TrackGroundOptions&
 
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const TrackGroundOptions& options, const RunHooks& hooks) {
   check(rig, output, options);
-  return Run(rig, output, options, hooks)();
+  if (!lacks_offsets(rig)) return Run(rig, output, options, hooks)();
+  Rig timed = rig;
+  RigOffsets offsets;
+  if (options.live) {
+    offsets.warnings.push_back(
+        "when cameras were started is not known, and live it cannot be looked for: 0 is taken; give each camera's offset_s in the "
+        "rig");
+  } else {
+    RigOffsetsOptions how;
+    how.eyes = options.eyes;
+    how.rate_hz = options.rate_hz;
+    offsets = find_rig_offsets(rig, GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
+    enter_offsets(timed, offsets);
+  }
+  GroundSummary summary = Run(timed, output, options, hooks)();
+  summary.notes = offsets.notes;
+  summary.warnings.insert(summary.warnings.begin(), offsets.warnings.begin(), offsets.warnings.end());
+  return summary;
 }
 
 }  // namespace marey

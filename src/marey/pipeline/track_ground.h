@@ -49,8 +49,9 @@ struct GroundSummary {
   std::int64_t off_pitch = 0;   ///< people left out: never on the pitch or its margin
   std::vector<Camera> cameras;  ///< in the rig's order
   std::vector<Teams::Team> teams;
-  double tracking_s = 0;  ///< wall time of the first pass: decoding, detecting, tracking
-  double joining_s = 0;   ///< of the second
+  std::vector<std::string> notes;  ///< what was found out beside, one sentence each: when cameras were started
+  double tracking_s = 0;           ///< wall time of the first pass: decoding, detecting, tracking
+  double joining_s = 0;            ///< of the second
 
   bool stopped = false;               ///< before the end, because a hook said so
   std::vector<std::string> warnings;  ///< one sentence each
