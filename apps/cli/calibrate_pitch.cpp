@@ -24,6 +24,7 @@ struct CalibratePitch {
   std::string rig, out, pictures;
   std::vector<std::string> sources, points;
   std::string size = "105x68";
+  bool synced = false;
   bool json = false;
   bool quiet = false;
 };
@@ -72,12 +73,21 @@ nlohmann::json as_json(const PitchRun& run) {
                                {"points", points}};
     sum += camera_sum, square += camera_square, inliers += good, observations += all;
   }
+  nlohmann::json offsets = nlohmann::json::object();
+  for (const RigOffsets::Camera& camera : run.offsets.cameras) {
+    nlohmann::json& entry = offsets[camera.name] = {{"verdict", offset_verdict_name(camera.found.verdict)}};
+    if (camera.found.verdict != OffsetVerdict::found) continue;
+    entry["offset_s"] = camera.offset_s;
+    entry["found_s"] = camera.found.offset_s;
+    entry["deviation_s"] = camera.found.deviation_s;
+  }
   return {{"all",
            {{"mean_px", sum / std::max(1, inliers)},
             {"rms_px", std::sqrt(square / std::max(1, inliers))},
             {"inliers", inliers},
             {"observations", observations}}},
           {"cameras", cameras},
+          {"offsets", offsets},
           {"warnings", run.warnings}};
 }
 
@@ -100,6 +110,7 @@ void print_report(const PitchRun& run) {
       fmt::print("\n");
     }
   }
+  for (const std::string& sentence : run.offsets.notes) fmt::print("{}\n", sentence);
   if (run.calibration.ground_from_world(1, 1) < 0)
     fmt::print("the clicks' y grows to the right of x: the rig keeps a right-handed world, and turns results back\n");
 }
@@ -110,6 +121,7 @@ void run(const CalibratePitch& command) {
   PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;
+  options.synced = command.synced;
   PitchRun found;
   {
     ProgressBar bar(command.quiet);
@@ -143,6 +155,9 @@ void add_calibrate_pitch(CLI::App& calibrate) {
   command->add_option("-o,--out", options->out, "rig file to write")->required();
   command->add_option("--pictures", options->pictures,
                       "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
+  command->add_flag(
+      "--synced", options->synced,
+      "the cameras run on one clock; else when each was started is found from how people move, where the rig does not say");
   command->add_flag("--json", options->json, "print JSON instead of a report");
   command->add_flag("-q,--quiet", options->quiet, "no progress");
   command->callback([options] { run(*options); });

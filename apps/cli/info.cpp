@@ -74,7 +74,7 @@ void row(const char* name, const std::string& value) {
   if (!value.empty()) fmt::print("  {:<13} {}\n", name, value);
 }
 
-std::string camera_words(const RigCamera& camera) {
+std::string camera_words(const RigCamera& camera, bool first) {
   std::string words = camera.size ? fmt::format("{}x{}", camera.size->width, camera.size->height) : std::string("size unknown");
   words += camera.camera()            ? ", calibrated"
            : camera.ground_from_image ? ", ground known"
@@ -82,14 +82,16 @@ std::string camera_words(const RigCamera& camera) {
                                       : ", not calibrated";
   if (camera.rms_px) words += fmt::format(", {:.2f} px RMS", *camera.rms_px);
   if (camera.offset_s && *camera.offset_s != 0) words += fmt::format(", offset {:+.4f} s", *camera.offset_s);
-  const std::string& source = camera.source.empty() ? camera.detections : camera.source;
-  return source.empty() ? words : words + ", " + source;
+  if (!camera.offset_s && !first) words += ", offset not known";
+  if (!camera.source.empty()) return words + ", " + camera.source;
+  return camera.detections.empty() ? words : words + ", detections " + camera.detections;
 }
 
 void print_cameras(const Rig& rig) {
   std::size_t width = 6;
   for (const RigCamera& camera : rig.cameras) width = std::max(width, camera.name.size());
-  for (const RigCamera& camera : rig.cameras) fmt::print("  {:<{}}  {}\n", camera.name, width, camera_words(camera));
+  for (const RigCamera& camera : rig.cameras)
+    fmt::print("  {:<{}}  {}\n", camera.name, width, camera_words(camera, &camera == rig.cameras.data()));
 }
 
 void print_calibration(const Rig& rig) {
@@ -154,6 +156,8 @@ nlohmann::json as_json(const Rig& rig) {
   nlohmann::json cameras = nlohmann::json::array();
   for (const RigCamera& camera : rig.cameras) {
     nlohmann::json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
+    if (!camera.detections.empty()) entry["detections"] = camera.detections;
+    entry["ground"] = camera.ground_view().has_value();
     if (camera.offset_s) entry["offset_s"] = *camera.offset_s;
     if (camera.size) entry["size"] = {camera.size->width, camera.size->height};
     if (camera.rms_px) entry["rms_px"] = *camera.rms_px;

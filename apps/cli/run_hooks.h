@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,18 @@ bool interrupted();
 /// The exit code of a program that Ctrl-C ended, by the shell's convention.
 inline constexpr int kInterrupted = 130;
 
+constexpr std::string_view words_of(TrackProgress::Step step) {
+  switch (step) {
+    case TrackProgress::Step::clocks:
+      return "comparing clocks";
+    case TrackProgress::Step::tracking:
+      return "tracking";
+    case TrackProgress::Step::drawing:
+      return "drawing";
+  }
+  return {};
+}
+
 /// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `tell(summary, elapsed)` says what came of it,
 /// elapsed in s. Warnings go to standard error before.
 template <typename Track, typename Tell>
@@ -31,9 +44,7 @@ void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
     ProgressBar bar(quiet);
     RunHooks hooks;
     hooks.stop = [] { return interrupted(); };
-    hooks.progress = [&](const TrackProgress& progress) {
-      bar.show(progress.step == TrackProgress::Step::tracking ? "tracking" : "drawing", progress.done, progress.total);
-    };
+    hooks.progress = [&](const TrackProgress& progress) { bar.show(words_of(progress.step), progress.done, progress.total); };
     return track(hooks);
   }();
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

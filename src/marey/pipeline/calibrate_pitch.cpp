@@ -23,6 +23,7 @@ namespace {
 constexpr int kPictures = 15;
 constexpr double kSeconds = 60;
 constexpr double kUsualRate = 25;
+constexpr double kMargin = 2;  // m round the pitch, where people still count
 
 cv::Mat as_bytes(const cv::Mat& luma) {
   if (luma.type() == CV_8UC1) return luma;
@@ -148,6 +149,29 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
   }
 }
 
+/// Offsets that the rig does not say.
+void put_in_step(PitchRun& run, const PitchRunOptions& options) {
+  if (options.synced) {
+    for (RigCamera& camera : run.rig.cameras) camera.offset_s = camera.offset_s.value_or(0);
+  }
+  if (!lacks_offsets(run.rig)) return;
+  // A pitch whose corner is elsewhere has no name in the rig yet: then everybody counts.
+  const bool at_origin = run.calibration.corner.norm() < 0.01;
+  const GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt, kMargin);
+  RunHooks hooks;
+  hooks.progress = [&](const TrackProgress& now) {
+    options.progress("comparing clocks", static_cast<int>(now.done), static_cast<int>(now.total.value_or(0)));
+  };
+  try {
+    run.offsets = find_rig_offsets(run.rig, area, {}, hooks);
+  } catch (const Error& error) {
+    run.warnings.push_back(fmt::format("when cameras were started was not looked for: {}", error.what()));
+    return;
+  }
+  enter_offsets(run.rig, run.offsets);
+  run.warnings.insert(run.warnings.end(), run.offsets.warnings.begin(), run.offsets.warnings.end());
+}
+
 }  // namespace
 
 PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options) {
@@ -187,6 +211,7 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
                                          .observations = {},
                                          .grade = {}};
   if (!options.pictures.empty()) draw(run, options);
+  put_in_step(run, options);
   return run;
 }
 

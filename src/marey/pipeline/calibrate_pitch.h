@@ -7,6 +7,7 @@
 
 #include "marey/calibrate/pitch.h"
 #include "marey/core/rig.h"
+#include "marey/pipeline/ground_offsets.h"
 
 namespace marey {
 
@@ -16,16 +17,19 @@ struct PitchRun {
   std::vector<PitchView> views;       ///< one for each: what it was calibrated from
   PitchCalibration calibration;       ///< one view for each
   std::vector<std::string> warnings;  ///< one sentence each
+  RigOffsets offsets;                 ///< empty where the rig says all of them, or too few cameras see people
 };
 
 struct PitchRunOptions {
   PitchCalibrationOptions pitch;
+  bool synced = false;   ///< the cameras run on one clock: those without an offset have 0
   std::string pictures;  ///< a folder for overlays and the accuracy maps; empty for none
   std::function<void(const std::string& what, int done, int all)> progress = [](const std::string&, int, int) {};
 };
 
 /// Calibrates the rig's cameras over a pitch: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
-/// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Throws Error
+/// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Where the rig
+/// does not say when cameras were started, that is found from how people move (`find_rig_offsets`). Throws Error
 /// where a file cannot be read, a camera is not in the rig, or the clicks do not decide.
 PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options = {});
 

@@ -68,7 +68,7 @@ std::vector<std::vector<GroundPath>> follow_alone(const std::vector<const RigCam
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (goes_on[i]) goes_on[i] = runs[i]->step() ? 1 : 0;
     });
-    if (hooks.tell({TrackProgress::Step::tracking, done, total})) break;
+    if (hooks.tell({TrackProgress::Step::clocks, done, total})) break;
   }
   std::vector<std::vector<GroundPath>> paths;
   for (const auto& run : runs) paths.push_back(run->paths());

@@ -18,7 +18,7 @@ struct TrackOutput {
 };
 
 struct TrackProgress {
-  enum class Step { tracking, drawing };
+  enum class Step { clocks, tracking, drawing };  ///< `clocks`: finding when cameras were started
   Step step = Step::tracking;
   std::int64_t done = 0;              ///< frames
   std::optional<std::int64_t> total;  ///< where it is known
