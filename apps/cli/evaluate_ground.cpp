@@ -158,7 +158,10 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 }  // namespace
 
 void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
-  const GroundRecording truth = read_ground_any(truth_name).recording, tracks = read_ground_any(tracks_name).recording;
+  const GroundMatch tracks_match = read_ground_any(tracks_name);
+  const GroundRecording& tracks = tracks_match.recording;
+  // A truth that has frames and no times has the tracks'.
+  const GroundRecording truth = read_ground_any(truth_name, {{}, {}, tracks_match.rate_hz}).recording;
   const MatchJudgement judgement = judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);

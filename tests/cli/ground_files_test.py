@@ -76,7 +76,7 @@ class GroundFiles(unittest.TestCase):
             ("still.csv", "frame,time,id,x,y\n0,0,1,2,3\n0,0,2,2,3\n", "nobody"),
             ("cut.csv", "frame,time,id,x,y\n0,0,1,2,3\n1,0.04,1,2", "cut.csv:3"),
             ("hostile.csv", "frame,time,id,x,y\n99999999999,0,1,2,3\n", "hostile.csv:2"),
-            ("boxes.txt", "1,1,10,10,5,5,1,-1,-1,-1\n", "header"),
+            ("boxes.txt", "1,1,10,10,5,5,1,-1,-1,-1\n", "no world coordinates"),
             ("noise.csv", "\x00\x01\x02\n", "header"),
         ]:
             (self.folder / name).write_text(text)
@@ -110,6 +110,13 @@ class GroundFiles(unittest.TestCase):
         self.assertIn("position", table)
         self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--iou", 0.3, code=2)
         self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", -1, code=2)
+
+    def test_a_truth_needs_frames_or_times(self):
+        self.write_run("tracks.csv", 50)
+        for columns in ("frame,id,x,y", "time,id,x,y"):
+            self.write_run("truth.csv", 50, columns=columns)
+            result = self.judged()
+            self.assertEqual((result["paired_by"], result["mota"], result["kept"]), ("frame", 1, 1), columns)
 
     def test_nobody_is_judged_with_a_warning(self):
         self.write_run("truth.csv", 25)

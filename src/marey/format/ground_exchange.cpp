@@ -50,7 +50,7 @@ bool all_numbers(const std::vector<std::string_view>& fields) {
 
 bool is_ground_csv(const std::vector<std::string_view>& head) {
   const auto has = [&](std::string_view name) { return std::find(head.begin(), head.end(), name) != head.end(); };
-  return has("frame") && has("time") && has("id") && has("x") && has("y") && !has("z");
+  return (has("frame") || has("time")) && has("id") && has("x") && has("y") && !has("z");
 }
 
 /// A tracking file whose lines begin with a frame and a colon: TRACAB's targets have six whole fields or so, EPTS' are its own.
@@ -76,7 +76,7 @@ std::optional<GroundFormat> of_lines(std::string_view text) {
   split_fields(line, ',', fields);
   if (is_ground_csv(fields)) return GroundFormat::csv;
   if (lines.next(third) && lines.next(third) && third.starts_with("Period,Frame,Time [s]")) return GroundFormat::metrica;
-  if (fields.size() >= 9 && all_numbers(fields) && !(fields[7] == "-1" && fields[8] == "-1")) return GroundFormat::mot;
+  if (fields.size() >= 9 && all_numbers(fields)) return GroundFormat::mot;
   const std::size_t semicolon = line.find(';');
   if (semicolon != std::string_view::npos && whole_number_of(line.substr(0, semicolon)) && line.find(':') > semicolon) {
     split_fields(line.substr(semicolon + 1, line.find(':') - semicolon - 1), ',', fields);
@@ -209,7 +209,7 @@ double rate_of(const GroundRecording& recording) {
 
 GroundMatch read_csv(const std::string& path, const GroundReadOptions& options) {
   GroundMatch match;
-  match.recording = read_ground(path);
+  match.recording = read_ground(path, options.rate_hz);
   match.rate_hz = rate_of(match.recording);
   match.pitch = options.pitch;
   return match;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -22,14 +23,14 @@ namespace {
 enum Column { frame, time_s, id, label, team, x, y, vx, vy, state, cameras, columns };
 constexpr std::array<std::string_view, columns> kNames = {"frame", "time", "id", "label", "team",   "x",
                                                           "y",     "vx",   "vy", "state", "cameras"};
-constexpr std::array kNeeded = {frame, time_s, id, x, y};
+constexpr std::array kNeeded = {id, x, y};
 constexpr double kFarthest = 1e5;  // m
 constexpr std::size_t kMostCameras = 64;
 constexpr std::size_t kShortestRow = 10;  // bytes, as 0,0,1,2,3
 
 class Reader {
  public:
-  explicit Reader(const std::string& name) : name_(name) {}
+  Reader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz) {}
 
   GroundRecording read(std::string_view text) {
     TextLines lines(text);
@@ -44,6 +45,7 @@ class Reader {
       split_fields(line, ',', fields_);
       add();
     }
+    if (!where_[frame]) number_frames();
     sort();
     return std::move(recording_);
   }
@@ -56,6 +58,8 @@ class Reader {
       const auto known = std::find(kNames.begin(), kNames.end(), fields_[i]);
       if (known != kNames.end()) where_[static_cast<std::size_t>(known - kNames.begin())] = i;
     }
+    if (!where_[frame] && !where_[time_s])
+      throw Error("{}:1: the header has neither a column \"frame\" nor \"time\"; it must read {}", name_, fmt::join(kNames, ","));
     for (const Column needed : kNeeded) {
       if (!where_[needed])
         throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kNames[needed], fmt::join(kNames, ","));
@@ -84,8 +88,8 @@ class Reader {
 
   void add() {
     GroundRecording::Sample sample;
-    sample.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
-    sample.time = number(time_s, -1e7, 1e7);
+    if (where_[frame]) sample.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
+    sample.time = where_[time_s] ? number(time_s, -1e7, 1e7) : sample.frame / rate_hz_;
     sample.person = person(static_cast<int>(number(id, 1, 1e9)));
     sample.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
     if (field(vx) && field(vy)) sample.velocity = {number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest)};
@@ -95,6 +99,22 @@ class Reader {
     sample.observed = how != "predicted";
     sample.cameras = cameras_of(text(cameras));
     recording_.samples.push_back(sample);
+  }
+
+  /// Frames from times alone: as many a second as there are instants, from time 0 or the first instant on, which is the earlier.
+  void number_frames() {
+    std::vector<double> times;
+    for (const auto& sample : recording_.samples) times.push_back(sample.time);
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+    if (steps.empty()) return;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    const double start = std::min(0.0, times.front());
+    if ((times.back() - start) / *middle > 1e9) throw Error("{}: its times are {:g} s apart, which makes no rate", name_, *middle);
+    for (auto& sample : recording_.samples) sample.frame = static_cast<std::int32_t>(std::lround((sample.time - start) / *middle));
   }
 
   std::int32_t person(int number) {
@@ -136,6 +156,7 @@ class Reader {
   }
 
   const std::string& name_;
+  double rate_hz_;
   std::size_t line_ = 1;
   GroundRecording recording_;
   std::map<int, std::int32_t> people_;
@@ -145,14 +166,14 @@ class Reader {
 
 }  // namespace
 
-GroundRecording parse_ground(std::string_view text, const std::string& name) {
-  return Reader(name).read(text);
+GroundRecording parse_ground(std::string_view text, const std::string& name, double rate_hz) {
+  return Reader(name, rate_hz).read(text);
 }
 
-GroundRecording read_ground(const std::string& path) {
+GroundRecording read_ground(const std::string& path, double rate_hz) {
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return parse_ground(MappedFile(path).text(), path);
-  return parse_ground(read_file(path), path == "-" ? "standard input" : path);
+  if (std::filesystem::is_regular_file(path, error)) return parse_ground(MappedFile(path).text(), path, rate_hz);
+  return parse_ground(read_file(path), path == "-" ? "standard input" : path, rate_hz);
 }
 
 GroundWriter::GroundWriter(const std::string& path, std::vector<std::string> cameras) : file_(path), cameras_(std::move(cameras)) {

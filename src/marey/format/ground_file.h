@@ -13,12 +13,13 @@ namespace marey {
 /// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
 /// between.
 ///
-/// Reading asks for frame, time, id, x and y only, found by the header in any order, so that other tools' files may be brought.
-/// Velocities that are missing are 0. Throws Error, with the line, where something is not as it should be.
-GroundRecording read_ground(const std::string& path);
+/// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
+/// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
+/// missing are 0. Throws Error, with the line, where something is not as it should be.
+GroundRecording read_ground(const std::string& path, double rate_hz = 25);
 
 /// The same from text; `name` is what messages call it.
-GroundRecording parse_ground(std::string_view text, const std::string& name);
+GroundRecording parse_ground(std::string_view text, const std::string& name, double rate_hz = 25);
 
 /// Writes such a file as it comes, so that memory does not grow with its length. Throws Error where the place is full.
 class GroundWriter {

@@ -44,6 +44,14 @@ TEST(GroundFile, OtherToolsNeedFewColumnsInAnyOrder) {
   EXPECT_TRUE(read.people[0].team.empty());
 }
 
+TEST(GroundFile, FramesOrTimesAreEnough) {
+  const auto frames = parse_ground("frame,id,x,y\n10,1,1,2\n20,1,1,2\n", "frames.csv", 50);
+  EXPECT_DOUBLE_EQ(frames.samples[1].time, 0.4);
+  const auto times = parse_ground("time,id,x,y\n0.4,1,1,2\n0.2,1,1,2\n1.0,1,1,2\n0.6,1,1,2\n", "times.csv");
+  EXPECT_EQ(times.samples[0].frame, 1);
+  EXPECT_EQ(times.samples[3].frame, 5);
+}
+
 TEST(GroundFile, WhatIsWrongIsSaidWithItsLine) {
   const auto message = [](const char* text) {
     try {
@@ -54,7 +62,8 @@ TEST(GroundFile, WhatIsWrongIsSaidWithItsLine) {
     }
   };
   EXPECT_NE(message("").find("empty"), std::string::npos);
-  EXPECT_NE(message("frame,id,x,y\n").find("\"time\""), std::string::npos);
+  EXPECT_NE(message("id,x,y\n").find("\"time\""), std::string::npos);
+  EXPECT_NE(message("frame,x,y\n").find("\"id\""), std::string::npos);
   EXPECT_NE(message("frame,time,id,x,y\n0,0,1,nan,2\n").find("match.csv:2: x"), std::string::npos);
   EXPECT_NE(message("frame,time,id,x,y\n0,0,1,1,2\n0,0,1,1,2\n").find("twice"), std::string::npos);
   EXPECT_NE(message("frame,time,id,x,y,state\n0,0,1,1,2,lost\n").find("state"), std::string::npos);

@@ -80,8 +80,9 @@ class Reader {
     };
     const auto frame = static_cast<std::int32_t>(*image % kImages - 1);
     const std::string team = role == "referee" ? role : text_of(attributes, "team");
-    const std::int32_t person =
-        builder_.person(std::to_string(*track), static_cast<int>(*track), text_of(attributes, "jersey"), team);
+    const std::string jersey = text_of(attributes, "jersey");
+    const std::string label = jersey.empty() && role == "goalkeeper" ? "keeper" : jersey;
+    const std::int32_t person = builder_.person(std::to_string(*track), static_cast<int>(*track), label, team);
     builder_.add(frame, frame / match_.rate_hz, person, match_.pitch.length / 2 + place("x_bottom_middle"),
                  match_.pitch.width / 2 - place("y_bottom_middle"), where_);
   }
@@ -96,9 +97,16 @@ std::int64_t image_id(std::int32_t frame) {
   return kFirstClip + frame + 1;
 }
 
+bool is_keeper(const GroundRecording::Person& person) {
+  return person.label == "keeper" || person.label == "goalkeeper";
+}
+
 std::string attributes_of(const Squads::Member& member, const GroundRecording::Person& person) {
   const bool plays = member.side == Side::home || member.side == Side::away;
-  const char* role = plays ? "player" : member.side == Side::referee ? "referee" : "other";
+  const char* role = plays && is_keeper(person)     ? "goalkeeper"
+                     : plays                        ? "player"
+                     : member.side == Side::referee ? "referee"
+                                                    : "other";
   const bool shirt = plays && whole_number_of(person.label) && member.number <= 99;
   return fmt::format(R"({{"role":"{}","jersey":{},"team":{}}})", role, shirt ? fmt::format("\"{}\"", member.number) : "null",
                      !plays                      ? "null"
@@ -106,8 +114,8 @@ std::string attributes_of(const Squads::Member& member, const GroundRecording::P
                                                  : "\"right\"");
 }
 
-constexpr int category_of(Side side) {
-  return side == Side::referee ? 3 : side == Side::other ? 7 : 1;
+int category_of(Side side, const GroundRecording::Person& person) {
+  return side == Side::referee ? 3 : side == Side::other ? 7 : is_keeper(person) ? 2 : 1;
 }
 
 std::string images_of(const GroundRecording& recording) {
@@ -159,8 +167,9 @@ std::vector<std::string> write_soccernet(const GroundMatch& match, const std::st
                    "{}\n{{\"id\":\"{}\",\"image_id\":\"{}\",\"track_id\":{},\"supercategory\":\"object\",\"category_id\":{},"
                    "\"attributes\":{},\"bbox_pitch\":{{\"x_bottom_left\":{:.3f},\"y_bottom_left\":{:.3f},\"x_bottom_right\":{:.3f},"
                    "\"y_bottom_right\":{:.3f},\"x_bottom_middle\":{:.3f},\"y_bottom_middle\":{:.3f}}}}}",
-                   i == 0 ? "" : ",", i + 1, image_id(sample.frame), recording.people[person].id, category_of(member.side),
-                   attributes_of(member, recording.people[person]), x, y, x, y, x, y);
+                   i == 0 ? "" : ",", i + 1, image_id(sample.frame), recording.people[person].id,
+                   category_of(member.side, recording.people[person]), attributes_of(member, recording.people[person]), x, y, x, y,
+                   x, y);
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
