@@ -17,7 +17,7 @@ namespace {
 constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
 constexpr double kGapDown = 0.5;                               // of a person's height
 constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
-constexpr double kNarrowest = 0.55, kWidest = 1.7;             // width, the same
+constexpr double kNarrowest = 0.4, kWidest = 1.7;              // width, the same; from the side people are half as wide
 constexpr double kPlainlyOne = 1.25;                           // width up to which nobody asks whether there are two
 constexpr double kLeastFilled = 0.3;                           // of its box
 constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
@@ -26,6 +26,7 @@ constexpr double kMerged = 0.6;                                // share of an ex
 constexpr double kSameBody = 0.6;         // overlap of the body fitted with the one measured, which is then the better
 constexpr double kBelieved = 0.4;         // share of a body seen, from which on the rest of it tells what hides people
 constexpr double kOverlapExpected = 0.3;  // of the smaller of the two boxes
+constexpr double kHeldBeyond = 0.15;      // of an expected box's height, round it, that is kept from the background
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
 
@@ -35,6 +36,12 @@ double gap(double begin_a, double end_a, double begin_b, double end_b) {
 
 bool at_border(const Box& box, cv::Size image) {
   return box.left <= 1 || box.top <= 1 || box.right() >= image.width - 1 || box.bottom() >= image.height - 1;
+}
+
+/// With room for somebody taller than expected, or not quite there: feet that the scene absorbed would be missed ever after.
+Box grown(const Box& box) {
+  const double more = kHeldBeyond * box.height;
+  return {box.left - more, box.top - more, box.width + 2 * more, box.height + 2 * more};
 }
 
 Box clipped(const Box& box, cv::Size image) {
@@ -137,7 +144,7 @@ void PeopleDetector::prime(std::span<const Frame> samples) {
 Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> expected) {
   std::vector<Box> held;
   held.reserve(expected.size());
-  for (const Expected& one : expected) held.push_back(one.box);
+  for (const Expected& one : expected) held.push_back(grown(one.box));
   Detections result;
   result.foreground = background_->apply(frame, held);
   groups_ = 0;
