@@ -12,6 +12,7 @@ namespace marey {
 namespace {
 
 constexpr double bin_seconds = 0.5;
+constexpr double border_seconds = 1;  // at the recording's own beginning and end tracks begin and end of themselves
 
 /// What was seen of the colour in half a second.
 struct Bin {
@@ -127,19 +128,60 @@ class Cutter {
   std::vector<std::size_t> cuts_;
 };
 
+/// Adds the pieces of a tracklet that begin at its samples `cuts`, which are in order.
+void cut(GroundTracklet tracklet, const std::vector<std::size_t>& cuts, std::vector<GroundTracklet>& pieces) {
+  std::vector<GroundTracklet> later;  // the last first
+  for (auto from = cuts.rbegin(); from != cuts.rend(); ++from) {
+    if (*from == 0 || *from >= tracklet.samples.size()) continue;
+    later.push_back(split(tracklet, *from));
+    tracklet.goes_on = true;
+  }
+  pieces.push_back(std::move(tracklet));
+  std::move(later.rbegin(), later.rend(), std::back_inserter(pieces));
+}
+
+/// Where to cut these samples at `instant`, if whom they show stands near `end` then.
+void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end, std::int32_t instant, double near,
+              std::vector<std::size_t>& cuts) {
+  if (samples.front().instant >= instant || samples.back().instant < instant) return;
+  const auto next = std::lower_bound(samples.begin(), samples.end(), instant,
+                                     [](const GroundSample& sample, std::int32_t sought) { return sample.instant < sought; });
+  const double unsure = 2 * (next->spread().trace() + end.spread().trace());
+  if ((next->at() - end.at()).squaredNorm() > near * near + unsure) return;
+  cuts.push_back(static_cast<std::size_t>(next - samples.begin()));
+}
+
 }  // namespace
 
 std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                      const GroundCutOptions& options) {
   std::vector<GroundTracklet> pieces;
-  for (GroundTracklet& tracklet : tracklets) {
-    const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
-    std::vector<GroundTracklet> later;  // the last first
-    for (auto cut = cuts.rbegin(); cut != cuts.rend(); ++cut) {
-      if (*cut > 0 && *cut < tracklet.samples.size()) later.push_back(split(tracklet, *cut));
+  for (GroundTracklet& tracklet : tracklets) cut(std::move(tracklet), Cutter(tracklet.samples, times, options).cuts(), pieces);
+  return pieces;
+}
+
+std::vector<GroundTracklet> cut_where_others_end(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                 const GroundCutOptions& options) {
+  if (tracklets.empty()) return tracklets;
+  const Timestamp early = times.front() + duration_from_seconds(border_seconds);
+  const Timestamp late = times.back() - duration_from_seconds(border_seconds);
+  std::vector<std::vector<std::size_t>> cuts(tracklets.size());
+  for (std::size_t ending = 0; ending < tracklets.size(); ++ending) {
+    if (tracklets[ending].goes_on || (ending > 0 && tracklets[ending - 1].goes_on)) continue;
+    const GroundSample& first = tracklets[ending].samples.front();
+    const GroundSample& last = tracklets[ending].samples.back();
+    for (std::size_t other = 0; other < tracklets.size(); ++other) {
+      if (other == ending) continue;
+      const std::vector<GroundSample>& samples = tracklets[other].samples;
+      if (times[last.instant] < late) cut_near(samples, last, last.instant + 1, options.near, cuts[other]);
+      if (times[first.instant] > early) cut_near(samples, first, first.instant, options.near, cuts[other]);
     }
-    pieces.push_back(std::move(tracklet));
-    std::move(later.rbegin(), later.rend(), std::back_inserter(pieces));
+  }
+  std::vector<GroundTracklet> pieces;
+  for (std::size_t i = 0; i < tracklets.size(); ++i) {
+    std::sort(cuts[i].begin(), cuts[i].end());
+    cuts[i].erase(std::unique(cuts[i].begin(), cuts[i].end()), cuts[i].end());
+    cut(std::move(tracklets[i]), cuts[i], pieces);
   }
   return pieces;
 }

@@ -1,11 +1,12 @@
-// Where a track went over from one person to another, by what they wear.
+// Where a track may have gone over from one person to another. What is cut is only offered to be joined otherwise (ground_join.h):
+// where nothing fits better, the pieces join again.
 //
-// A tracker that follows by motion may come out of an encounter with the wrong person. When the two wear different colours, the
-// track shows it: the colour is one thing before and another after. A tracklet's colours, half a second at a time (the median, so
-// that one who runs through the picture does not count), are cut in two where that explains them best, as long as that explains
-// them much better (binary segmentation). What is cut is only offered to be joined otherwise: where nothing fits better, the pieces
-// join again. Cost: linear in the samples, times the logarithm of the number of cuts. Reference: Scott & Knott, "A cluster analysis
-// method for grouping means in the analysis of variance", Biometrics 30 (1974).
+// Clothes: a tracker that follows by motion may come out of an encounter with the wrong person. When the two wear different
+// colours, the track shows it: the colour is one thing before and another after. A tracklet's colours, half a second at a time (the
+// median, so that one who runs through the picture does not count), are cut in two where that explains them best, as long as that
+// explains them much better (binary segmentation: Scott & Knott, "A cluster analysis method for grouping means in the analysis of
+// variance", Biometrics 30, 1974). Ends: where a track ends or begins beside another one, the other may have taken its
+// observations. Cost: linear in the samples, and in the pairs of tracklets.
 #pragma once
 
 #include <span>
@@ -21,10 +22,15 @@ struct GroundCutOptions {
   double least = 12;     ///< by how much the colours of two pieces differ, as perceived
   double surely = 40;    ///< and how much better two colours explain what was seen than one: twice a logarithm of likelihoods
   double deviation = 6;  ///< of one person's colour from one half second to another
+  double near = 4;       ///< m, besides what is uncertain: who is nearer than this to where a track ends may have taken it over
 };
 
-/// The same tracklets, those in which the colour changes cut there; pieces keep the track's id. Order is kept.
+/// The same tracklets, those in which the colour changes cut there. Order is kept.
 std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                      const GroundCutOptions& options = {});
+
+/// The same tracklets, cut where one of the others ends or begins nearby, but for the recording's own first and last second.
+std::vector<GroundTracklet> cut_where_others_end(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                 const GroundCutOptions& options = {});
 
 }  // namespace marey

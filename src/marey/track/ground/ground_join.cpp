@@ -24,8 +24,9 @@ constexpr double births_at_border = 2e-3;
 constexpr double left_inside = 0.02;  // probability that a track ends because the person left
 constexpr double left_at_border = 0.7;
 
-constexpr double clothes_vary = 5;  // as perceived, one person's colour from one stretch to another: sun, shade, another camera
-constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
+constexpr double tracker_knows = 3;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
+constexpr double clothes_vary = 5;   // as perceived, one person's colour from one stretch to another: sun, shade, another camera
+constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t most_kinds = 300;
 
@@ -66,6 +67,8 @@ class Chainer {
       : tracklets_(tracklets), times_(times), options_(options) {
     for (const GroundTracklet& tracklet : tracklets) {
       GroundEnd head, tail;
+      head.piece = tail.piece = static_cast<int>(heads_.size());
+      tail.goes_on = tracklet.goes_on;
       const std::vector<GroundSample>& samples = tracklet.samples;
       head.time = times[samples.front().instant];
       tail.time = times[samples.back().instant];
@@ -172,7 +175,8 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   const double left = tail.at_border ? left_at_border : left_inside;
   const double found_again = std::log((1 - left) / left) - 2 * std::log1p(gap);
   const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity(), anyhow);
-  return log_continuity(tail, head, colours, options.motion) + found_again - came;
+  const double thought = tail.goes_on && head.piece == tail.piece + 1 ? tracker_knows : 0;
+  return log_continuity(tail, head, colours, options.motion) + found_again - came + thought;
 }
 
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,

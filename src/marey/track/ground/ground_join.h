@@ -38,6 +38,8 @@ struct GroundChainOptions {
 struct GroundEnd {
   Timestamp time{};
   GroundState state;
+  int piece = 0;                              ///< index of the tracklet
+  bool goes_on = false;                       ///< the tracker thought that the next tracklet follows
   bool at_border = false;                     ///< somebody may well have come into sight, or left it, just there
   std::optional<Appearance> appearance = {};  ///< of the whole tracklet
 };

@@ -15,7 +15,7 @@ constexpr Appearance blue{.lightness = 35, .a = 15, .b = -50, .deviation = 3};
 /// Somebody who walks straight from `first` to `last`, seen ten times a second.
 GroundTracklet walk(int track, double first, double last, const Vector<2>& from, const Vector<2>& velocity,
                     const std::optional<Appearance>& wears = {}) {
-  GroundTracklet tracklet{{{TrackId{track}, 0}}, true, {}};
+  GroundTracklet tracklet{.runs = {{TrackId{track}, 0}}, .confirmed = true, .samples = {}};
   for (int k = static_cast<int>(10 * first + 0.5); k <= static_cast<int>(10 * last + 0.5); ++k) {
     GroundSample sample;
     sample.instant = k;

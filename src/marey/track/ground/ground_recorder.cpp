@@ -92,7 +92,7 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
   for (const Track<2>& track : tracks) {
     while (open != open_.end() && open->runs.front().track < track.id) close();
     const bool known = open != open_.end() && open->runs.front().track == track.id;
-    still_open.push_back(known ? std::move(*open++) : GroundTracklet{{{track.id, 0}}, false, {}});
+    still_open.push_back(known ? std::move(*open++) : GroundTracklet{.runs = {{track.id, 0}}, .confirmed = false, .samples = {}});
     GroundTracklet& tracklet = still_open.back();
     tracklet.confirmed |= track.confirmed;
     const Melted melted = melt(track, time, looks, claims);
@@ -119,6 +119,7 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
             [](const GroundTracklet& a, const GroundTracklet& b) { return a.runs.front().track < b.runs.front().track; });
   exchange_where_they_met(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
   std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
+  tracklets = cut_where_others_end(std::move(tracklets), times_);
   const std::vector<std::vector<int>> chains = chain(
       tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = options.motion});
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);

@@ -215,6 +215,26 @@ TEST(GroundRecorder, WhoRunsPastAnotherRunsOn) {
   }
 }
 
+TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
+  Story story;
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 150; ++k) {
+    const double t = 0.04 * k - 3;
+    const Vector<2> right = runs_right(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
+    const Vector<2> left = runs_left(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
+    // The track of the one goes on with the other, whose track ends; the one is found again under a new id.
+    std::vector<Seen> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
+    if (t < -0.1) seen.push_back({.track = 2, .x = left.x(), .y = left.y()});
+    if (t > 0.3) seen.push_back({.track = 3, .x = right.x(), .y = right.y()});
+    story.instant(seen);
+  }
+  const auto joined = story.join();
+  ASSERT_EQ(joined.recording.people.size(), 2U);
+  EXPECT_EQ(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{3}, 149));
+  EXPECT_EQ(joined.person_of(TrackId{2}, 0), joined.person_of(TrackId{1}, 149));
+}
+
 /// Twenty people who run about as people do, seen by two cameras with a tenth of looks missed: truth is known.
 TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::mt19937_64 engine(11);

@@ -7,7 +7,7 @@ namespace marey {
 
 GroundTracklet split(GroundTracklet& tracklet, std::size_t from) {
   assert(from > 0 && from < tracklet.samples.size() && "both parts hold something");
-  GroundTracklet later{{}, tracklet.confirmed, {}};
+  GroundTracklet later{.runs = {}, .confirmed = tracklet.confirmed, .samples = {}, .goes_on = tracklet.goes_on};
   later.samples.assign(tracklet.samples.begin() + static_cast<std::ptrdiff_t>(from), tracklet.samples.end());
   tracklet.samples.resize(from);
   auto run =

@@ -40,6 +40,7 @@ struct GroundTracklet {
   std::vector<Run> runs;  ///< by `first`; the first begins at 0
   bool confirmed = false;
   std::vector<GroundSample> samples;
+  bool goes_on = false;  ///< the tracker thought that the next tracklet of the list is the same person; but it was cut off
 };
 
 /// Takes from sample `from` on off and gives it back as a tracklet of its own. 0 < from < samples.
