@@ -16,6 +16,7 @@ void add_reconstruct(CLI::App& app);
 void add_experiment(CLI::App& app);
 void add_measure(CLI::App& app);
 void add_experiment_outlines(CLI::App& experiment);  ///< below `experiment`
+void add_experiment_hypotheses(CLI::App& experiment);
 void add_calibrate(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_info(CLI::App& app);

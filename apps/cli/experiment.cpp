@@ -87,6 +87,7 @@ void add_experiment(CLI::App& app) {
   trackers->add_flag("-q,--quiet", options->quiet, "no progress");
   trackers->callback([options] { run(*options); });
   add_experiment_outlines(*experiment);
+  add_experiment_hypotheses(*experiment);
 }
 
 }  // namespace marey::cli

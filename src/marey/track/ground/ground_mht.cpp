@@ -34,7 +34,6 @@ namespace {
 template <typename F>
 struct Leaf {
   GroundTarget<F> target;
-  GroundPresence presence;
   GroundHistory::Place place = {};         ///< its record of the last instant
   int claims = GroundHistory::nobody;      ///< at this instant
   bool over = false;                       ///< given up; it stays until that is decided
@@ -96,7 +95,6 @@ class GroundMht final : public GroundTracker {
     for (Leaf<F>& leaf : leaves_) {
       if (leaf.over) continue;
       rules_.predict(leaf.target, dt_);
-      leaf.presence.predict(dt_);
       leaf.claims = GroundHistory::nobody;
       leaf.ahead.reset();
     }
@@ -114,8 +112,8 @@ class GroundMht final : public GroundTracker {
     for (int i = 0; i < static_cast<int>(children.size()); ++i) {
       const auto& [parent, observation] = children[i];
       if (parent == GroundHypotheses::nobody) {
-        next_.push_back({rules_.start(TrackId{hypotheses_.tree(i)}, *now_, look.seen[observation]),
-                         GroundPresence(births(), rules_.options().clutter)});
+        next_.push_back({rules_.start(TrackId{hypotheses_.tree(i)}, *now_, look.seen[observation])});
+        next_.back().target.presence = GroundPresence(births(), rules_.options().clutter);
         next_.back().claims = history_.claim(index, observation, GroundHistory::nobody);
         continue;
       }
@@ -123,11 +121,9 @@ class GroundMht final : public GroundTracker {
       if (leaf.over) continue;
       if (observation == GroundHypotheses::nobody) {
         rules_.miss(leaf.target, visible_[parent]);
-        leaf.presence.miss(visible_[parent] * rules_.options().detected);
       } else {
         const Observation<2>& seen = look.seen[observation];
         rules_.correct(leaf.target, seen, rules_.at_instant(leaf.target, seen, late), *now_);
-        leaf.presence.see();
         leaf.claims = history_.claim(index, observation, leaf.claims);
       }
     }
@@ -142,7 +138,7 @@ class GroundMht final : public GroundTracker {
     visible_.clear();
     for (const Leaf<F>& leaf : leaves_) {
       visible_.push_back(leaf.over ? 0 : sight_.visible(leaf.target.filter.position()));
-      missed_.push_back(std::log1p(-visible_.back() * leaf.presence.visible() * rules_.options().detected));
+      missed_.push_back(std::log1p(-visible_.back() * leaf.target.presence.visible() * rules_.options().detected));
     }
   }
 
@@ -159,7 +155,7 @@ class GroundMht final : public GroundTracker {
     for (int i = 0; i < static_cast<int>(leaves_.size()); ++i) {
       const Leaf<F>& leaf = leaves_[i];
       if (leaf.over) continue;
-      const double prior = std::log(leaf.presence.visible()) - unknown;
+      const double prior = std::log(leaf.target.presence.visible()) - unknown;
       const double radius = rules_.search_radius(leaf.target, widest) + std::abs(late) * rules_.options().max_speed;
       const auto first = static_cast<std::ptrdiff_t>(pairs_.size());
       grid_.for_each_near(leaf.target.filter.position(), radius, [&](int o) {
