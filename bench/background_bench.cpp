@@ -102,14 +102,14 @@ void upper_body_colour(benchmark::State& state) {
   person.box = {1500, 800, height * 0.4, height};
   const cv::Rect part(1500, 800 + static_cast<int>(0.2 * height), static_cast<int>(0.4 * height), static_cast<int>(0.3 * height));
   const double ours = least_time(shown, [&](const Clip& clip, std::size_t i) {
-    benchmark::DoNotOptimize(upper_body(clip.frames[i].picture, {.mask = mask}, person));
+    benchmark::DoNotOptimize(upper_body(clip.frames[i].picture, {.mask = mask}, {&person, 1}, 0));
   });
   const double theirs = least_time(shown, [&](const Clip& clip, std::size_t i) {
     cv::Mat lab;
     cv::cvtColor(clip.bgr[i](part), lab, cv::COLOR_BGR2Lab);
     benchmark::DoNotOptimize(cv::mean(lab));
   });
-  for (auto _ : state) benchmark::DoNotOptimize(upper_body(shown.frames[0].picture, {.mask = mask}, person));
+  for (auto _ : state) benchmark::DoNotOptimize(upper_body(shown.frames[0].picture, {.mask = mask}, {&person, 1}, 0));
   state.counters["us"] = ours * 1e3;
   state.counters["against_convert"] = theirs / ours;
 }

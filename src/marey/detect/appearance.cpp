@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "marey/core/lab.h"
 
@@ -15,6 +16,7 @@ constexpr double first_column = 0.25, last_column = 0.75;  // and from the left
 constexpr int most_samples = 100;
 constexpr int fewest_samples = 6;
 constexpr float alike = 3;                 // neighbouring samples share light, cloth and compression: so many count as one
+constexpr float shared_doubt = 5;          // L*a*b*: more deviation of a colour that may be in part another's
 constexpr float coded_to = 2;              // L*a*b*: what compression leaves uncertain however many samples there are
 constexpr float half_of_normal = 1.4826F;  // standard deviations in a median distance from the median
 
@@ -69,16 +71,35 @@ float median(std::array<float, 2 * most_samples>& values, int n) {
   return values[n / 2];
 }
 
+/// The boxes of those who share the region of `detection` and stand nearer.
+std::vector<Box> boxes_before(std::span<const Detection> detections, const Detection& detection) {
+  std::vector<Box> nearer;
+  if (!detection.group) return nearer;
+  for (const Detection& other : detections) {
+    if (other.group == detection.group && other.box.bottom() > detection.box.bottom()) nearer.push_back(other.box);
+  }
+  return nearer;
+}
+
+bool is_within(const std::vector<Box>& boxes, double x, double y) {
+  return std::any_of(boxes.begin(), boxes.end(),
+                     [&](const Box& box) { return x >= box.left && x < box.right() && y >= box.top && y < box.bottom(); });
+}
+
 }  // namespace
 
-std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, const Detection& detection) {
-  if (!picture.is_colour() || foreground.mask.empty() || detection.group || detection.box.top < 1) return std::nullopt;
+std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                     std::size_t which) {
+  const Detection& detection = detections[which];
+  if (!picture.is_colour() || foreground.mask.empty() || detection.box.top < 1) return std::nullopt;
+  const std::vector<Box> nearer = boxes_before(detections, detection);
   const cv::Mat& mask = foreground.covered.empty() ? foreground.mask : foreground.covered;
   const Grid grid = grid_of(detection.box, picture.cb().size());
   std::array<std::array<float, 2 * most_samples>, 3> values{};
   int n = 0;
   for (int row = grid.top; row < grid.bottom; row += grid.step) {
     for (int column = grid.left; column < grid.right && n < 2 * most_samples; column += grid.step) {
+      if (is_within(nearer, 2 * column + 0.5, 2 * row + 0.5)) continue;
       const Quad quad = quad_at(picture.luma(), mask, column, row);
       if (!quad.seen) continue;
       const std::array<float, 3> lab = lab_of(quad.luma, picture.cb().at<std::uint8_t>(row, column),
@@ -97,8 +118,10 @@ std::optional<Appearance> upper_body(const Picture& picture, const Foreground& f
     variance += spread * spread / 3;
   }
   const float independent = std::max(1.0F, static_cast<float>(n) / alike);
-  return Appearance{
-      .lightness = colour[0], .a = colour[1], .b = colour[2], .deviation = std::sqrt(variance / independent + coded_to * coded_to)};
+  return Appearance{.lightness = colour[0],
+                    .a = colour[1],
+                    .b = colour[2],
+                    .deviation = std::sqrt(variance / independent + coded_to * coded_to) + (detection.group ? shared_doubt : 0)};
 }
 
 }  // namespace marey

@@ -7,7 +7,9 @@
 // Cost: some microseconds a person, whatever the size.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 
 #include "marey/core/appearance.h"
 #include "marey/core/detection.h"
@@ -16,8 +18,10 @@
 
 namespace marey {
 
-/// The colour of the upper body of whom `detection` shows. Nothing where the picture is grey, no foreground is told, the head is
-/// outside the picture, too few pixels are seen, or others share the region and the colour may be theirs.
-std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, const Detection& detection);
+/// The colour of the upper body of whom detections[which] shows. Where others share the region, what lies in the box of somebody
+/// who stands nearer is not looked at, and the rest is believed less. Nothing where the picture is grey, no foreground is told, the
+/// head is outside the picture, or too few pixels are seen.
+std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                     std::size_t which);
 
 }  // namespace marey

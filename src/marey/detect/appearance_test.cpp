@@ -1,5 +1,6 @@
 #include "marey/detect/appearance.h"
 
+#include <array>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ struct Scene {
     person.box = {static_cast<double>(left), static_cast<double>(top), static_cast<double>(width), static_cast<double>(height)};
   }
 
-  std::optional<Appearance> seen() const { return upper_body(Picture::from_bgr(bgr), {.mask = mask}, person); }
+  std::optional<Appearance> seen() const { return upper_body(Picture::from_bgr(bgr), {.mask = mask}, {&person, 1}, 0); }
 };
 
 cv::Vec3f lab_of(const cv::Scalar& bgr) {
@@ -73,14 +74,28 @@ TEST(UpperBody, NoColourIsToldWhereNoneIsSeen) {
   Scene nobody(100);
   nobody.mask.setTo(0);
   EXPECT_FALSE(nobody.seen());
-  Scene shared(100);
-  shared.person.group = 1;
-  EXPECT_FALSE(shared.seen());
   const Scene grey(100);
   cv::Mat luma;
   cv::cvtColor(grey.bgr, luma, cv::COLOR_BGR2GRAY);
-  EXPECT_FALSE(upper_body(Picture(luma), {.mask = grey.mask}, grey.person));
-  EXPECT_FALSE(upper_body(Picture::from_bgr(grey.bgr), {}, grey.person));
+  EXPECT_FALSE(upper_body(Picture(luma), {.mask = grey.mask}, {&grey.person, 1}, 0));
+  EXPECT_FALSE(upper_body(Picture::from_bgr(grey.bgr), {}, {&grey.person, 1}, 0));
+}
+
+TEST(UpperBody, WhoIsBehindAnotherIsSeenBesideHim) {
+  Scene scene(100);
+  const cv::Rect before(124, 50, 40, 100);
+  scene.bgr(before).setTo(cv::Scalar(0, 0, 255));
+  scene.mask(before).setTo(255);
+  std::array<Detection, 2> both = {scene.person, scene.person};
+  both[0].group = both[1].group = 3;
+  both[1].box = {124, 50, 40, 100};
+  const Picture picture = Picture::from_bgr(scene.bgr);
+  const auto behind = upper_body(picture, {.mask = scene.mask}, both, 0);
+  const auto in_front = upper_body(picture, {.mask = scene.mask}, both, 1);
+  ASSERT_TRUE(behind && in_front);
+  EXPECT_NEAR(behind->b, lab_of(shirt)[2], 6);
+  EXPECT_GT(in_front->a, 60);
+  EXPECT_GT(behind->deviation, 6);
 }
 
 TEST(UpperBody, BoxesBeyondThePictureAreNoTrouble) {
@@ -88,7 +103,7 @@ TEST(UpperBody, BoxesBeyondThePictureAreNoTrouble) {
   for (const Box& box : {Box{-50, 20, 60, 100}, Box{290, 390, 60, 100}, Box{5000, 5000, 10, 10}, Box{0, 20, 301, 380}}) {
     Detection person;
     person.box = box;
-    const auto seen = upper_body(Picture::from_bgr(scene.bgr), {.mask = scene.mask}, person);
+    const auto seen = upper_body(Picture::from_bgr(scene.bgr), {.mask = scene.mask}, {&person, 1}, 0);
     EXPECT_TRUE(!seen || std::isfinite(seen->deviation));
   }
 }

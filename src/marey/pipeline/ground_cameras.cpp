@@ -120,10 +120,10 @@ struct GroundCameras::Lane {
 
   void place(Detections& found, const GroundView& view, const GroundArea& area) {
     std::vector<std::optional<Appearance>> wears;
-    for (Detection& detection : found.detections) {
-      wears.push_back(upper_body(taken->picture, found.foreground, detection));
-      detection.box = moved(detection.box, corner);
+    for (std::size_t i = 0; i < found.detections.size(); ++i) {
+      wears.push_back(upper_body(taken->picture, found.foreground, found.detections, i));
     }
+    for (Detection& detection : found.detections) detection.box = moved(detection.box, corner);
     const PlacedPeople placed = place_people(found.detections, view, id);
     seen.clear();
     for (std::size_t i = 0; i < placed.seen.size(); ++i) {
