@@ -94,7 +94,7 @@ class Reader {
     for (const pugi::xml_node player : team.child("Players").children()) {
       const std::string first = player.child_value("FirstName"), last = player.child_value("LastName");
       const int number = player.child("JerseyNo").text().as_int(-1);
-      names_[{side, number}] = first.empty() || last.empty() ? first + last : first + " " + last;
+      names_[{side, number}] = fmt::format("{}{}{}", first, first.empty() || last.empty() ? "" : " ", last);
     }
   }
 

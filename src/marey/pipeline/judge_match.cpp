@@ -96,6 +96,15 @@ void number(const Clock& leader, const Clock& follower, bool by_time, bool all, 
   }
 }
 
+/// How much later the tracks' first common frame is than the truth's, s; 0 where there is none.
+double time_between(const Clock& truth, const Clock& tracks) {
+  const auto partner = partners(truth, tracks, false);
+  for (std::size_t i = 0; i < partner.size(); ++i) {
+    if (partner[i] >= 0) return tracks.instants[static_cast<std::size_t>(partner[i])].time - truth.instants[i].time;
+  }
+  return 0;
+}
+
 Pairing pair_instants(const Clock& truth, const Clock& tracks, std::vector<std::string>& warnings) {
   Pairing pairing;
   const bool known = truth.period > 0 && tracks.period > 0;
@@ -112,6 +121,10 @@ Pairing pair_instants(const Clock& truth, const Clock& tracks, std::vector<std::
     warnings.push_back(fmt::format("the truth has an instant every {:.3g} s, the tracks every {:.3g} s; judged are those of {}",
                                    truth.period, tracks.period, truth_leads ? "the truth" : "the tracks"));
   }
+  if (const double apart = pairing.by_time ? 0 : time_between(truth, tracks);
+      std::abs(apart) > std::max(truth.period, tracks.period))
+    warnings.push_back(fmt::format(
+        "the same frame is {:.3g} s later in the tracks than in the truth; instants are paired by frame all the same", apart));
   if (pairing.by_time)
     warnings.push_back(
         "frame numbers mean other times in the two files; instants are paired by time, the nearest within half a period");

@@ -60,6 +60,15 @@ TEST(JudgeMatch, SpeedsThatAFileLacksComeFromItsWays) {
   EXPECT_NEAR(judgement.evaluation.speed->rms, 0, 1e-4);
 }
 
+TEST(JudgeMatch, ClocksThatDisagreeAreTold) {
+  GroundRecording tracks = runners(25);
+  for (auto& sample : tracks.samples) sample.time += 2;
+  const MatchJudgement judgement = judge_match(runners(25), tracks, 1);
+  ASSERT_EQ(judgement.warnings.size(), 1U);
+  EXPECT_NE(judgement.warnings[0].find("2 s later"), std::string::npos);
+  EXPECT_DOUBLE_EQ(*judgement.evaluation.scores.clear.mota, 1);
+}
+
 TEST(JudgeMatch, ALongerWayIsAnError) {
   GroundRecording tracks = runners(25);
   for (auto& sample : tracks.samples) sample.place.x() += 0.01 * (sample.place.x() - 10);
