@@ -49,7 +49,7 @@ GroundRecording GroundBuilder::finish() {
 }
 
 std::string label_of(const std::string& name, int number) {
-  const std::string digits = std::to_string(number);
+  std::string digits = std::to_string(number);
   if (name.empty()) return digits;
   if (!name.ends_with(digits)) return name;
   const std::string rest = name.substr(0, name.size() - digits.size());
