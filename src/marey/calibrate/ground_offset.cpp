@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -22,30 +24,30 @@ struct Edge {
   GroundOffset shift;  // added to b's times gives a's
 };
 
-/// Which cameras hang together, with an offset to the first of their group; the surest pairs first.
+/// Two cameras, and what they see of each other's people.
+struct Meeting {
+  std::size_t a = 0, b = 0;
+  GroundPair pair;
+};
+
+/// Which cameras hang together, with an offset to the first of their group.
 struct Tree {
+  explicit Tree(std::size_t cameras) : group(cameras), offset(cameras, 0.0) { std::iota(group.begin(), group.end(), 0); }
+
+  /// Joins the groups of two cameras: offset(b) = offset(a) + shift. The joined group moves as a whole.
+  void join(const Edge& edge) {
+    const std::size_t keep = std::min(group[edge.a], group[edge.b]), joined = std::max(group[edge.a], group[edge.b]);
+    if (keep == joined) return;
+    const double by = offset[edge.a] + edge.shift.offset_s - offset[edge.b];
+    const double move = group[edge.b] == joined ? by : -by;
+    for (std::size_t c = 0; c < group.size(); ++c) {
+      if (group[c] == joined) group[c] = keep, offset[c] += move;
+    }
+  }
+
   std::vector<std::size_t> group;
   std::vector<double> offset;
 };
-
-Tree tree_of(std::vector<Edge> edges, std::size_t cameras) {
-  std::stable_sort(edges.begin(), edges.end(),
-                   [](const Edge& x, const Edge& y) { return x.shift.deviation_s < y.shift.deviation_s; });
-  Tree tree;
-  for (std::size_t c = 0; c < cameras; ++c) tree.group.push_back(c), tree.offset.push_back(0);
-  for (const Edge& edge : edges) {
-    const std::size_t keep = std::min(tree.group[edge.a], tree.group[edge.b]),
-                      join = std::max(tree.group[edge.a], tree.group[edge.b]);
-    if (keep == join) continue;
-    // offset(b) = offset(a) + shift; the joined group moves as a whole.
-    const double by = tree.offset[edge.a] + edge.shift.offset_s - tree.offset[edge.b];
-    const double move = tree.group[edge.b] == join ? by : -by;
-    for (std::size_t c = 0; c < cameras; ++c) {
-      if (tree.group[c] == join) tree.group[c] = keep, tree.offset[c] += move;
-    }
-  }
-  return tree;
-}
 
 /// Puts the offsets of the first camera's group right by all pairs that agree with them; their deviations.
 std::vector<double> adjust(Tree& tree, const std::vector<Edge>& edges) {
@@ -112,20 +114,25 @@ std::vector<GroundOffset> find_ground_offsets(std::span<const std::vector<Ground
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     for (const GroundPath& path : cameras[c]) paths[c].emplace_back(path);
   }
-  std::vector<Edge> all, found;
-  std::vector<GroundPair> pairs;
+  std::vector<Meeting> meetings;
   for (std::size_t a = 0; a < cameras.size(); ++a) {
-    for (std::size_t b = a + 1; b < cameras.size(); ++b) {
-      GroundPair pair(paths[a], paths[b], options);
-      Edge edge{a, b, pair.find()};
-      edge.shift.deviation_s = std::hypot(edge.shift.deviation_s, kSystematic);
-      all.push_back(edge);
-      if (edge.shift.verdict != OffsetVerdict::found) continue;
-      found.push_back(edge);
-      pairs.push_back(pair);
-    }
+    for (std::size_t b = a + 1; b < cameras.size(); ++b) meetings.push_back({a, b, GroundPair(paths[a], paths[b], options)});
   }
-  Tree tree = tree_of(found, cameras.size());
+  std::stable_sort(meetings.begin(), meetings.end(),
+                   [](const Meeting& x, const Meeting& y) { return x.pair.meeting_s() > y.pair.meeting_s(); });
+  std::vector<Edge> all, found;
+  std::vector<const GroundPair*> pairs;
+  Tree tree(cameras.size());
+  for (auto& [a, b, pair] : meetings) {
+    const bool joined = tree.group[a] == tree.group[b];
+    Edge edge{a, b, pair.find(joined ? std::optional(tree.offset[b] - tree.offset[a]) : std::nullopt)};
+    edge.shift.deviation_s = std::hypot(edge.shift.deviation_s, kSystematic);
+    all.push_back(edge);
+    if (edge.shift.verdict != OffsetVerdict::found) continue;
+    found.push_back(edge);
+    pairs.push_back(&pair);
+    tree.join(edge);
+  }
   const std::vector<double> deviations = adjust(tree, found);
   std::vector<GroundOffset> result(cameras.size());
   for (std::size_t c = 0; c < cameras.size(); ++c) {
@@ -137,7 +144,7 @@ std::vector<GroundOffset> find_ground_offsets(std::span<const std::vector<Ground
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto [a, b, shift] = found[i];
       if (c != a && c != b) continue;
-      result[c].gain += pairs[i].score(tree.offset[b] - tree.offset[a]) - pairs[i].score(assumed[b] - assumed[a]);
+      result[c].gain += pairs[i]->score(tree.offset[b] - tree.offset[a]) - pairs[i]->score(assumed[b] - assumed[a]);
     }
   }
   return result;

@@ -7,9 +7,10 @@
 // part, so turns, starts and stops carry the answer, and people who run in different directions.
 //   coarse  the score at every tenth of a second,
 //   fine    from its best peaks, least squares over the pairs that agree: the shift, what is systematic of all and of each pair,
-//   chain   shifts of pairs of cameras are joined to one clock, the surest first, and put right together.
+//   chain   cameras are joined to one clock, those first that see most in common; pairs that are joined already only help to put
+//           all offsets right together.
 // Assumes people's ways to be right for a second or two (numbers may change in between), and cameras to place them within a metre.
-// Cost: shifts × half-seconds of ways × ways, a few nanoseconds each: 0.1 s for two cameras, 25 people and a minute.
+// Cost: shifts × ways × people at once, some ten nanoseconds each: COST.
 #pragma once
 
 #include <optional>

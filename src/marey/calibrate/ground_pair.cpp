@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -28,9 +30,9 @@ constexpr double kDensity = 0.01;                   // other people per m²
 constexpr double kFarthest_m = 4;                   // who is farther apart is not one person
 constexpr double kPaired = 2;                       // nats above which a pair takes part in the fine search
 constexpr double kBlock_s = 6;                      // the systematic part of a pair is taken to stay for so long
-constexpr double kStep_s = 0.1;                     // of the coarse search
-constexpr std::size_t kPeaks = 6;                   // that are refined
-constexpr int kIterations = 20;                     // of the fine search
+constexpr double kStep_s = 0.15;                    // of the coarse search
+constexpr std::size_t kPeaks = 4;                   // that are refined
+constexpr int kIterations = 10;                     // of the fine search
 constexpr double kStandsOut = 4;                    // times what peaks differ by chance
 constexpr double kExplained = 0.2;                  // of who walks before both cameras, that must be seen by both
 constexpr double kOptimism = 1.5;     // by which errors that hang together for longer make the answer worse than least squares say
@@ -38,10 +40,12 @@ constexpr double kLeastFree = 20;     // degrees of freedom that tell how large 
 constexpr double kLeastNoise = 0.02;  // and by how much less, or more, than covariances say
 constexpr int kNoiseRounds = 2;
 constexpr double kBeside_s = 0.5;      // a peak so near is the same one
-constexpr double kWalks_m = 1.5;       // who gets no farther within a segment stands
+constexpr double kWalks_m = 1;         // who gets no farther within a segment stands
 constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that can tell anything
 constexpr double kLeastMeeting_s = 3;  // person-seconds in places that both see, that make an overlap
 constexpr double kCell_m = 4;
+constexpr double kTick_s = SmoothPath::kStep_s;
+constexpr std::size_t kMostSegments = 600;
 
 double log_det(const Matrix<2>& m) {
   return std::log(m.determinant());
@@ -60,7 +64,27 @@ std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
 }  // namespace
 
 GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options)
-    : b_(b), options_(options) {
+    : b_(&b), options_(options) {
+  if (a.empty() || b.empty()) return;
+  const auto [a_begin, a_end] = span_of(a);
+  std::tie(b_begin_, b_end_) = span_of(b);
+  first_s_ = std::max(-options.most_offset_s, a_begin + options.least_common_s - b_end_);
+  last_s_ = std::min(options.most_offset_s, a_end - options.least_common_s - b_begin_);
+  present_.resize(static_cast<std::size_t>((b_end_ - b_begin_) / kTick_s) + 2);
+  std::set<std::pair<int, int>> cells;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    for (double t = std::ceil((b[j].begin_s() - b_begin_) / kTick_s) * kTick_s + b_begin_; t < b[j].end_s(); t += kTick_s) {
+      const auto state = b[j].at(t);
+      if (!state) continue;
+      present_[static_cast<std::size_t>(std::lround((t - b_begin_) / kTick_s))].push_back({j, state->place});
+      cells.insert(cell_of(state->place));
+    }
+  }
+  cut(a, cells);
+}
+
+/// Cuts ways into segments, and keeps of those that can tell something so many as are enough.
+void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<int, int>>& cells) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (double begin = a[i].begin_s(); begin < a[i].end_s(); begin += kStride_s) {
       Segment segment{i, {}, {}};
@@ -68,19 +92,20 @@ GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<Smoot
         const double time = begin + kSample_s * k;
         if (const auto state = a[i].at(time)) segment.times_s.push_back(time), segment.states.push_back(*state);
       }
-      if (segment.states.size() >= kLeastSamples) segments_.push_back(std::move(segment));
+      if (segment.states.size() < kLeastSamples) continue;
+      const auto common = std::count_if(segment.states.begin(), segment.states.end(),
+                                        [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.place)); });
+      const double common_s = kWeight * kSample_s * static_cast<double>(common);
+      meeting_s_ += common_s;
+      if (common == 0 || (segment.states.back().place - segment.states.front().place).norm() < kWalks_m) continue;
+      moving_s_ += common_s;
+      segments_.push_back(std::move(segment));
     }
   }
-  for (const SmoothPath& path : b) {
-    for (double t = path.begin_s(); t < path.end_s(); t += kSample_s) {
-      if (const auto state = path.at(t)) cells_.insert(cell_of(state->place));
-    }
-  }
-  if (a.empty() || b.empty()) return;
-  const auto [a_begin, a_end] = span_of(a);
-  const auto [b_begin, b_end] = span_of(b);
-  first_s_ = std::max(-options.most_offset_s, a_begin + options.least_common_s - b_end);
-  last_s_ = std::min(options.most_offset_s, a_end - options.least_common_s - b_begin);
+  if (segments_.size() <= kMostSegments) return;
+  std::vector<Segment> some;
+  for (std::size_t i = 0; i < kMostSegments; ++i) some.push_back(std::move(segments_[i * segments_.size() / kMostSegments]));
+  segments_ = std::move(some);
 }
 
 /// Of the segment being the same person's as `other` against another's; nothing where they are not to be compared.
@@ -92,7 +117,6 @@ std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const
     const auto there = other.at(segment.times_s[k] - shift_s);
     if (!there) continue;
     const Vector<2> apart = segment.states[k].place - there->place;
-    if (count == 0 && apart.norm() > kFarthest_m) return std::nullopt;
     count += 1;
     mean += apart;
     square += apart * apart.transpose();
@@ -114,11 +138,16 @@ std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const
   return same_mean + same_motion;
 }
 
+/// Who of the other camera's people it most likely is.
 std::optional<GroundPair::Match> GroundPair::match(const Segment& segment, double shift_s) const {
+  const std::size_t middle = segment.states.size() / 2;
+  const double tick = std::round((segment.times_s[middle] - shift_s - b_begin_) / kTick_s);
+  if (!(tick >= 0) || tick >= static_cast<double>(present_.size())) return std::nullopt;
   std::optional<Match> best;
-  for (std::size_t j = 0; j < b_.size(); ++j) {
-    const auto ratio = likelihood_ratio(segment, b_[j], shift_s);
-    if (ratio && (!best || *ratio > best->score)) best = Match{j, *ratio};
+  for (const auto& [path, place] : present_[static_cast<std::size_t>(tick)]) {
+    if ((place - segment.states[middle].place).squaredNorm() > kFarthest_m * kFarthest_m) continue;
+    const auto ratio = likelihood_ratio(segment, (*b_)[path], shift_s);
+    if (ratio && (!best || *ratio > best->score)) best = Match{path, *ratio};
   }
   return best;
 }
@@ -177,7 +206,7 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
                                    Block{prior * Matrix<2>::Identity()})
                       .first->second;
     for (std::size_t k = 0; k < segment.states.size(); ++k) {
-      const auto there = b_[found->path].at(segment.times_s[k] - shift_s);
+      const auto there = (*b_)[found->path].at(segment.times_s[k] - shift_s);
       if (!there) continue;
       const Matrix<2> noise = noise_scale_ * (segment.states[k].noise + there->noise) + kFloor_m * kFloor_m * Matrix<2>::Identity();
       const Matrix<2> weight = kWeight * kSample_s / kMemory_s * noise.inverse();
@@ -216,36 +245,17 @@ std::optional<GroundPair::Fit> GroundPair::refine(double shift_s) const {
     const double from = fit ? fit->shift_s : shift_s;
     fit = step(from);
     if (!fit) return std::nullopt;
-    if (std::abs(fit->shift_s - from) < 1e-5) break;
+    if (std::abs(fit->shift_s - from) < 1e-4) break;
   }
   fit->score = score(fit->shift_s);
   return fit;
 }
 
-/// Whether somebody gets anywhere in this segment.
-bool GroundPair::walks(const Segment& segment) {
-  return (segment.states.back().place - segment.states.front().place).norm() > kWalks_m;
-}
-
-OffsetVerdict GroundPair::without_answer() const {
-  double meeting = 0, moving = 0;
-  for (const Segment& segment : segments_) {
-    const auto common = std::count_if(segment.states.begin(), segment.states.end(),
-                                      [&](const SmoothPath::State& state) { return cells_.contains(cell_of(state.place)); });
-    meeting += kWeight * kSample_s * static_cast<double>(common);
-    if (walks(segment)) moving += kWeight * kSample_s * static_cast<double>(common);
-  }
-  if (meeting < kLeastMeeting_s) return OffsetVerdict::no_overlap;
-  return moving < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
-}
-
 /// Of those who walk where the other camera sees people, and while it films, the share that it sees walk there too.
 double GroundPair::explained(double shift_s) const {
-  const auto [begin, end] = span_of(b_);
   double all = 0, matched = 0;
   for (const Segment& segment : segments_) {
-    if (segment.times_s.front() - shift_s < begin || segment.times_s.back() - shift_s > end) continue;
-    if (!walks(segment) || !cells_.contains(cell_of(segment.states[segment.states.size() / 2].place))) continue;
+    if (segment.times_s.front() - shift_s < b_begin_ || segment.times_s.back() - shift_s > b_end_) continue;
     all += 1;
     const auto found = match(segment, shift_s);
     if (found && found->score > kPaired) matched += 1;
@@ -264,17 +274,19 @@ std::vector<GroundPair::Fit> GroundPair::fits(const std::vector<double>& peaks) 
   return fits;
 }
 
-GroundOffset GroundPair::find() {
+GroundOffset GroundPair::find(std::optional<double> near) {
   GroundOffset result;
-  result.verdict = without_answer();
-  if (result.verdict != OffsetVerdict::ambiguous) return result;
-  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the ways tell.
-  Peaks coarse = peaks();
+  if (meeting_s_ < kLeastMeeting_s) return result;
+  result.verdict = moving_s_ < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
+  if (result.verdict == OffsetVerdict::nobody_moves) return result;
+  const Peaks coarse = near ? Peaks{{*near}, 0} : peaks();
   std::vector<Fit> fits = this->fits(coarse.shifts_s);
+  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the ways tell.
   for (int i = 0; i < kNoiseRounds && !fits.empty(); ++i) {
     noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kLeastNoise, 1 / kLeastNoise);
-    coarse = peaks();
-    fits = this->fits(coarse.shifts_s);
+    std::vector<double> again;
+    for (const Fit& fit : fits) again.push_back(fit.shift_s);
+    fits = this->fits(again);
   }
   if (fits.empty()) return result;
   const Fit& best = fits[0];
