@@ -87,6 +87,16 @@ class People(unittest.TestCase):
             self.assertTrue(0 <= method["lost"] <= 2, name)
         self.assertGreater(case["methods"]["Marey"]["iou"], case["methods"]["published (Arnaut & Costa)"]["iou"])
 
+    def test_the_experiment_with_hypotheses_tells_every_association(self):
+        said = self.run_marey("experiment", "hypotheses", "--scenes", 3, "--json", "--quiet").stdout
+        told = json.loads(said)
+        self.assertEqual(told["scenes"], 3)
+        for kind in told["kinds"]:
+            switches = {name: method["switches"] for name, method in kind["methods"].items()}
+            self.assertLess(switches["mht"], switches["gnn"], kind["meeting"])
+        self.assertIn("identity switches", self.run_marey("experiment", "hypotheses", "--scenes", 1, "--quiet").stdout)
+        self.run_marey("experiment", "hypotheses", "--scenes", 0, code=2)
+
 
 if __name__ == "__main__":
     MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())

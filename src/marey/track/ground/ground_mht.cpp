@@ -9,6 +9,7 @@
 //   - hypotheses that have come to the same state of the same trees are made one, their probabilities summed: at 25 frames a
 //     second two who run side by side give two answers a frame, and 50 hypotheses would otherwise all differ in the last
 //     6 frames only, with nothing left of the one doubt that matters, who is who;
+//   - an observation that may be of two who touch is believed less, by all;
 //   - the looks of one instant branch one after the other; the window is counted in time.
 // Cost: as gnn's while nobody is near another; in a scuffle that times the hypotheses kept (ground_hypotheses.h).
 #include "marey/track/ground/ground_mht.h"
@@ -105,7 +106,8 @@ class GroundMht final : public GroundTracker {
     const double late = seconds(look.time - *now_);
     sight_.look(look.camera, look.seen, rules_.options().confident);
     find_missed();
-    find_pairs(look.seen, late);
+    find_shared(look.seen);
+    find_pairs(seen_, late);
     find_beginnings(look.seen);
     const auto children = hypotheses_.branch(pairs_, missed_, begins_);
     next_.clear();
@@ -122,7 +124,7 @@ class GroundMht final : public GroundTracker {
       if (observation == GroundHypotheses::nobody) {
         rules_.miss(leaf.target, visible_[parent]);
       } else {
-        const Observation<2>& seen = look.seen[observation];
+        const Observation<2>& seen = seen_[observation];
         rules_.correct(leaf.target, seen, rules_.at_instant(leaf.target, seen, late), *now_);
         leaf.claims = history_.claim(index, observation, leaf.claims);
       }
@@ -139,6 +141,27 @@ class GroundMht final : public GroundTracker {
     for (const Leaf<F>& leaf : leaves_) {
       visible_.push_back(leaf.over ? 0 : sight_.visible(leaf.target.filter.position()));
       missed_.push_back(std::log1p(-visible_.back() * leaf.target.presence.visible() * rules_.options().detected));
+    }
+  }
+
+  /// An observation at which two are expected, with no other near it, may be of both: it lies between them, and that is all that
+  /// is believed of it. Where there are boxes, these tell who is hidden (ground_sight.h).
+  void find_shared(std::span<const Observation<2>> seen) {
+    seen_.assign(seen.begin(), seen.end());
+    known_.clear();
+    for (const int leaf : hypotheses_.best()) {
+      const GroundTarget<F>& target = leaves_[leaf].target;
+      if (!leaves_[leaf].over && target.confirmed) known_.push_back(target.filter.position());
+    }
+    const auto touches = [](const Vector<2>& a, const Vector<2>& b) { return (a - b).squaredNorm() < touch * touch; };
+    for (Observation<2>& one : seen_) {
+      if (one.box) continue;
+      const auto expected =
+          std::count_if(known_.begin(), known_.end(), [&](const auto& place) { return touches(place, one.value); });
+      if (expected < 2) continue;
+      const auto found =
+          std::count_if(seen.begin(), seen.end(), [&](const auto& other) { return touches(other.value, one.value); });
+      if (expected > found) one.covariance.diagonal().array() += between * between;
     }
   }
 
@@ -281,6 +304,8 @@ class GroundMht final : public GroundTracker {
   }
 
   static constexpr double duplicate_iou = 0.75;
+  static constexpr double touch = 0.5;         // m: people nearer than this may be seen as one
+  static constexpr double between = 0.25;      // m: how far from the middle of two each of them is then
   static constexpr double first_interval = 1;  // s: who stands there at the first instant has come before
   static constexpr double same_sigmas = 0.5;
   static constexpr double a_while = 0.5;  // s
@@ -298,9 +323,10 @@ class GroundMht final : public GroundTracker {
   std::vector<GroundClaim> claims_;
   // What an instant needs, kept so that it is allocated once.
   std::vector<double> missed_, visible_;
+  std::vector<Observation<2>> seen_;  // of the look at hand, as far as each is believed
   std::vector<GatedPair> pairs_;
   std::vector<char> begins_, explained_, gone_;
-  std::vector<Vector<2>> points_;
+  std::vector<Vector<2>> points_, known_;
   std::vector<int> past_;
   std::vector<GroundHistory::Place> places_;
   std::vector<std::pair<int, int>> claim_list_;
