@@ -15,16 +15,14 @@
 namespace marey {
 namespace {
 
-constexpr double end_span = 3;         // s of a tracklet that its end is judged by
-constexpr double place_strays = 0.25;  // m: what an end is off by beyond what its covariance says: half hidden, about to be lost
-constexpr double speed_strays = 0.6;   // m/s: likewise
+constexpr double end_span = 3;  // s of a tracklet that its end is judged by
 
 constexpr double births_inside = 5e-5;  // people who come from nowhere, per m² and s: 25 people, each lost once in a minute or so
 constexpr double births_at_border = 2e-3;
 constexpr double left_inside = 0.02;  // probability that a track ends because the person left
 constexpr double left_at_border = 0.7;
 
-constexpr double tracker_knows = 3;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
+constexpr double tracker_knows = 2;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
 constexpr double clothes_vary = 5;   // as perceived, one person's colour from one stretch to another: sun, shade, another camera
 constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
@@ -154,13 +152,14 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
   return std::clamp(colour_log_normal(*a, *b) - newcomer, surest_apart, surest_same);
 }
 
-double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion) {
+double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
+                      const GroundStray& stray) {
   const GroundState expected = predicted(tail.state, seconds(head.time - tail.time), motion);
   Vector<4> residual;
   residual << head.state.place() - expected.place(), head.state.velocity() - expected.velocity();
   Matrix<4> S = expected.covariance() + head.state.covariance();
-  S.diagonal().head<2>().array() += 2 * place_strays * place_strays;
-  S.diagonal().tail<2>().array() += 2 * speed_strays * speed_strays;
+  S.diagonal().head<2>().array() += 2 * square(stray.place);
+  S.diagonal().tail<2>().array() += 2 * square(stray.speed);
   return log_normal<4>(residual, S) + colours.same(tail.appearance, head.appearance);
 }
 
@@ -169,7 +168,7 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   const double gap = seconds(head.time - tail.time);
   if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
   const double way = (head.state.place() - tail.state.place()).norm();
-  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * place_strays * place_strays);
+  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * square(GroundStray{}.place));
   if (way > options.max_speed * gap + unsure) return std::nullopt;
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double left = tail.at_border ? left_at_border : left_inside;

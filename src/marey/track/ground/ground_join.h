@@ -61,8 +61,15 @@ class GroundColours {
   std::vector<Seen> kinds_;
 };
 
+/// What an end may be off by beyond what its covariance says: standard deviations per axis.
+struct GroundStray {
+  double place = 0.4;  ///< m; who is about to be lost is half hidden already
+  double speed = 0.9;  ///< m/s
+};
+
 /// Logarithm of how likely whoever made `tail` is to be found as `head` is: place, velocity and clothes. `tail` is the earlier.
-double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion);
+double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
+                      const GroundStray& stray = {});
 
 /// Logarithm of how much likelier it is that one person made both ends than that one left and another came; nothing where one
 /// person cannot have.

@@ -11,10 +11,11 @@
 namespace marey {
 namespace {
 
-constexpr double fewest_seconds = 0.3;  // of each one before and after: else nothing can be judged
-constexpr double apart = 0.4;           // s: who comes near again sooner has not parted
-constexpr double colour_seconds = 10;   // before and after, over which clothes are looked at
-constexpr std::size_t most_kinds = 60;  // of colours; more only costs time
+constexpr double fewest_seconds = 0.3;                           // of each one before and after: else nothing can be judged
+constexpr double apart = 0.4;                                    // s: who comes near again sooner has not parted
+constexpr double colour_seconds = 10;                            // before and after, over which clothes are looked at
+constexpr GroundStray in_the_open{.place = 0.25, .speed = 0.6};  // before and after a meeting people are in full view
+constexpr std::size_t most_kinds = 60;                           // of colours; more only costs time
 
 /// Two who were near each other.
 struct Meeting {
@@ -111,7 +112,7 @@ class Exchanger {
     const auto after_a = after(a, meeting.last), after_b = after(b, meeting.last);
     if (!before_a || !before_b || !after_a || !after_b) return false;
     const auto fits = [&](const GroundEnd& tail, const GroundEnd& head) {
-      return log_continuity(tail, head, colours_, options_.motion);
+      return log_continuity(tail, head, colours_, options_.motion, in_the_open);
     };
     const double straight = fits(*before_a, *after_a) + fits(*before_b, *after_b);
     const double exchanged = fits(*before_a, *after_b) + fits(*before_b, *after_a);
