@@ -68,16 +68,19 @@ class CameraFiles {
     const double time = match_.match_time(own_time + eye_.offset_s.value_or(0));
     motion_.advance(time);
     const auto stances = match_.stances(motion_.people());
-    const std::vector<SeenPerson> seen = look_at(camera_, match_.figures, stances);
+    seen_ = look_at(camera_, match_.figures, stances);
     text_.clear();
-    for (const SeenPerson& person : seen) {
+    for (const SeenPerson& person : seen_) {
       fmt::format_to(std::back_inserter(text_), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.person + 1,
                      person.shown.left + 1, person.shown.top + 1, person.shown.width, person.shown.height, person.visible_share);
     }
     truth_.write(text_);
-    if (detections_) write_detections(frame, seen);
+    if (detections_) write_detections(frame);
     if (movie_) movie_->write(film_->render(match_.figures, stances, time, frame), timestamp_from_seconds(own_time));
   }
+
+  /// Whom it saw in the frame written last.
+  std::span<const SeenPerson> seen() const { return seen_; }
 
   void finish() {
     if (movie_) movie_->finish();
@@ -100,9 +103,9 @@ class CameraFiles {
     clicks.finish();
   }
 
-  void write_detections(std::int64_t frame, std::span<const SeenPerson> seen) {
+  void write_detections(std::int64_t frame) {
     text_.clear();
-    for (const LabelledBox& box : detect_match(seen, camera_, match_.world_from_pitch, match_.options.cameras.pitch,
+    for (const LabelledBox& box : detect_match(seen_, camera_, match_.world_from_pitch, match_.options.cameras.pitch,
                                                static_cast<std::int32_t>(frame), match_.options.detector, random_)) {
       fmt::format_to(std::back_inserter(text_), "{},-1,{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},-1,-1,-1\n", box.frame + 1,
                      box.box.left + 1, box.box.top + 1, box.box.width, box.box.height, box.score);
@@ -119,6 +122,7 @@ class CameraFiles {
   std::optional<WholeFile> detections_;
   std::optional<MatchFilm> film_;
   std::optional<MovieWriter> movie_;
+  std::vector<SeenPerson> seen_;
   std::string text_;
 };
 
@@ -132,13 +136,17 @@ class GroundTruth {
     for (int i = 0; i < kMatchPeople; ++i) people_.push_back({i + 1, match_label(i), std::string(match_team(i))});
   }
 
-  void write(std::int64_t frame) {
+  /// `films` have written the same frame: cameras that were started with the first one have looked already.
+  void write(std::int64_t frame, std::span<const std::unique_ptr<CameraFiles>> films) {
     const double time = static_cast<double>(frame) / match_.options.cameras.rate_hz;
     motion_.advance(match_.match_time(time));
     const auto stances = match_.stances(motion_.people());
     std::array<CameraMask, kMatchPeople> seen_by{};
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      for (const SeenPerson& person : look_at(cameras_[i], match_.figures, stances)) {
+      std::vector<SeenPerson> own;
+      const bool in_step = match_.rig.cameras[i].offset_s.value_or(0) == 0;
+      if (!in_step) own = look_at(cameras_[i], match_.figures, stances);
+      for (const SeenPerson& person : in_step ? films[i]->seen() : std::span<const SeenPerson>(own)) {
         if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
       }
     }
@@ -216,12 +224,8 @@ void write_match(const MatchFilesOptions& options, const std::string& folder,
   for (int i = 0; i < std::ssize(match.rig.cameras); ++i) cameras.push_back(std::make_unique<CameraFiles>(match, i, place));
   GroundTruth truth(match, place);
   for (std::int64_t frame = 0; frame < match.frames; ++frame) {
-    tbb::parallel_for(std::size_t{0}, cameras.size() + 1, [&](std::size_t i) {
-      if (i < cameras.size())
-        cameras[i]->write(frame);
-      else
-        truth.write(frame);
-    });
+    tbb::parallel_for(std::size_t{0}, cameras.size(), [&](std::size_t i) { cameras[i]->write(frame); });
+    truth.write(frame, cameras);
     if (progress) progress(frame + 1, match.frames);
   }
   for (const auto& camera : cameras) camera->finish();
