@@ -95,6 +95,50 @@ class Football(unittest.TestCase):
         self.assertIn("mirrored", self.refused(*both))
         self.assertFalse((self.folder / "never.toml").exists())
 
+    def write_people(self, name, ways):
+        """Boxes, 40 px high, of people whose feet go these ways (px at 25 Hz): functions of s."""
+        with open(self.folder / name, "w") as out:
+            for frame in range(250):
+                for x, y in (way(frame / 25) for way in ways):
+                    out.write(f"{frame + 1},-1,{x - 8:.2f},{y - 39:.2f},16,40,1,-1,-1,-1\n")
+
+    def test_cameras_known_by_their_ground_and_another_programs_detections(self):
+        homography = "[[0.1, 0, {}], [0, 0.1, 0], [0, 0, 1]]"
+        rig = "".join(
+            f'[[camera]]\nname = "{name}"\ndetections = "{name}.txt"\nrate = 25\nsize = [640, 480]\n'
+            f"ground_from_image = {homography.format(at)}\n"
+            for name, at in (("a", 0), ("b", 0), ("far", 300))
+        )
+        (self.folder / "ground.toml").write_text(rig)
+        ways = [
+            lambda t, i=i: (300 + 120 * math.sin(0.7 * t + i) + 40 * math.sin(2.1 * t + 2 * i), 60 + 60 * i + 30 * math.cos(1.3 * t + i))
+            for i in range(6)
+        ]
+        late = [lambda t, way=way: way(t + 0.6) for way in ways]
+        self.write_people("a.txt", ways)
+        self.write_people("b.txt", late)
+        self.write_people("far.txt", ways)
+        self.assertIn("ground known, offset not known, ", self.marey("info", "ground.toml").stdout)
+        track = ("track", "ground.toml", "--ground", "-o", "ground.csv", "--json")
+        told = json.loads(self.marey(*track).stdout)
+        self.assertEqual([n for n in told["notes"] if '"b" was started 0.60' in n or '"b" was started 0.59' in n], told["notes"])
+        self.assertEqual(len(told["notes"]), 1)
+        self.assertTrue(any('"far"' in w and "in common" in w for w in told["warnings"]), told["warnings"])
+        # What is given is believed, and contradicted.
+        given = rig.replace('name = "b"', 'name = "b"\noffset_s = 0.0').replace('name = "far"', 'name = "far"\noffset_s = 0.0')
+        (self.folder / "ground.toml").write_text(given)
+        told = json.loads(self.marey(*track).stdout)
+        self.assertEqual(told["notes"], [])
+        self.assertTrue(any('"b": its offset_s is given as 0' in w for w in told["warnings"]), told["warnings"])
+        # Cameras of one clock keep 0 to the bit.
+        (self.folder / "ground.toml").write_text(rig)
+        self.write_people("b.txt", ways)
+        self.marey(*track)
+        alone = (self.folder / "ground.csv").read_text()
+        (self.folder / "ground.toml").write_text(given)
+        self.marey(*track)
+        self.assertEqual((self.folder / "ground.csv").read_text(), alone)
+
     def test_measured_runs(self):
         with open(self.folder / "match.csv", "w") as out:
             out.write("frame,time,id,team,x,y\n")
