@@ -17,7 +17,7 @@ namespace {
 constexpr double kAgree = 5;        // deviations within which a pair's shift takes part in the common adjustment
 constexpr double kContradicts = 4;  // deviations
 constexpr double kNegligible_s = 0.015;
-constexpr double kSystematic = 0.004;  // s, of every pair's shift: what no least squares knows of
+constexpr double kSystematic = 0.008;  // s, of every pair's shift: what no least squares knows of
 
 struct Edge {
   std::size_t a = 0, b = 0;
