@@ -10,7 +10,7 @@ namespace marey {
 /// An upright person, m: what is taken for granted where nothing is known of who it is.
 struct PersonShape {
   double height = 1.75;
-  double width = 0.62;  ///< of the silhouette, arms and stride included
+  double width = 0.55;  ///< of the silhouette of somebody who walks, from whichever side
 };
 
 /// The box of a person who stands at `ground` (m, on z = 0), as the camera sees it, px: also where it lies outside the picture.
