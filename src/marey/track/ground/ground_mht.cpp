@@ -60,7 +60,6 @@ class GroundMht final : public GroundTracker {
     for (int i = 0; i < static_cast<int>(looks.size()); ++i) take_in(i, looks[i]);
     merge_duplicates();
     retire_lost();
-    if (fold_) hypotheses_.fold([this](int a, int b) { return alike(leaves_[a], leaves_[b]); });
     note();
     decide();
     hypotheses_.split([this](int leaf, auto&& tell) { history_.for_each_past_claim(leaves_[leaf].place, tell); });
@@ -121,6 +120,7 @@ class GroundMht final : public GroundTracker {
       }
       Leaf<F>& leaf = next_.emplace_back(leaves_[parent]);
       if (leaf.over) continue;
+      leaf.ahead.reset();
       if (observation == GroundHypotheses::nobody) {
         rules_.miss(leaf.target, visible_[parent]);
       } else {
@@ -130,6 +130,7 @@ class GroundMht final : public GroundTracker {
       }
     }
     std::swap(leaves_, next_);
+    if (fold_) hypotheses_.fold([this](int a, int b) { return alike(leaves_[a], leaves_[b]); });
   }
 
   /// How many people appear per m² from one instant to the next.
