@@ -68,6 +68,12 @@ class GroundFollower : public GroundTracker {
   virtual void associate(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, double late,
                          std::span<const GroundPair<F>> pairs) = 0;
 
+  /// What a pair is worth against clutter and a miss together: who is given nothing was missed.
+  double gain_of(std::span<const GroundTarget<F>> targets, const GroundPair<F>& pair) const {
+    const double visible = targets[pair.target].presence.visible();
+    return pair.log_ratio + std::log(visible) - std::log1p(-visible * rules_.options().detected);
+  }
+
   /// The observation is this target's. An observation that is nobody's may begin a target.
   void claim(int target, int observation) { owner_[observation] = target; }
 

@@ -14,13 +14,8 @@ class GroundGnn final : public GroundFollower<F> {
  private:
   void associate(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, double late,
                  std::span<const GroundPair<F>> pairs) override {
-    // Who is given nothing was missed: a pair is worth more than clutter and a miss together, or is not chosen.
     gains_.clear();
-    for (const GroundPair<F>& pair : pairs) {
-      const double visible = targets[pair.target].presence.visible();
-      const double missed = std::log1p(-visible * this->rules().options().detected);
-      gains_.push_back({pair.target, pair.observation, pair.log_ratio + std::log(visible) - missed});
-    }
+    for (const GroundPair<F>& pair : pairs) gains_.push_back({pair.target, pair.observation, this->gain_of(targets, pair)});
     const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
       if (given[i] == GatedAssigner::nobody) continue;

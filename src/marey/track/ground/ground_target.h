@@ -15,6 +15,7 @@
 #include <Eigen/LU>
 
 #include "marey/core/observation.h"
+#include "marey/core/perceived.h"
 #include "marey/core/track.h"
 #include "marey/geometry/chi_square.h"
 #include "marey/track/ground/ground_presence.h"
@@ -129,7 +130,9 @@ class GroundRules {
   void miss(Target& target, double visible) const {
     target.should = std::max(target.should, visible);
     target.presence.miss(visible * options_.detected);
-    const double cost = std::min(miss_evidence * visible, miss_evidence - target.missed);
+    // Whoever is known may be hidden. Who is said to hide just where another is seen was a false alarm beside him.
+    const double blame = target.confirmed || visible == 0 ? visible : 1;
+    const double cost = std::min(miss_evidence * blame, miss_evidence - target.missed);
     target.missed += cost;
     target.evidence -= cost;
   }
@@ -193,9 +196,9 @@ class GroundRules {
 
   /// Logarithm of how much likelier two colours are one person's than two people's.
   static double alike(const Appearance& a, const Appearance& b) {
-    const double same = a.deviation * a.deviation + b.deviation * b.deviation + light * light;
+    const double same = (a.deviation * a.deviation + b.deviation * b.deviation) / 4 + light * light;
     const double other = same + people_differ * people_differ;
-    const double squared = std::pow(a.lightness - b.lightness, 2) + std::pow(a.a - b.a, 2) + std::pow(a.b - b.b, 2);
+    const double squared = (perceived(a) - perceived(b)).squaredNorm();
     return std::clamp(1.5 * std::log(other / same) - squared / 2 * (1 / same - 1 / other), -most_colour, most_colour);
   }
 
@@ -205,10 +208,10 @@ class GroundRules {
   static constexpr double miss_evidence = 0.7;  // at most, an instant
   static constexpr double most_evidence = 10;
   static constexpr double tentative_patience = 0.4;  // s
-  static constexpr double away_patience = 1;         // s out of all pictures, after which who comes in is somebody else
+  static constexpr double away_patience = 3;         // s out of all pictures, after which who comes in is somebody else
   static constexpr float colour_rate = 0.05F;        // of a new colour in what is learned
-  static constexpr double light = 8;                 // Lab: what sun, shade and another camera make of one colour
-  static constexpr double people_differ = 30;        // Lab: spread of colours over people
+  static constexpr double light = 6;                 // of perceived colour: what sun, shade and another camera make of one
+  static constexpr double people_differ = 20;        // of perceived colour: spread over people
   static constexpr double most_colour = 4;           // colours alone decide no more than this
 
   GroundTrackerOptions options_;

@@ -2,6 +2,7 @@
 
 #include "marey/core/error.h"
 #include "marey/track/ground/ground_gnn.h"
+#include "marey/track/ground/ground_jpda.h"
 #include "marey/track/ground/ground_mht.h"
 
 namespace marey {
@@ -39,6 +40,7 @@ std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& o
     case GroundAssociation::mht:
       return make_ground_mht(options, std::move(views));
     case GroundAssociation::jpda:
+      return make_ground_jpda(options, std::move(views));
     case GroundAssociation::gnn:
       break;
   }

@@ -82,7 +82,7 @@ GroundAssociation ground_association_named(std::string_view name);
 /// Lengths in m, times in s. What is not said of a person's motion comes from football and athletics.
 struct GroundTrackerOptions {
   GroundAssociation associate = GroundAssociation::gnn;
-  FilterOptions filter = KalmanOptions{.acceleration_noise = 2.5, .initial_speed = 3, .gate_sigmas = 3.5};
+  FilterOptions filter = KalmanOptions{.acceleration_noise = 2, .initial_speed = 3, .gate_sigmas = 3.5};
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 12;            ///< m/s; nobody runs faster
   double detected = 0.9;            ///< probability that somebody in view of a camera is seen in one of its frames

@@ -1,6 +1,9 @@
 #include "marey/track/ground/ground_tracker.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,11 +45,191 @@ TEST_P(EveryAssociation, GivesOneIdentityAcrossCameras) {
   EXPECT_FALSE(ids.contains(0));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryAssociation, testing::Values(GroundAssociation::gnn, GroundAssociation::mht));
+/// Where `count` people are who walk up and down a pitch, each in a lane of his own, 2 m apart.
+Vector<2> in_lane(int person, int frame) {
+  const double phase = 0.9 * person + 0.01 * frame;
+  return {30 + 20 * std::sin(phase), 5 + 2.0 * person};
+}
+
+/// Identities of `people` in lanes, seen by cameras that miss one in ten and see somebody who is not there now and then.
+std::vector<std::set<int>> identities_in_lanes(GroundTracker& tracker, const std::vector<GroundView>& views, int people,
+                                               std::vector<double>* places = nullptr) {
+  Random random(7);
+  std::vector<std::set<int>> ids(static_cast<std::size_t>(people));
+  run(
+      tracker, static_cast<int>(views.size()), 600,
+      [&](int frame, Looks& seen) {
+        for (int c = 0; c < static_cast<int>(views.size()); ++c) {
+          for (int i = 0; i < people; ++i) {
+            if (!random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, in_lane(i, frame) + random.gaussian(0.15)));
+          }
+          if (random.chance(0.3)) seen[c].push_back(seen_at(views[c], c, {random.uniform(0, 60), random.uniform(0, 60)}));
+        }
+      },
+      [&](int frame, std::span<const Track<2>> tracks) {
+        if (frame < 15) return;
+        for (int i = 0; i < people; ++i) ids[i].insert(id_at(tracks, in_lane(i, frame)));
+        if (places == nullptr) {
+          EXPECT_EQ(confirmed(tracks), people) << "frame " << frame;
+          return;
+        }
+        for (const Track<2>& track : tracks) places->insert(places->end(), {track.position.x(), track.position.y()});
+      });
+  return ids;
+}
+
+TEST_P(EveryAssociation, KeepsManyApart) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  std::set<int> all;
+  for (const auto& ids : identities_in_lanes(*tracker, views, 10)) {
+    EXPECT_EQ(ids.size(), 1U);
+    all.insert(ids.begin(), ids.end());
+  }
+  EXPECT_EQ(all.size(), 10U);
+  EXPECT_FALSE(all.contains(0));
+}
+
+TEST_P(EveryAssociation, SaysTheSameBitForBit) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
+  std::vector<double> first, second;
+  identities_in_lanes(*make(views), views, 6, &first);
+  identities_in_lanes(*make(views), views, 6, &second);
+  EXPECT_EQ(first, second);
+}
+
+TEST_P(EveryAssociation, WhoIsHiddenFromOneCameraIsFollowedByTheOther) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  Random random(2);
+  std::set<int> ids;
+  run(
+      *tracker, 2, 300,
+      [&](int frame, Looks& seen) {
+        const Vector<2> place(10 + 0.1 * frame, 30);
+        for (int c = 0; c < 2; ++c) {
+          const bool hidden = (frame / 50) % 2 == c;
+          if (!hidden) seen[c].push_back(seen_at(views[c], c, place + random.gaussian(0.15)));
+        }
+      },
+      [&](int frame, std::span<const Track<2>> tracks) {
+        if (frame < 10) return;
+        EXPECT_EQ(confirmed(tracks), 1) << "frame " << frame;
+        const int id = id_at(tracks, {10 + 0.1 * frame, 30});
+        ids.insert(id);
+        for (const Track<2>& track : tracks) {
+          if (number(track.id) == id) {
+            EXPECT_EQ(track.cameras, mask_of(CameraId{(frame / 50) % 2 == 0 ? 1 : 0}));
+          }
+        }
+      });
+  EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST_P(EveryAssociation, CamerasThatDisagreeSeeOnePerson) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  Random random(3);
+  run(
+      *tracker, 2, 400,
+      [&](int frame, Looks& seen) {
+        const Vector<2> place(10 + 0.1 * frame, 30);
+        for (int c = 0; c < 2; ++c) {
+          const Vector<2> wrong(0, c == 0 ? 0.35 : -0.35);
+          if (!random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, place + wrong + random.gaussian(0.1), 0.1));
+        }
+      },
+      [&](int frame, std::span<const Track<2>> tracks) {
+        if (frame > 50) {
+          EXPECT_EQ(confirmed(tracks), 1) << "frame " << frame;
+        }
+      });
+}
+
+TEST_P(EveryAssociation, LooksOfOtherTimesAreBroughtToTheInstant) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  const auto place_at = [](double time) { return Vector<2>(5 + 7 * time, 30); };
+  double worst = 0;
+  for (int frame = 0; frame < 125; ++frame) {
+    const double time = frame / rate;
+    std::vector<std::vector<Observation<2>>> seen(2);
+    std::vector<GroundLook> looks;
+    for (int c = 0; c < 2; ++c) {
+      const double taken = time + (c == 0 ? 0 : 0.019);
+      seen[c].push_back(seen_at(views[c], c, place_at(taken)));
+      looks.push_back({CameraId{c}, timestamp_from_seconds(taken), seen[c]});
+    }
+    const auto tracks = tracker->step(timestamp_from_seconds(time), looks);
+    if (frame > 50) worst = std::max(worst, (tracks.front().position - place_at(time)).norm());
+  }
+  EXPECT_LT(worst, 0.02) << "7 m/s for 19 ms are 0.13 m";
+}
+
+TEST_P(EveryAssociation, WhoCannotBeSeenIsGivenUpAfterAWhileOnly) {
+  // Seen for a second, then nobody says anything: patience lasts 3 s, and the covariance grows meanwhile.
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  double before = 0;
+  run(
+      *tracker, 1, 150,
+      [&](int frame, Looks& seen) {
+        if (frame < 50) seen[0].push_back(seen_at(views[0], 0, {30, 30}));
+      },
+      [&](int frame, std::span<const Track<2>> tracks) {
+        if (frame >= 50 && frame < 80) {
+          ASSERT_EQ(confirmed(tracks), 1) << "frame " << frame;
+          EXPECT_EQ(tracks.front().state, Track<2>::State::predicted);
+          EXPECT_GT(tracks.front().covariance.trace(), before);
+        }
+        if (!tracks.empty()) before = tracks.front().covariance.trace();
+        if (frame > 140) {
+          EXPECT_EQ(confirmed(tracks), 0) << "frame " << frame;
+        }
+      });
+}
+
+TEST_P(EveryAssociation, NobodyJumps) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  std::set<int> ids;
+  run(
+      *tracker, 1, 100, [&](int frame, Looks& seen) { seen[0].push_back(seen_at(views[0], 0, {frame < 50 ? 10.0 : 40.0, 30})); },
+      [&](int frame, std::span<const Track<2>> tracks) {
+        if (frame == 40) ids.insert(id_at(tracks, {10, 30}));
+        if (frame == 90) ids.insert(id_at(tracks, {40, 30}));
+      });
+  EXPECT_EQ(ids.size(), 2U) << "30 m in a frame is somebody else";
+  EXPECT_FALSE(ids.contains(0));
+}
+
+TEST_P(EveryAssociation, RefusesWhatCannotBe) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
+  const auto tracker = make(views);
+  const GroundLook stranger{CameraId{4}, timestamp_from_seconds(0), {}};
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(0), {&stranger, 1}), Error);
+  tracker->step(timestamp_from_seconds(1), {});
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), {}), Error);
+  Observation<2> broken = seen_at(views[0], 0, {30, 30});
+  broken.value.x() = std::nan("");
+  const GroundLook look{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(2), {&look, 1}), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryAssociation,
+                         testing::Values(GroundAssociation::gnn, GroundAssociation::jpda, GroundAssociation::mht));
 
 TEST(GroundTracker, NamesItsAssociations) {
+  EXPECT_EQ(ground_association_named("jpda"), GroundAssociation::jpda);
   EXPECT_EQ(ground_association_named("mht"), GroundAssociation::mht);
   EXPECT_THROW(ground_association_named("nearest"), Error);
+}
+
+TEST(GroundTracker, RefusesOptionsOutOfTheirDomain) {
+  const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
+  EXPECT_THROW(make_ground_tracker({.detected = 1}, views), Error);
+  EXPECT_THROW(make_ground_tracker({.clutter = 0}, views), Error);
+  EXPECT_THROW(make_ground_tracker({}, {}), Error);
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+// Joint probabilistic data association (Fortmann, Bar-Shalom & Scheffe, "Sonar tracking of multiple targets using joint
+// probabilistic data association", IEEE J. Oceanic Engineering 8 (1983)): in a look every target is corrected by the mean of the
+// observations in its gate, weighed by their probabilities (assign/association_marginals.h), by as much as it is probable that one
+// of them is its own.
+//
+// A filter here can only be corrected by one measurement z with covariance R. With β the probability that any is its own, z their
+// weighted mean and S the innovation's covariance, R' = S / β − P makes the gain β K and leaves (1 − β) P + β P⁺: the mean and
+// covariance of the paper but for the spread of the observations about their mean, which goes into S before. Two targets that
+// stay closer than their observations can tell are drawn together, as is known of the method (coalescence, Blom & Bloem 2000); it
+// is not worked against: where identities matter there, mht is the choice.
+// Whose an observation is, which claims must say, is the assignment of greatest total probability.
+#include "marey/track/ground/ground_jpda.h"
+
+#include "marey/assign/association_marginals.h"
+#include "marey/assign/gated_assignment.h"
+#include "marey/track/ground/ground_follower.h"
+
+namespace marey {
+namespace {
+
+template <typename F>
+class GroundJpda final : public GroundFollower<F> {
+ public:
+  using GroundFollower<F>::GroundFollower;
+
+ private:
+  void associate(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, double late,
+                 std::span<const GroundPair<F>> pairs) override {
+    gains_.clear();
+    for (const GroundPair<F>& pair : pairs) gains_.push_back({pair.target, pair.observation, this->gain_of(targets, pair)});
+    const int rows = static_cast<int>(targets.size()), columns = static_cast<int>(seen.size());
+    const auto probable = marginals_.find(rows, columns, gains_);
+    for (std::size_t from = 0; from < gains_.size();) {
+      std::size_t to = from;
+      while (to < gains_.size() && gains_[to].row == gains_[from].row) ++to;
+      GroundTarget<F>& target = targets[gains_[from].row];
+      correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
+      from = to;
+    }
+    claim_probable(targets, seen, probable);
+  }
+
+  void correct(GroundTarget<F>& target, std::span<const Observation<2>> seen, double late, std::span<const GatedPair> pairs,
+               std::span<const double> probable) {
+    double any = 0;
+    Vector<2> mean = Vector<2>::Zero();
+    places_.clear();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      places_.push_back(this->rules().at_instant(target, seen[pairs[i].column], late));
+      any += probable[i];
+      mean += probable[i] * places_.back().value;
+    }
+    if (any < least) return;
+    mean /= any;
+    Matrix<2> R = Matrix<2>::Zero();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Vector<2> off = places_[i].value - mean;
+      R += probable[i] / any * (places_[i].covariance + off * off.transpose());
+    }
+    const double share = std::min(any, 1.0);  // rounding
+    const Matrix<2> S = target.filter.innovation_covariance(R);
+    target.filter.correct(mean, R + (1 / share - 1) * S);
+  }
+
+  void claim_probable(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, std::span<const double> probable) {
+    explained_.assign(seen.size(), 0);
+    for (std::size_t i = 0; i < gains_.size(); ++i) {
+      explained_[gains_[i].column] += probable[i];
+      gains_[i].gain = probable[i] >= least_claim ? probable[i] : 0;
+    }
+    const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
+    for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
+      if (given[i] == GatedAssigner::nobody) continue;
+      this->rules().take(targets[i], seen[given[i]], this->now());
+      this->claim(i, given[i]);
+    }
+    // What belongs to those who are known, though not to whom, is no newcomer.
+    for (int o = 0; o < static_cast<int>(seen.size()); ++o) {
+      if (explained_[o] > 0.5) this->explain(o);
+    }
+  }
+
+  static constexpr double least = 1e-6;       // less probable observations change nothing
+  static constexpr double least_claim = 0.2;  // of several whose it might be, the most probable must be this much
+
+  std::vector<GatedPair> gains_;
+  std::vector<GroundPlace> places_;
+  std::vector<double> explained_;  // of each observation: the probability that it is somebody's
+  AssociationMarginals marginals_;
+  GatedAssigner assigner_;
+};
+
+}  // namespace
+
+std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::vector<GroundView> views) {
+  return with_filter<2>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
+    return std::make_unique<GroundJpda<F>>(options, filter, std::move(views));
+  });
+}
+
+}  // namespace marey
