@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -79,7 +80,7 @@ class Cutter {
 
   /// The bin that begins the second of two pieces of [from, to).
   std::optional<std::size_t> best_cut(std::size_t from, std::size_t to) const {
-    const auto fewest = static_cast<std::size_t>(options_.shortest / bin_seconds + 0.5);
+    const auto fewest = static_cast<std::size_t>(std::lround(options_.shortest / bin_seconds));
     Vector<3> all = Vector<3>::Zero();
     for (std::size_t i = from; i < to; ++i) all += bins_[i].colour;
     Vector<3> before = Vector<3>::Zero();
@@ -156,7 +157,10 @@ void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end,
 std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                      const GroundCutOptions& options) {
   std::vector<GroundTracklet> pieces;
-  for (GroundTracklet& tracklet : tracklets) cut(std::move(tracklet), Cutter(tracklet.samples, times, options).cuts(), pieces);
+  for (GroundTracklet& tracklet : tracklets) {
+    const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
+    cut(std::move(tracklet), cuts, pieces);
+  }
   return pieces;
 }
 
