@@ -33,10 +33,10 @@ using Boxes = std::vector<std::vector<Detection>>;
 
 /// A simulated match seen by `cameras`, 10 s of it, boxes with noise, misses and false ones.
 struct Match {
-  explicit Match(int cameras) {
+  explicit Match(int count) {
     MatchCamerasOptions options;
-    options.cameras = cameras;
-    for (const RigCamera& camera : match_cameras(options, 1).cameras) this->cameras.push_back(camera.camera().value());
+    options.cameras = count;
+    for (const RigCamera& camera : match_cameras(options, 1).cameras) cameras.push_back(camera.camera().value());
     MatchMotion motion(1);
     const auto figures = match_figures(1);
     Random random(1);
@@ -45,7 +45,7 @@ struct Match {
       std::array<Stance, kMatchPeople> stances;
       for (std::size_t i = 0; i < stances.size(); ++i) stances[i] = match_stance(motion.people()[i], Matrix<3>::Identity());
       auto& boxes = instants.emplace_back();
-      for (const Camera& camera : this->cameras) {
+      for (const Camera& camera : cameras) {
         auto& seen = boxes.emplace_back();
         for (const LabelledBox& one :
              detect_match(look_at(camera, figures, stances), camera, Matrix<3>::Identity(), {}, frame, {}, random)) {
