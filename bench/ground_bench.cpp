@@ -98,7 +98,12 @@ void instant_of_a_match(benchmark::State& state) {
   state.counters["observations"] =
       static_cast<double>(observations) / static_cast<double>(match.instants.size()) / static_cast<double>(state.iterations());
 }
-BENCHMARK(instant_of_a_match)->ArgName("gnn_jpda_mht")->DenseRange(0, 2)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(instant_of_a_match)
+    ->ArgName("gnn_jpda_mht")
+    ->DenseRange(0, 2)
+    ->Iterations(3)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 /// People about 17 m apart on a plain, as on a pitch, seen by one camera from above; one in ten is missed.
 void tracker_alone(benchmark::State& state) {
