@@ -53,6 +53,12 @@ std::string text_of(const GroundRecording::Person& person) {
   return person.label.empty() ? std::to_string(person.id) : person.label;
 }
 
+/// What fits on a disc.
+std::string short_text_of(const GroundRecording::Person& person) {
+  constexpr std::size_t most = 3;
+  return person.label.empty() || person.label.size() > most ? std::to_string(person.id) : person.label;
+}
+
 /// What the overlay draws of one sample; nothing where it is out of the picture.
 std::optional<Track<2>> track_in_view(const GroundShow& show, std::size_t number, const ViewLog& log,
                                       const GroundRecording::Sample& sample) {
@@ -169,8 +175,8 @@ bool film_ground(const GroundShow& show, std::span<const double> times, const st
     marks.clear();
     for (const GroundRecording::Sample& sample : instant.at(frame)) {
       const auto person = static_cast<std::size_t>(sample.person);
-      marks.push_back({show.recording.people[person].id, text_of(show.recording.people[person]), show.colours[person], sample.place,
-                       sample.observed});
+      marks.push_back({show.recording.people[person].id, short_text_of(show.recording.people[person]), show.colours[person],
+                       sample.place, sample.observed});
     }
     const Timestamp now = timestamp_from_seconds(times[static_cast<std::size_t>(frame)]);
     movie.write(view.draw(now, marks), now);
