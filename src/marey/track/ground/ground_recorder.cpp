@@ -16,6 +16,8 @@ namespace {
 
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
 
+constexpr double restless = 1.6;  // who is out of sight may have done anything; a wrong guess costs a name
+
 std::int8_t rounded(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));
 }
@@ -120,8 +122,10 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   exchange_where_they_met(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
   std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_);
-  const std::vector<std::vector<int>> chains = chain(
-      tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = options.motion});
+  GroundMotion unseen = options.motion;
+  unseen.acceleration *= restless;
+  const std::vector<std::vector<int>> chains =
+      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen});
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
 }
 
