@@ -96,21 +96,39 @@ class Parser {
   Parser(const std::string& name, MotKind kind) : name_(name), kind_(kind) {}
 
   MotTable parse(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
     table_.boxes.reserve(lines);
     lines_.reserve(lines);
+    parse_lines(text);
+    finish();
+    return std::move(table_);
+  }
+
+  /// Some lines of the text, whole ones; the boxes of those before are gone then.
+  std::span<const LabelledBox> parse_piece(std::string_view text) {
+    table_.boxes.clear();
+    lines_.clear();
+    parse_lines(text);
+    return table_.boxes;
+  }
+
+  std::vector<std::string> warnings() const {
+    if (without_size_ == 0) return {};
+    return {
+        fmt::format("{}:{}: a box without width or height was left out ({} in all)", name_, first_without_size_, without_size_)};
+  }
+
+ private:
+  void parse_lines(std::string_view text) {
+    if (line_ == 0 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++line_;
       parse_line(text.substr(0, end));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
-    finish();
-    return std::move(table_);
   }
 
- private:
   void parse_line(std::string_view line) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     Fields fields(line);
@@ -153,10 +171,7 @@ class Parser {
     const auto by_frame = [](const LabelledBox& a, const LabelledBox& b) { return a.frame < b.frame; };
     if (!std::is_sorted(table_.boxes.begin(), table_.boxes.end(), by_frame)) sort_by_frame();
     if (kind_ != MotKind::detections) refuse_twins();
-    if (without_size_ > 0) {
-      table_.warnings.push_back(
-          fmt::format("{}:{}: a box without width or height was left out ({} in all)", name_, first_without_size_, without_size_));
-    }
+    table_.warnings = warnings();
   }
 
   /// Within a frame the order of the lines stays.
@@ -210,6 +225,56 @@ MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind)
 MotTable read_mot(const std::string& path, MotKind kind) {
   const std::string text = read_file(path);
   return parse_mot(text, path == "-" ? "standard input" : path, kind);
+}
+
+struct MotReader::State {
+  explicit State(const std::string& path) : name(path), file(std::fopen(path.c_str(), "rb")), parser(name, MotKind::detections) {
+    if (!file) throw_unreadable();
+  }
+
+  [[noreturn]] void throw_unreadable() const {
+    throw Error("{}: cannot be read ({})", name, std::generic_category().message(errno));
+  }
+
+  /// More of the file behind what is left of `text`; false at its end.
+  bool fill() {
+    const std::size_t filled = text.size();
+    text.resize(filled + kPiece);
+    const std::size_t read = std::fread(text.data() + filled, 1, kPiece, file.get());
+    if (std::ferror(file.get()) != 0) throw_unreadable();
+    text.resize(filled + read);
+    return read > 0;
+  }
+
+  static constexpr std::size_t kPiece = std::size_t{1} << 18;  // bytes
+  struct Close {
+    void operator()(std::FILE* open) const { std::fclose(open); }
+  };
+
+  std::string name;
+  std::unique_ptr<std::FILE, Close> file;
+  Parser parser;
+  std::string text;      // read and not yet parsed
+  std::size_t done = 0;  // of it
+};
+
+MotReader::MotReader(const std::string& path) : state_(std::make_unique<State>(path)) {}
+MotReader::~MotReader() = default;
+MotReader::MotReader(MotReader&&) noexcept = default;
+MotReader& MotReader::operator=(MotReader&&) noexcept = default;
+
+std::optional<std::span<const LabelledBox>> MotReader::next() {
+  State& state = *state_;
+  state.text.erase(0, std::exchange(state.done, 0));
+  const bool more = state.fill();
+  if (!more && state.text.empty()) return std::nullopt;
+  // The last line may go on in the next piece.
+  state.done = more ? state.text.rfind('\n') + 1 : state.text.size();
+  return state.parser.parse_piece(std::string_view(state.text).substr(0, state.done));
+}
+
+std::vector<std::string> MotReader::warnings() const {
+  return state_->parser.warnings();
 }
 
 void append_mot(std::string& text, const LabelledBox& row) {

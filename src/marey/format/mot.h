@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +32,26 @@ MotTable read_mot(const std::string& path, MotKind kind);
 
 /// The same of text already in memory; `name` stands for the path in messages.
 MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind);
+
+/// Detections a piece of the file at a time, so that memory does not grow with its length. Boxes come in the order of the lines.
+class MotReader {
+ public:
+  /// Throws Error where the file cannot be read.
+  explicit MotReader(const std::string& path);
+  ~MotReader();
+  MotReader(MotReader&&) noexcept;
+  MotReader& operator=(MotReader&&) noexcept;
+
+  /// The boxes of the next piece, none perhaps; nothing at the end. Valid until the next call. Throws Error as `read_mot`.
+  std::optional<std::span<const LabelledBox>> next();
+
+  /// What `read_mot` would have warned of, once all is read.
+  std::vector<std::string> warnings() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Adds the box's line to `text`: ten columns, the shortest digits that read back the same.
 void append_mot(std::string& text, const LabelledBox& box);

@@ -123,5 +123,54 @@ TEST(Mot, ReadsBackWhatItWrites) {
   EXPECT_EQ(read_mot(folder / "a.txt", MotKind::tracks).boxes, boxes);
 }
 
+std::vector<LabelledBox> read_piecewise(const std::string& path) {
+  std::vector<LabelledBox> boxes;
+  MotReader reader(path);
+  while (const auto piece = reader.next()) boxes.insert(boxes.end(), piece->begin(), piece->end());
+  return boxes;
+}
+
+TEST(Mot, PieceByPieceIsTheSameAsAtOnce) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> hundredths(1, 300'000);
+  std::string text = "\xEF\xBB\xBF";
+  for (int i = 0; i < 40'000; ++i) {
+    const auto place = [&] { return hundredths(random) / 100.0; };
+    append_mot(text, {i / 7, LabelledBox::nobody, {place(), place(), i % 1000 == 999 ? 0 : place(), place()}, 0.5});
+    if (i % 100 == 0) text += "\r\n";
+  }
+  text.pop_back();  // a last line need not end
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.txt", text);
+  ASSERT_GT(text.size(), 1'000'000U) << "several pieces";
+  const MotTable at_once = read_mot(folder / "a.txt", MotKind::detections);
+  EXPECT_EQ(read_piecewise(folder / "a.txt"), at_once.boxes);
+  MotReader reader(folder / "a.txt");
+  while (reader.next()) continue;
+  EXPECT_EQ(reader.warnings(), at_once.warnings);
+  EXPECT_EQ(at_once.warnings.size(), 1U);
+}
+
+TEST(Mot, PiecesNameTheLineThatIsWrong) {
+  const test::TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 20'000; ++i) append_mot(text, {i, LabelledBox::nobody, {1, 2, 3, 4}, 1});
+  test::write_file(folder / "a.txt", text + "20001,-1,5,6,7");
+  const auto message = [](const std::string& path) -> std::string {
+    try {
+      read_piecewise(path);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(message(folder / "a.txt").find("a.txt:20001: has 5 columns"), std::string::npos) << message(folder / "a.txt");
+  EXPECT_EQ(message("/no/such.txt"), "/no/such.txt: cannot be read (No such file or directory)");
+  test::write_file(folder / "empty.txt", "");
+  EXPECT_TRUE(read_piecewise(folder / "empty.txt").empty());
+}
+
 }  // namespace
 }  // namespace marey

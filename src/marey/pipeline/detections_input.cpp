@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -17,10 +21,6 @@ constexpr double kUsualRate = 25;
 /// The share of detections, by rank, that is too weak to begin a track (TrackerOptions::confident).
 constexpr double kWeakShare = 0.25;
 constexpr double kConfident = 0.5;
-
-bool is_probability(const std::vector<LabelledBox>& boxes) {
-  return std::all_of(boxes.begin(), boxes.end(), [](const LabelledBox& box) { return box.score >= 0 && box.score <= 1; });
-}
 
 /// Replaces scores of an unknown scale by their rank, bent so that kWeakShare of them stay below kConfident.
 void rank_scores(std::vector<LabelledBox>& boxes) {
@@ -64,51 +64,127 @@ class EmptyFrames final : public Source {
 
 constexpr double kPlaceNoise = 0.05;  // of a detector's boxes, in their heights
 
+/// Boxes by frame, one at a time: from memory, or from a file as they are wanted.
+class BoxFeed {
+ public:
+  explicit BoxFeed(std::vector<LabelledBox> boxes) : own_(std::move(boxes)), piece_(own_) {}
+  explicit BoxFeed(MotReader reader) : reader_(std::move(reader)) {}
+  BoxFeed(BoxFeed&& other) noexcept = default;
+  BoxFeed& operator=(BoxFeed&& other) noexcept = default;
+
+  /// The next box; none at the end.
+  const LabelledBox* front() {
+    while (piece_.empty()) {
+      const auto next = reader_ ? reader_->next() : std::nullopt;
+      if (!next) return nullptr;
+      piece_ = *next;
+    }
+    return &piece_.front();
+  }
+
+  /// After `front`.
+  void pop() { piece_ = piece_.subspan(1); }
+
+ private:
+  std::vector<LabelledBox> own_;
+  std::optional<MotReader> reader_;
+  std::span<const LabelledBox> piece_;  // what is left of it
+};
+
 class KnownDetections final : public Detector {
  public:
-  explicit KnownDetections(std::vector<LabelledBox> boxes) : boxes_(std::move(boxes)) {}
+  explicit KnownDetections(BoxFeed boxes) : boxes_(std::move(boxes)) {}
 
   Detections detect(const Frame& frame, std::span<const Expected> /*expected*/) override {
     Detections result;
-    for (; at_ < boxes_.size() && boxes_[at_].frame <= frame.index; ++at_) {
-      const LabelledBox& seen = boxes_[at_];
-      if (seen.frame < frame.index) continue;  // of a frame that nobody asked for
-      Detection detection;
-      detection.centre = seen.box.centre();
-      detection.covariance = std::pow(kPlaceNoise * seen.box.height, 2) * Matrix<2>::Identity();
-      detection.area = seen.box.area();
-      detection.box = seen.box;
-      detection.score = seen.score;
-      result.detections.push_back(detection);
+    for (const LabelledBox* seen = boxes_.front(); seen != nullptr && seen->frame <= frame.index; seen = boxes_.front()) {
+      if (seen->frame == frame.index) result.detections.push_back(detection_of(*seen));  // else nobody asked for that frame
+      boxes_.pop();
     }
     return result;
   }
 
  private:
-  std::vector<LabelledBox> boxes_;  // by frame
-  std::size_t at_ = 0;
+  static Detection detection_of(const LabelledBox& seen) {
+    Detection detection;
+    detection.centre = seen.box.centre();
+    detection.covariance = std::pow(kPlaceNoise * seen.box.height, 2) * Matrix<2>::Identity();
+    detection.area = seen.box.area();
+    detection.box = seen.box;
+    detection.score = seen.score;
+    return detection;
+  }
+
+  BoxFeed boxes_;
 };
+
+/// What has to be known of all detections before the first is looked at.
+struct Survey {
+  std::int64_t frames = 0;  ///< up to the last box's; 0 without any
+  bool in_order = true;
+  bool probabilities = true;  ///< scores are within 0 and 1
+  bool confident = false;     ///< one reaches kConfident
+  std::vector<std::string> warnings;
+
+  void add(const LabelledBox& box) {
+    in_order &= box.frame + 1 >= frames;
+    frames = std::max<std::int64_t>(frames, box.frame + 1);
+    probabilities &= box.score >= 0 && box.score <= 1;
+    confident |= box.score >= kConfident;
+  }
+};
+
+Survey survey(const std::string& path) {
+  Survey found;
+  MotReader reader(path);
+  while (const auto piece = reader.next()) {
+    for (const LabelledBox& box : *piece) found.add(box);
+  }
+  found.warnings = reader.warnings();
+  return found;
+}
+
+Survey survey(const MotTable& table) {
+  Survey found;
+  for (const LabelledBox& box : table.boxes) found.add(box);
+  found.warnings = table.warnings;
+  return found;
+}
+
+/// Whether it can be read twice.
+bool is_plain_file(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
 
 }  // namespace
 
 DetectionsInput open_detections(const std::string& path, std::optional<double> rate_hz) {
-  MotTable table = read_mot(path, MotKind::detections);
-  if (table.boxes.empty()) throw Error("{}: holds no detections; lines are frame,-1,left,top,width,height,score", path);
+  MotTable table;
+  Survey known;
+  const bool twice = is_plain_file(path);
+  if (twice) known = survey(path);
+  const bool piecewise = twice && known.in_order && known.probabilities && known.confident;
+  if (!piecewise) {
+    table = read_mot(path, MotKind::detections);
+    known = survey(table);
+  }
+  if (known.frames == 0) throw Error("{}: holds no detections; lines are frame,-1,left,top,width,height,score", path);
   if (!rate_hz) {
-    table.warnings.push_back(fmt::format(
+    known.warnings.push_back(fmt::format(
         "{}: detections do not tell their rate: {} frames a second were assumed; say otherwise with --rate", path, kUsualRate));
   }
-  if (!is_probability(table.boxes)) {
+  if (!known.probabilities) {
     rank_scores(table.boxes);
-    table.warnings.push_back(fmt::format("{}: scores are not within 0 and 1; they were ranked instead", path));
-  } else if (std::none_of(table.boxes.begin(), table.boxes.end(), [](const LabelledBox& box) { return box.score >= kConfident; })) {
+    known.warnings.push_back(fmt::format("{}: scores are not within 0 and 1; they were ranked instead", path));
+  } else if (!known.confident) {
     rank_scores(table.boxes);
-    table.warnings.push_back(
+    known.warnings.push_back(
         fmt::format("{}: no score reaches {}, from which a track begins; they were ranked instead", path, kConfident));
   }
-  const std::int64_t count = std::int64_t{table.boxes.back().frame} + 1;
-  return {std::make_unique<EmptyFrames>(path, rate_hz.value_or(kUsualRate), count, std::move(table.warnings)),
-          std::make_unique<KnownDetections>(std::move(table.boxes))};
+  auto frames = std::make_unique<EmptyFrames>(path, rate_hz.value_or(kUsualRate), known.frames, std::move(known.warnings));
+  BoxFeed feed = piecewise ? BoxFeed(MotReader(path)) : BoxFeed(std::move(table.boxes));
+  return {std::move(frames), std::make_unique<KnownDetections>(std::move(feed))};
 }
 
 }  // namespace marey

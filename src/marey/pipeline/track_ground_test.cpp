@@ -128,14 +128,14 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   const test::TemporaryFolder folder;
   std::string left, right;
   for (int frame = 0; frame < 200; ++frame) {
-    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 56 nobody looks
-    left += box_at(frame, x, 30, 0), right += box_at(frame, x, 30, 55);
+    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 52 nobody looks
+    left += box_at(frame, x, 30, 0), right += box_at(frame, x, 30, 51);
     left += box_at(frame, 10, 50, 0);  // so that the first camera lasts
   }
   test::write_file(folder / "left.txt", left);
   test::write_file(folder / "right.txt", right);
   Rig rig;
-  rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 55, folder / "right.txt")};
+  rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 51, folder / "right.txt")};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.people, 2);
   const GroundRecording found = read_ground(folder / "out.csv");
