@@ -11,7 +11,8 @@
 namespace marey {
 namespace {
 
-constexpr double kLogged_s = 60;
+constexpr double kLogged_s = 20;
+constexpr double kWrongBy_s = 5;  // how wrong an offset that somebody gave is likely to be
 
 bool looks_at_ground(const RigCamera& camera) {
   return (!camera.source.empty() || !camera.detections.empty()) && (camera.camera_from_world || camera.ground_from_image);
@@ -177,7 +178,11 @@ std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLo
     paths.push_back(log.paths(c));
     assumed.push_back(rig.cameras[c].offset_s.value_or(0));
   }
-  const auto found = find_ground_offsets(paths, assumed);
+  if (assumed.empty()) return {};
+  GroundOffsetOptions near;
+  const auto [least, most] = std::minmax_element(assumed.begin(), assumed.end());
+  near.most_offset_s = kWrongBy_s + (*most - *least);
+  const auto found = find_ground_offsets(paths, assumed, near);
   std::vector<std::string> warnings;
   for (std::size_t c = 1; c < found.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];

@@ -18,7 +18,7 @@
 namespace marey {
 
 /// Who was seen where by each camera, kept apart by camera: what offsets are found from. 56 bytes a person, camera and frame, of
-/// the first minute only.
+/// the first twenty seconds only.
 class GroundPathLog {
  public:
   /// `offsets`: of each camera, s, that its looks' times were moved by.
@@ -67,7 +67,8 @@ RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOff
 /// Writes them into the rig where it says none; cameras for which none was found stay without.
 void enter_offsets(Rig& rig, const RigOffsets& offsets);
 
-/// A sentence for each camera whose given offset the people it saw contradict.
+/// A sentence for each camera whose given offset the people it saw contradict, where it is wrong by a few seconds at most: to look
+/// farther would take longer than to follow everybody.
 std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLog& log);
 
 }  // namespace marey
