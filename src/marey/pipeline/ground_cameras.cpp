@@ -260,6 +260,12 @@ std::optional<Box> GroundCameras::box_at(std::size_t number, const Vector<2>& gr
   return lanes_[number]->box_at(views_[number], ground);
 }
 
+void GroundCameras::close() {
+  for (const auto& lane : lanes_) {
+    if (lane->eyes.people == nullptr) lane->eyes.detector.reset();
+  }
+}
+
 GroundCameras::Counts GroundCameras::counts(std::size_t number) const {
   const Lane& lane = *lanes_[number];
   Counts counts = lane.counts;

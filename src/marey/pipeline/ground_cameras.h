@@ -51,6 +51,9 @@ class GroundCameras {
   /// The box of a person at `ground` (m, world) in the picture of camera `number`, px; nothing where that is not known.
   std::optional<Box> box_at(std::size_t number, const Vector<2>& ground) const;
 
+  /// Lets go of detections that were kept in memory: nothing is looked at any more.
+  void close();
+
   struct Counts {
     std::int64_t frames = 0;      ///< looked at
     std::int64_t missed = 0;      ///< instants without a frame

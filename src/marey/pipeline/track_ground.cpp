@@ -70,6 +70,7 @@ class Run {
   GroundSummary operator()() {
     const auto begin = std::chrono::steady_clock::now();
     follow();
+    cameras_.close();
     summary_.tracking_s = since(begin);
     if (!options_.live) {
       const auto between = std::chrono::steady_clock::now();
