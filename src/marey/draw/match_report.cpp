@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -38,7 +39,8 @@ class Page {
     for (const MatchReport::Table& table : report_.tables) write_table(table);
     add("<h2>Where everybody went</h2>");
     open_pitch();
-    for (const MatchReport::Person& person : report_.people) draw_ways(person, 0.25);
+    const double opacity = opacity_of(report_.people, 0.25);
+    for (const MatchReport::Person& person : report_.people) draw_ways(person, 0.25, opacity);
     close_pitch();
     add("<h2>One by one</h2>");
     for (const MatchReport::Person& person : report_.people) write_person(person);
@@ -99,11 +101,29 @@ class Page {
     return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
   }
 
-  void draw_ways(const MatchReport::Person& person, double width) {
+  static std::size_t step_of(std::size_t points) {
+    return static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(points) / kLongestWay)));
+  }
+
+  /// Ways that cover the pitch many times over are drawn fainter, so that one still sees where they lie closest.
+  double opacity_of(std::span<const MatchReport::Person> people, double width) const {
+    double length = 0;
+    for (const MatchReport::Person& person : people) {
+      for (const auto& way : person.ways) {
+        const std::size_t step = step_of(way.size());
+        for (std::size_t i = step; i < way.size(); i += step) length += (way[i] - way[i - step]).norm();
+      }
+    }
+    const double covered = length * width / (report_.pitch.length * report_.pitch.width);
+    return 0.8 / (1 + 8 * covered);
+  }
+
+  void draw_ways(const MatchReport::Person& person, double width, double opacity) {
     for (const auto& way : person.ways) {
-      const auto step = static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(way.size()) / kLongestWay)));
+      const std::size_t step = step_of(way.size());
       fmt::format_to(std::back_inserter(text_),
-                     R"(<polyline fill="none" stroke="{}" stroke-width="{}" stroke-opacity="0.8" points=")", colour(person), width);
+                     R"(<polyline fill="none" stroke="{}" stroke-width="{}" stroke-opacity="{:.3f}" points=")", colour(person),
+                     width, opacity);
       for (std::size_t i = 0; i < way.size(); i += step)
         fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", way[i].x(), way[i].y());
       text_ += "\"/>\n";
@@ -140,7 +160,7 @@ class Page {
     }
     add(R"(<text x="{}" y="{}">m/s over {:.0f} s</text>)", left, height - 1, end - begin);
     for (const auto& way : person.speeds) {
-      const auto step = static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(way.size()) / kLongestWay)));
+      const std::size_t step = step_of(way.size());
       fmt::format_to(std::back_inserter(text_), R"(<polyline fill="none" stroke="{}" stroke-width="0.4" points=")", colour(person));
       for (std::size_t i = 0; i < way.size(); i += step)
         fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(way[i].first), y(way[i].second));
@@ -153,7 +173,7 @@ class Page {
     add("<details><summary>{} {}</summary><div class=\"two\"><div>", escaped(person.name), escaped(person.team));
     open_pitch();
     draw_heat(person);
-    draw_ways(person, 0.3);
+    draw_ways(person, 0.3, opacity_of({&person, 1}, 0.3));
     close_pitch();
     add("</div><div>");
     draw_speeds(person);
