@@ -1,5 +1,6 @@
 #include "track_ground.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "marey/core/error.h"
@@ -34,6 +35,14 @@ GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
   return output;
 }
 
+/// Hypotheses cost little beside decoding and looking at pictures; boxes come too fast for them, and live nobody waits for a
+/// decision.
+GroundAssociation usual_association(const Rig& rig, bool live) {
+  const bool pictures =
+      std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
+  return pictures && !live ? GroundAssociation::mht : GroundAssociation::gnn;
+}
+
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
 TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people, const Rig& rig) {
   TrackGroundOptions options;
@@ -42,7 +51,8 @@ TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& f
   if (!flags.teams.empty()) options.teams.names = parse_teams(flags.teams);
   options.live = command.live;
   if (!command.filter.empty()) options.tracker.filter = scaled(filter_named(command.filter), kBodyMetres / kBodyHeight);
-  if (!flags.associate.empty()) options.tracker.associate = ground_association_named(flags.associate);
+  options.tracker.associate =
+      flags.associate.empty() ? usual_association(rig, command.live) : ground_association_named(flags.associate);
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
   if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? PitchSize{} : parse_pitch_size(flags.size);
   if (flags.margin && !options.pitch)
@@ -74,7 +84,10 @@ void add_ground_options(CLI::App& command, GroundFlags& flags) {
       ->check(known([](const std::string& text) { parse_teams(text); }))
       ->needs(ground)
       ->group(group);
-  command.add_option("--associate", flags.associate, "how what is seen finds whom it is of: gnn, jpda or mht (default: gnn)")
+  command
+      .add_option("--associate", flags.associate,
+                  "how what is seen finds whom it is of: gnn, jpda or mht (default: mht with pictures; gnn with detections alone, "
+                  "or --live)")
       ->check(known([](const std::string& text) { ground_association_named(text); }))
       ->needs(ground)
       ->group(group);
