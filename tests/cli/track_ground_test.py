@@ -140,6 +140,19 @@ class TrackGround(unittest.TestCase):
         self.assertIn('"cam1"', said)
         self.assertIn("empty.txt", said)
 
+    def test_detections_that_break_off(self):
+        whole = (self.made / "boxes" / "cam2.txt").read_bytes()
+        middle = whole.index(b"\n", len(whole) // 2)
+        (self.folder / "cut.txt").write_bytes(whole[: middle + 5])
+        said = self.refused(self.made / "boxes" / "rig.toml", "cam2=cut.txt", "--ground", "-o", "match.csv")
+        self.assertIn("cut.txt:", said)
+
+    def test_what_cannot_be_asked_for(self):
+        rig = self.made / "boxes" / "rig.toml"
+        said = self.refused(rig, "--ground", "--format", "mot", "--camera", "nobody", "-o", "boxes.txt")
+        self.assertIn("cam1, cam2", said)
+        self.assertIn("pictures", self.refused(rig, "--ground", "--overlay", "films", "-o", "match.csv"))
+
     def test_uncalibrated_cameras(self):
         (self.folder / "rig.toml").write_text(
             f'[[camera]]\nname = "cam1"\nsource = "{self.made / "films" / "cam1.mp4"}"\n')

@@ -64,7 +64,11 @@ class Run {
         shows_(!output.boxes_of.empty() || !output.overlays.empty() || !output.pitch_view.empty()) {
     recording_.cameras = names_of(rig);
     if (options.live && output.boxes_of.empty()) file_.emplace(output.tracks, recording_.cameras);
-    if (!output.overlays.empty()) fs::create_directories(output.overlays);
+    if (output.overlays.empty()) return;
+    const auto has_pictures = [](const RigCamera& camera) { return !camera.source.empty(); };
+    if (std::none_of(rig.cameras.begin(), rig.cameras.end(), has_pictures))
+      throw Error("{}: no camera has pictures to draw into; ask for a pitch view instead", output.overlays);
+    fs::create_directories(output.overlays);
   }
 
   GroundSummary operator()() {
