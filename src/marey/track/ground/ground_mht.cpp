@@ -49,7 +49,7 @@ class GroundMht final : public GroundTracker {
       : rules_(options, filter, static_cast<int>(views.size())),
         sight_(std::move(views)),
         hypotheses_({options.hypotheses, limits.leaves, -std::log(limits.ratio)}),
-        fold_(limits.fold) {}
+        limits_(limits) {}
 
   std::span<const Track<2>> step(Timestamp now, std::span<const GroundLook> looks) override {
     check_time(now, now_);
@@ -130,7 +130,7 @@ class GroundMht final : public GroundTracker {
       }
     }
     std::swap(leaves_, next_);
-    if (fold_) hypotheses_.fold([this](int a, int b) { return alike(leaves_[a], leaves_[b]); });
+    if (limits_.fold) hypotheses_.fold([this](int a, int b) { return alike(leaves_[a], leaves_[b]); });
   }
 
   /// How many people appear per m² from one instant to the next.
@@ -149,6 +149,7 @@ class GroundMht final : public GroundTracker {
   /// is believed of it. Where there are boxes, these tell who is hidden (ground_sight.h).
   void find_shared(std::span<const Observation<2>> seen) {
     seen_.assign(seen.begin(), seen.end());
+    if (!limits_.doubt) return;
     known_.clear();
     for (const int leaf : hypotheses_.best()) {
       const GroundTarget<F>& target = leaves_[leaf].target;
@@ -316,7 +317,7 @@ class GroundMht final : public GroundTracker {
   GroundDuplicates duplicates_;
   GroundHypotheses hypotheses_;
   GroundHistory history_;
-  bool fold_;
+  GroundMhtLimits limits_;
   std::optional<Timestamp> now_;
   double dt_ = 0;
   std::vector<Leaf<F>> leaves_, next_;

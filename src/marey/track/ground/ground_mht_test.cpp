@@ -138,7 +138,8 @@ TEST(GroundMht, WithoutPruningTheBestIsThatOfAllHypotheses) {
     // Few people near each other, and much clutter, so that there is something to choose.
     GroundTrackerOptions options{
         .associate = GroundAssociation::mht, .clutter = 0.01, .births = 0.05, .hypotheses = 1'000'000, .window = 100};
-    const auto tracker = make_ground_mht(options, {whole}, {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false});
+    const auto tracker =
+        make_ground_mht(options, {whole}, {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .doubt = false});
     Enumeration twin(options);
     for (int frame = 0; frame < 4; ++frame) {
       Seen seen;
