@@ -21,7 +21,7 @@
 namespace {
 
 constexpr int kRounds = 3;
-constexpr double kSeconds = 8;  // of film
+constexpr double kSeconds = 4;  // of film
 
 template <typename Work>
 double seconds_of(Work work) {
@@ -63,6 +63,7 @@ void compare(const std::string& folder, cv::Size size) {
   print("marey track --ground, to written places", whole);
   print("cv::VideoCapture and MOG2 alone", mog2);
   print("cv::VideoCapture alone", decode);
+  std::fflush(stdout);
 }
 
 }  // namespace
