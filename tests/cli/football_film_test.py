@@ -1,0 +1,81 @@
+"""docs/football.md on the real match that it tells of, each command run as it is written there. Skipped where the match is not here.
+
+Usage: football_film_test.py MAREY ROOT [unittest options]; the match is looked for in $MAREY_DATA/football, else beside the checkout.
+"""
+
+import collections
+import csv
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+SKIPPED = 77
+MAREY = ""
+ROOT = pathlib.Path()
+MATCH = pathlib.Path()
+
+
+def blocks(page):
+    return re.findall(r"^```\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+class FootballFilm(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_match_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for file in MATCH.iterdir():
+            (self.folder / file.name).symlink_to(file)
+
+    def marey(self, line):
+        done = subprocess.run([MAREY, *shlex.split(line)[1:]], capture_output=True, text=True, cwd=self.folder, timeout=900)
+        self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}\n{done.stderr}")
+
+    def test_the_page_as_it_is_written(self):
+        pages = blocks(ROOT / "docs" / "football.md")
+        rig = next(block for block in pages if block.startswith("[[camera]]"))
+        (self.folder / "rig.toml").write_text(rig)
+        lines = [line for block in pages for line in block.splitlines() if line.startswith("marey ")]
+        self.assertEqual([line.split()[1] for line in lines], ["calibrate", "track", "measure"])
+        for line in lines:
+            self.marey(line)
+        self.the_cameras_are_out_of_step()
+        self.everybody_is_followed()
+        for name in ("overlays/left.mp4", "overlays/right.mp4", "above.mp4", "pictures/left.jpg", "report/report.html"):
+            self.assertGreater((self.folder / name).stat().st_size, 10_000, name)
+        self.marey("marey convert match.csv match.dat --rig pitch.toml")
+
+    def the_cameras_are_out_of_step(self):
+        """By the steps of a runner the right camera was started four frames after the left one."""
+        with open(self.folder / "pitch.toml", "rb") as file:
+            cameras = {camera["name"]: camera for camera in tomllib.load(file)["camera"]}
+        self.assertAlmostEqual(cameras["right"]["offset_s"] - cameras["left"]["offset_s"], 0.16, delta=0.06)
+
+    def everybody_is_followed(self):
+        """22 players, a referee, and his two assistants, who stand at the touchlines and are hard to see."""
+        with open(self.folder / "match.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        lasting = collections.Counter(row["id"] for row in rows)
+        stayed = {person for person, count in lasting.items() if count > 225}
+        self.assertGreaterEqual(len(stayed), 23)
+        self.assertLessEqual(len(lasting), 28)
+        teams = collections.Counter({row["id"]: row["team"] for row in rows}.values())
+        self.assertGreaterEqual(min(teams["white"], teams["blue"]), 9)
+        both = {row["id"] for row in rows if len(row["cameras"].split()) == 2}
+        self.assertGreaterEqual(len(both), 8)
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    ROOT = pathlib.Path(sys.argv.pop(1))
+    MATCH = pathlib.Path(os.environ.get("MAREY_DATA", ROOT.parent / "shared" / "data")) / "football"
+    if not MATCH.is_dir():
+        print(f"{MATCH} is not here (CONTRIBUTING.md tells where it comes from)")
+        sys.exit(SKIPPED)
+    unittest.main()
