@@ -35,6 +35,7 @@ class Page {
     add("<!doctype html>\n<html lang=\"en\"><head><meta "
         "charset=\"utf-8\"><title>{0}</title><style>{1}</style></head><body><h1>{0}</h1>",
         escaped(report_.title), kStyle);
+    define_lines();
     write_people();
     for (const MatchReport::Table& table : report_.tables) write_table(table);
     add("<h2>Where everybody went</h2>");
@@ -81,23 +82,28 @@ class Page {
     const Vector<2>& c = report_.corner;
     add(R"(<svg viewBox="{:.2f} {:.2f} {:.2f} {:.2f}">)", c.x() - kMargin, c.y() - kMargin, report_.pitch.length + 2 * kMargin,
         report_.pitch.width + 2 * kMargin);
-    add(R"(<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#e8f3e8"/>)", c.x() - kMargin, c.y() - kMargin);
+    add(R"(<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#5f9469"/>)", c.x() - kMargin, c.y() - kMargin);
   }
 
-  void close_pitch() {
-    for (const PitchLine& line : pitch_lines(report_.pitch, 1)) {
-      text_ += R"(<polyline fill="none" stroke="#777" stroke-width="0.2" points=")";
+  void close_pitch() { add(R"(<use href="#lines"/></svg>)"); }
+
+  /// The pitch's lines, once for all its pictures.
+  void define_lines() {
+    constexpr double step = 0.1;  // m
+    add(R"(<svg style="position: absolute; width: 0; height: 0"><defs><g id="lines">)");
+    for (const PitchLine& line : pitch_lines(report_.pitch, step)) {
+      text_ += R"(<polyline fill="none" stroke="#d8e6da" stroke-width="0.15" points=")";
       for (const Vector<2>& point : line.points) {
         const Vector<2> place = point + report_.corner;
         fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", place.x(), place.y());
       }
       text_ += "\"/>\n";
     }
-    add("</svg>");
+    add("</g></defs></svg>");
   }
 
   std::string colour(const MatchReport::Person& person) const {
-    const Colour c = colour_of(teams_.at(person.team));
+    const Colour c = person.wears ? colour_of(*person.wears) : colour_of(teams_.at(person.team));
     return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
   }
 
@@ -136,7 +142,7 @@ class Page {
       for (int column = 0; column < person.heat_columns; ++column) {
         const double seconds = person.heat[static_cast<std::size_t>(row * person.heat_columns + column)];
         if (seconds <= 0) continue;
-        add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="#d62728" fill-opacity="{3:.2f}"/>)",
+        add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="#ffd54a" fill-opacity="{3:.2f}"/>)",
             report_.corner.x() + column * person.heat_cell_m, report_.corner.y() + row * person.heat_cell_m, person.heat_cell_m,
             std::sqrt(seconds / most) * 0.85);
       }
@@ -161,7 +167,7 @@ class Page {
     add(R"(<text x="{}" y="{}">m/s over {:.0f} s</text>)", left, height - 1, end - begin);
     for (const auto& way : person.speeds) {
       const std::size_t step = step_of(way.size());
-      fmt::format_to(std::back_inserter(text_), R"(<polyline fill="none" stroke="{}" stroke-width="0.4" points=")", colour(person));
+      fmt::format_to(std::back_inserter(text_), R"(<polyline fill="none" stroke="#222" stroke-width="0.4" points=")");
       for (std::size_t i = 0; i < way.size(); i += step)
         fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(way[i].first), y(way[i].second));
       text_ += "\"/>\n";

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "marey/core/appearance.h"
 #include "marey/geometry/pitch.h"
 #include "marey/geometry/vector.h"
 
@@ -14,6 +16,7 @@ namespace marey {
 struct MatchReport {
   struct Person {
     std::string name, team;
+    std::optional<Appearance> wears = {};                        ///< what the team is drawn in; else it is given a colour
     std::vector<std::string> cells;                              ///< of its row, after name and team
     std::vector<std::vector<Vector<2>>> ways;                    ///< m on the pitch
     std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a way

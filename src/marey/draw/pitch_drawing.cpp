@@ -83,7 +83,7 @@ std::string pitch_map_svg(const std::string& title, const PitchSize& size,
           worth ? shade_of(*worth) : "#dddddd");
     }
   }
-  for (const PitchLine& line : pitch_lines(size, 0.5)) {
+  for (const PitchLine& line : pitch_lines(size, 0.1)) {
     text += R"(<polyline fill="none" stroke="black" stroke-width="0.15" points=")";
     for (const Vector<2>& place : line.points) fmt::format_to(std::back_inserter(text), "{:.2f},{:.2f} ", place.x(), place.y());
     text += "\"/>\n";

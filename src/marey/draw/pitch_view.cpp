@@ -46,7 +46,7 @@ void PitchView::draw_ground() {
     const PitchSize& pitch = *options_.pitch;
     for (double x = 0; x + kStripeWidth <= pitch.length + 1e-9; x += 2 * kStripeWidth)
       canvas.fill({pixel({x, 0}), pixel({x + kStripeWidth, pitch.width})}, kStripe);
-    for (const PitchLine& line : pitch_lines(pitch, 0.5)) {
+    for (const PitchLine& line : pitch_lines(pitch, 0.1)) {
       for (std::size_t i = 1; i < line.points.size(); ++i) strokes.push_back({pixel(line.points[i - 1]), pixel(line.points[i])});
     }
     canvas.strokes(strokes, kPaint, 1.5 * unit);

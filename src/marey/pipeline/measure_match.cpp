@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
 #include "marey/draw/match_report.h"
 #include "marey/format/text_rows.h"
@@ -23,10 +24,20 @@ std::string name_of(const PersonMeasure& person) {
   return person.label.empty() ? std::to_string(person.id) : person.label;
 }
 
+/// Teams that are called by the colour of their shirts are drawn in it.
+std::optional<Appearance> shirt_of(const std::string& team) {
+  try {
+    return colour_named(team);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 MatchReport::Person page_of(const PersonMeasure& person) {
   MatchReport::Person page;
   page.name = name_of(person);
   page.team = person.team;
+  page.wears = shirt_of(person.team);
   page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
                 fmt::format("{:.1f}", person.top_mps),    std::to_string(person.sprints),
                 std::to_string(person.accelerations),     std::to_string(person.decelerations)};
