@@ -22,6 +22,7 @@ constexpr double kHalf = 0.505;    // of a frame
 constexpr double kUsualRate = 25;  // Hz
 constexpr double kSmallest = 12;   // px; a smaller body has no shape
 constexpr double kBeyondArea = 5;  // m; who stands so far outside is followed until it is plain whether they come in
+constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of the foot, others' boxes where they like
 constexpr std::size_t kMostCameras = 64;
 
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
@@ -124,7 +125,9 @@ struct GroundCameras::Lane {
       wears.push_back(upper_body(taken->picture, found.foreground, found.detections, i));
     }
     for (Detection& detection : found.detections) detection.box = moved(detection.box, corner);
-    const PlacedPeople placed = place_people(found.detections, view, id);
+    PlacePeopleOptions placing;
+    if (eyes.people != nullptr) placing.toe = kToe;
+    const PlacedPeople placed = place_people(found.detections, view, id, placing);
     seen.clear();
     for (std::size_t i = 0; i < placed.seen.size(); ++i) {
       if (!area.holds(placed.seen[i].value, kBeyondArea)) continue;

@@ -68,7 +68,8 @@ class Placer {
     double along = edge_variance(one.box);
     if (one.group) along += std::pow(group_along * one.box.height, 2);
     if (cut.bottom) along += std::pow(one.box.height / 2, 2);
-    return Placement{place->ground, on_ground(place->by_pixel, across_variance(one, cut), along)};
+    const Vector<2> away = -place->by_pixel.col(1).normalized();
+    return Placement{place->ground + options_.toe * away, on_ground(place->by_pixel, across_variance(one, cut), along)};
   }
 
   Matrix<2> on_ground(const Matrix<2>& by_pixel, double across, double along) const {

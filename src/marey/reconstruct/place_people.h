@@ -23,6 +23,7 @@ struct PlacePeopleOptions {
   double pixel_noise = 0.5;    ///< px, of each edge of a box,
   double edge_noise = 0.04;    ///< and so much of the box's height more
   double stride = 0.12;        ///< m; feet are in a stride before or behind where the body is
+  double toe = 0;              ///< m; a box ends at the foot's nearest point, so far before the body's middle, seen along the view
   double height = 1.75;        ///< m, of a person from the ground to the crown
   double height_spread = 0.1;  ///< m, over people
 };

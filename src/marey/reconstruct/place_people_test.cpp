@@ -65,6 +65,23 @@ TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
   }
 }
 
+TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
+  const Camera camera(BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, beside_the_pitch().camera_from_world(), {1920, 1080});
+  for (double y = 6; y <= 70; y += 8) {
+    const Vector<2> from_camera = Vector<2>(y / 4, y) - Vector<2>(0, -14);
+    const Vector<2> place(y / 4, y), tip = place - 0.1 * from_camera.normalized();
+    Box box = box_of(camera, place);
+    box.height += camera.project({tip.x(), tip.y(), 0})->y() - camera.project({place.x(), place.y(), 0})->y();
+    Detection one;
+    one.box = box;
+    for (const GroundView& view : {GroundView(camera), homography_of(camera)}) {
+      const auto people = place_people({&one, 1}, view, CameraId{0}, {.toe = 0.1});
+      ASSERT_EQ(people.seen.size(), 1U);
+      EXPECT_LT((people.seen.front().value - place).norm(), 0.03) << y;
+    }
+  }
+}
+
 TEST(PlacePeople, SaysHowFarItMayBeWrong) {
   const PlacePeopleOptions options;
   const Camera bent = beside_the_pitch();

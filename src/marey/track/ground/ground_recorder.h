@@ -20,7 +20,7 @@ struct GroundJoinOptions {
   double longest_gap = 20;    ///< who reappears later is somebody new
   double longest_filled = 5;  ///< a longer gap is joined, but nothing is said of where the person was meanwhile
   double shortest = 0.5;      ///< who is seen for less is taken for a false alarm
-  double rarest = 0.2;        ///< who is seen in a smaller share of the instants between first and last likewise
+  double rarest = 0.4;        ///< who is seen in a smaller share of the instants between first and last likewise
   double max_speed = 12;      ///< m/s; nobody runs faster
   GroundMotion motion;        ///< how people move
 };
