@@ -29,7 +29,7 @@ constexpr BodyPart kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
 constexpr double kArmsWorth = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
 constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
-constexpr double kReachAcross = 0.7;   // of the width: how far from there it is looked for
+constexpr double kReachAcross = 0.7;    // of the width: how far from there it is looked for
 constexpr double kReachUp = 0.25;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
 constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something

@@ -128,7 +128,8 @@ bool has_velocities(const GroundRecording& recording) {
 int whole_rate(double rate_hz, std::string_view format) {
   const double whole = std::round(rate_hz);
   if (!(whole >= 1) || std::abs(rate_hz - whole) > 0.005 * whole)
-    throw Error("{} holds whole numbers of frames a second only, and the recording has {:.3f}; write ground or mot", format, rate_hz);
+    throw Error("{} holds whole numbers of frames a second only, and the recording has {:.3f}; write ground or mot", format,
+                rate_hz);
   return static_cast<int>(whole);
 }
 
