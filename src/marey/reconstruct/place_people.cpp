@@ -33,7 +33,7 @@ class Placer {
     const Detection& one = detections_[index];
     if (one.box.empty()) return std::nullopt;
     const Cut cut = cut_of(one.box);
-    const auto foot = by_foot(one, cut);
+    auto foot = by_foot(one, cut);
     const Camera* camera = view_.camera();
     if (camera == nullptr || cut.top || one.group) return foot;
     if (cut.bottom) {
