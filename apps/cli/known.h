@@ -10,7 +10,7 @@ namespace marey::cli {
 
 /// A value that `parse` must take, or the command line is wrong: its message, which lists what is valid, is shown.
 template <typename Parse>
-CLI::Validator known(Parse parse) {
+CLI::Validator known(const Parse& parse) {
   return CLI::Validator(
       [parse](std::string& text) -> std::string {
         try {

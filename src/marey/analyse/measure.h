@@ -27,7 +27,7 @@ struct HeatMap {
   double cell_m = 2;
   std::vector<double> seconds;
 
-  double& at(int column, int row) { return seconds[static_cast<std::size_t>(row * columns + column)]; }
+  double& at(int column, int row) { return seconds[static_cast<std::size_t>(row) * columns + column]; }
 };
 
 struct PersonMeasure {

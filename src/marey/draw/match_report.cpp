@@ -140,7 +140,7 @@ class Page {
     const double most = person.heat.empty() ? 0 : *std::max_element(person.heat.begin(), person.heat.end());
     for (int row = 0; row < person.heat_rows; ++row) {
       for (int column = 0; column < person.heat_columns; ++column) {
-        const double seconds = person.heat[static_cast<std::size_t>(row * person.heat_columns + column)];
+        const double seconds = person.heat[static_cast<std::size_t>(row) * person.heat_columns + column];
         if (seconds <= 0) continue;
         add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="#ffd54a" fill-opacity="{3:.2f}"/>)",
             report_.corner.x() + column * person.heat_cell_m, report_.corner.y() + row * person.heat_cell_m, person.heat_cell_m,
