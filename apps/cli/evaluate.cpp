@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "evaluate_ground.h"
+#include "scores.h"
 
 namespace marey::cli {
 namespace {
@@ -26,14 +27,6 @@ struct EvaluateOptions {
   bool motchallenge = false;
   bool json = false;
 };
-
-std::string percent(std::optional<double> share) {
-  return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
-}
-
-nlohmann::json or_null(std::optional<double> value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
-}
 
 std::string frames_of(const std::vector<LabelledBox>& boxes) {
   return fmt::format("frames {} to {}", boxes.front().frame + 1, boxes.back().frame + 1);
@@ -59,36 +52,12 @@ std::vector<std::string> doubts(const EvaluateOptions& options, const MotTable& 
 }
 
 nlohmann::json as_json(const Evaluation& result, double iou, const std::vector<std::string>& warnings) {
-  const ClearScores& clear = result.clear;
-  return {{"iou", iou},
-          {"frames", result.frames},
-          {"objects", result.objects},
-          {"tracks", result.tracks},
-          {"true_boxes", result.true_boxes},
-          {"track_boxes", result.track_boxes},
-          {"matches", clear.matches},
-          {"mota", or_null(clear.mota)},
-          {"motp", or_null(clear.motp)},
-          {"recall", or_null(clear.recall)},
-          {"precision", or_null(clear.precision)},
-          {"fp", clear.false_positives},
-          {"fn", clear.misses},
-          {"idsw", clear.switches},
-          {"frag", clear.fragmentations},
-          {"mt", clear.mostly_tracked},
-          {"pt", clear.partially_tracked},
-          {"ml", clear.mostly_lost},
-          {"idf1", or_null(result.identity.f1)},
-          {"idp", or_null(result.identity.precision)},
-          {"idr", or_null(result.identity.recall)},
-          {"idtp", result.identity.true_positives},
-          {"idfp", result.identity.false_positives},
-          {"idfn", result.identity.false_negatives},
-          {"hota", result.hota.hota},
-          {"deta", result.hota.detection},
-          {"assa", result.hota.association},
-          {"loca", result.hota.localisation},
-          {"warnings", warnings}};
+  nlohmann::json json = as_json(result);
+  json["iou"] = iou;
+  json["true_boxes"] = result.true_boxes;
+  json["track_boxes"] = result.track_boxes;
+  json["warnings"] = warnings;
+  return json;
 }
 
 std::string verdict(const Evaluation& result) {

@@ -13,16 +13,10 @@
 #include "marey/format/ground_exchange.h"
 #include "marey/pipeline/judge_match.h"
 
+#include "scores.h"
+
 namespace marey::cli {
 namespace {
-
-nlohmann::json or_null(std::optional<double> value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
-}
-
-std::string percent(std::optional<double> share) {
-  return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
-}
 
 void add_spread(nlohmann::json& json, const char* name, const char* unit, const std::optional<ErrorSpread>& spread) {
   const auto key = [&](const char* which) { return fmt::format("{}_{}_{}", name, which, unit); };
@@ -63,40 +57,17 @@ nlohmann::json people_json(const MatchJudgement& judgement) {
 
 nlohmann::json as_json(const MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
   const Evaluation& scores = judgement.evaluation.scores;
-  const ClearScores& clear = scores.clear;
-  nlohmann::json json{{"distance", distance},
-                      {"paired_by", judgement.by_time ? "time" : "frame"},
-                      {"frames", scores.frames},
-                      {"common_frames", scores.common_frames},
-                      {"objects", scores.objects},
-                      {"tracks", scores.tracks},
-                      {"true_places", scores.true_boxes},
-                      {"track_places", scores.track_boxes},
-                      {"matches", clear.matches},
-                      {"found", or_null(clear.recall)},
-                      {"false", or_null(share_false(clear))},
-                      {"mota", or_null(clear.mota)},
-                      {"motp", or_null(clear.motp)},
-                      {"recall", or_null(clear.recall)},
-                      {"precision", or_null(clear.precision)},
-                      {"fp", clear.false_positives},
-                      {"fn", clear.misses},
-                      {"idsw", clear.switches},
-                      {"frag", clear.fragmentations},
-                      {"mt", clear.mostly_tracked},
-                      {"pt", clear.partially_tracked},
-                      {"ml", clear.mostly_lost},
-                      {"idf1", or_null(scores.identity.f1)},
-                      {"idp", or_null(scores.identity.precision)},
-                      {"idr", or_null(scores.identity.recall)},
-                      {"hota", scores.hota.hota},
-                      {"deta", scores.hota.detection},
-                      {"assa", scores.hota.association},
-                      {"loca", scores.hota.localisation},
-                      {"kept", or_null(share_kept(judgement.evaluation.people))},
-                      {"distance_error", or_null(judgement.distance_error)},
-                      {"people", people_json(judgement)},
-                      {"warnings", warnings}};
+  nlohmann::json json = as_json(scores);
+  json["distance"] = distance;
+  json["paired_by"] = judgement.by_time ? "time" : "frame";
+  json["true_places"] = scores.true_boxes;
+  json["track_places"] = scores.track_boxes;
+  json["found"] = or_null(scores.clear.recall);
+  json["false"] = or_null(share_false(scores.clear));
+  json["kept"] = or_null(share_kept(judgement.evaluation.people));
+  json["distance_error"] = or_null(judgement.distance_error);
+  json["people"] = people_json(judgement);
+  json["warnings"] = warnings;
   add_spread(json, "position", "m", judgement.evaluation.position);
   const bool speed = judgement.has_speed;
   add_spread(json, "speed", "mps", speed ? judgement.evaluation.speed : std::nullopt);

@@ -170,17 +170,10 @@ double PeopleDetector::least_area(const Region& region) const {
   return options_.min_share * size->height * size->width;
 }
 
-std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions, std::span<const Expected> expected) {
-  const auto noise = std::remove_if(regions.begin(), regions.end(), [&](const Region& r) { return r.area < least_area(r); });
-  counts_.noise += regions.end() - noise;
-  regions.erase(noise, regions.end());
-
-  std::vector<int> parent(regions.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int node) {
-    while (parent[node] != node) node = parent[node];
-    return node;
-  };
+/// Which regions lie so near each other that they may be pieces of one body.
+DisjointSets PeopleDetector::pieces_that_lie_together(const std::vector<Region>& regions) const {
+  DisjointSets pieces;
+  pieces.reset(static_cast<int>(regions.size()));
   for (std::size_t i = 0; i < regions.size(); ++i) {
     for (std::size_t j = i + 1; j < regions.size(); ++j) {
       const Box& a = regions[i].box;
@@ -190,14 +183,22 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
       if (!size) continue;
       if (gap(a.left, a.right(), b.left, b.right()) > kGapAcross * size->width) continue;
       if (gap(a.top, a.bottom(), b.top, b.bottom()) > kGapDown * size->height) continue;
-      const int one = root(static_cast<int>(i)), other = root(static_cast<int>(j));
-      parent[std::max(one, other)] = std::min(one, other);
+      pieces.join(static_cast<int>(i), static_cast<int>(j));
     }
   }
+  return pieces;
+}
+
+std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions, std::span<const Expected> expected) {
+  const auto noise = std::remove_if(regions.begin(), regions.end(), [&](const Region& r) { return r.area < least_area(r); });
+  counts_.noise += regions.end() - noise;
+  regions.erase(noise, regions.end());
+
+  DisjointSets pieces = pieces_that_lie_together(regions);
   std::vector<Cluster> clusters;
   std::vector<int> cluster_of(regions.size(), -1);
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    int& index = cluster_of[root(static_cast<int>(i))];
+    int& index = cluster_of[pieces.find(static_cast<int>(i))];
     if (index < 0) {
       index = static_cast<int>(clusters.size());
       clusters.push_back({{}, regions[i].box, {}, 0, 0, {}});

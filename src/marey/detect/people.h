@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "marey/assign/disjoint_sets.h"
 #include "marey/detect/background.h"
 #include "marey/detect/detector.h"
 #include "marey/detect/people_fit.h"
@@ -57,6 +58,7 @@ class PeopleDetector final : public Detector {
 
   bool size_known() const { return options_.sizes != nullptr || sizes_.known(); }
   double least_area(const Region& region) const;
+  DisjointSets pieces_that_lie_together(const std::vector<Region>& regions) const;
   std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
   void learn(const std::vector<Cluster>& clusters, cv::Size image);
   bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;

@@ -66,24 +66,11 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Tra
   Canvas canvas(picture);
   // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
   const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
-  for (const Track<2>& track : tracks)
-    trails_[track.id].push_back({now, options_.trail_of_centres ? centre_of(track) : foot_of(track)});
-
-  for (auto trail = trails_.begin(); trail != trails_.end();) {
-    auto& steps = trail->second;
-    while (!steps.empty() && now - steps.front().time > options_.trail) steps.pop_front();
-    if (steps.empty()) {
-      trail = trails_.erase(trail);
-      continue;
-    }
-    std::vector<Canvas::Stroke> strokes;
-    for (std::size_t i = 1; i < steps.size(); ++i) {
-      const double age = seconds(now - steps[i].time) / seconds(options_.trail);
-      strokes.push_back({to_point(steps[i - 1].foot), to_point(steps[i].foot), 0.9 * (1 - age)});
-    }
-    canvas.strokes(strokes, colour(trail->first), 2 * unit);
-    ++trail;
+  for (const Track<2>& track : tracks) {
+    const Vector<2> place = options_.trail_of_centres ? centre_of(track) : foot_of(track);
+    trails_.add(number(track.id), now, to_point(place), colour(track.id));
   }
+  trails_.draw(canvas, now, 0.9, 2 * unit);
 
   for (const Track<2>& track : tracks) {
     if (track.outline) {

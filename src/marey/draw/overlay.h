@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <span>
 
@@ -9,7 +8,7 @@
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 #include "marey/draw/canvas.h"
-#include "marey/geometry/vector.h"
+#include "marey/draw/fading_trails.h"
 
 namespace marey {
 
@@ -25,7 +24,7 @@ struct OverlayOptions {
 /// Colours are steady by number. Lines and numbers grow with the picture.
 class Overlay {
  public:
-  explicit Overlay(const OverlayOptions& options = {}) : options_(options) {}
+  explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
 
   /// Frames come in order. Keeps trails of those targets alone that were seen within `trail`.
   Picture draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks);
@@ -33,13 +32,8 @@ class Overlay {
  private:
   Colour colour(TrackId id) const;
 
-  struct Step {
-    Timestamp time;
-    Vector<2> foot;
-  };
-
   OverlayOptions options_;
-  std::map<TrackId, std::deque<Step>> trails_;
+  FadingTrails trails_;
 };
 
 }  // namespace marey

@@ -21,7 +21,7 @@ bool is_light(const Colour& colour) {
 
 }  // namespace
 
-PitchView::PitchView(const PitchViewOptions& options) : options_(options) {
+PitchView::PitchView(const PitchViewOptions& options) : options_(options), trails_(options.trail) {
   const Vector<2> extent = options.high - options.low;
   scale_ = options.width / extent.x();
   const int height = std::max(2, static_cast<int>(std::lround(scale_ * extent.y() / 2)) * 2);
@@ -63,22 +63,8 @@ void PitchView::draw_ground() {
 Picture PitchView::draw(Timestamp now, std::span<const Mark> marks) {
   Canvas canvas(ground_);
   const double radius = kDisc * ground_.size().width;
-  for (const Mark& mark : marks) trails_[mark.number].push_back({now, mark.place, mark.colour});
-  for (auto trail = trails_.begin(); trail != trails_.end();) {
-    auto& steps = trail->second;
-    while (!steps.empty() && now - steps.front().time > options_.trail) steps.pop_front();
-    if (steps.empty()) {
-      trail = trails_.erase(trail);
-      continue;
-    }
-    std::vector<Canvas::Stroke> strokes;
-    for (std::size_t i = 1; i < steps.size(); ++i) {
-      const double age = seconds(now - steps[i].time) / seconds(options_.trail);
-      strokes.push_back({pixel(steps[i - 1].place), pixel(steps[i].place), 0.8 * (1 - age)});
-    }
-    canvas.strokes(strokes, steps.back().colour, 0.3 * radius);
-    ++trail;
-  }
+  for (const Mark& mark : marks) trails_.add(mark.number, now, pixel(mark.place), mark.colour);
+  trails_.draw(canvas, now, 0.8, 0.3 * radius);
   for (const Mark& mark : marks) {
     const cv::Point2f at = pixel(mark.place);
     canvas.discs({at}, radius, mark.observed ? kInk : mark.colour);

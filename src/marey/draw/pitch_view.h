@@ -1,7 +1,5 @@
 #pragma once
 
-#include <deque>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +7,7 @@
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
 #include "marey/draw/canvas.h"
+#include "marey/draw/fading_trails.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey {
@@ -42,19 +41,13 @@ class PitchView {
   Picture draw(Timestamp now, std::span<const Mark> marks);
 
  private:
-  struct Step {
-    Timestamp time;
-    Vector<2> place;
-    Colour colour;
-  };
-
   cv::Point2f pixel(const Vector<2>& place) const;
   void draw_ground();
 
   PitchViewOptions options_;
   double scale_;    ///< px/m
   Picture ground_;  ///< without people
-  std::map<int, std::deque<Step>> trails_;
+  FadingTrails trails_;
 };
 
 }  // namespace marey

@@ -42,12 +42,10 @@ class Reader {
     read_globals(root.child("Metadata"));
     read_people(root.child("Metadata"));
     read_layouts(root);
-    TextLines lines(text);
-    std::string_view line;
-    while (lines.next(line)) {
-      where_ = fmt::format("{}:{}", name_, lines.number());
-      if (!line.empty()) read_line(line);
-    }
+    for_each_line(text, name_, [this](std::string_view line, std::string where) {
+      where_ = std::move(where);
+      read_line(line);
+    });
     match_.recording = builder_.finish();
     return std::move(match_);
   }

@@ -28,12 +28,10 @@ class Reader {
 
   GroundMatch read(std::string_view text) {
     learn_rate(text);
-    TextLines lines(text);
-    std::string_view line;
-    while (lines.next(line)) {
-      where_ = fmt::format("{}:{}", name_, lines.number());
-      if (!line.empty()) read_line(line);
-    }
+    for_each_line(text, name_, [this](std::string_view line, std::string where) {
+      where_ = std::move(where);
+      read_line(line);
+    });
     match_.recording = builder_.finish();
     return std::move(match_);
   }

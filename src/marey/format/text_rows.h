@@ -29,6 +29,16 @@ class TextLines {
   bool ended_ = true;
 };
 
+/// Calls `take(line, where)` for each line that is not empty; `where` is its place for messages, "match.dat:12".
+template <typename Take>
+void for_each_line(std::string_view text, const std::string& name, Take&& take) {
+  TextLines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    if (!line.empty()) take(line, name + ':' + std::to_string(lines.number()));
+  }
+}
+
 /// The line's fields, cut at `separator` but not within quotes; blanks round a field are taken off, its quotes are kept.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 /// A field without its quotes (RFC 4180).

@@ -72,7 +72,8 @@ std::vector<Vector<2>> moved_to_light_edges(const std::vector<Vector<2>>& polygo
   const int count = static_cast<int>(points.size());
   if (count < 8) return polygon;
   const auto wrapped = [count](int i) { return static_cast<std::size_t>((i % count + count) % count); };
-  std::vector<Vector<2>> normals(points.size());
+  // Where the polygon doubles back a point has no normal, and stays.
+  std::vector<Vector<2>> normals(points.size(), Vector<2>::Zero());
   std::vector<std::optional<double>> offsets(points.size());
   const int span = static_cast<int>(kTangentSpan);
   for (int i = 0; i < count; ++i) {

@@ -42,7 +42,8 @@ void GroundHypotheses::find_groups(std::span<const GatedPair> pairs, int observa
   sets_.reset(clusters + observations);
   for (const GatedPair& pair : pairs) {
     ++first_pair_[pair.row + 1];
-    sets_.join(cluster_of_[pair.row], clusters + pair.column);
+    const int cluster = cluster_of_[pair.row];  // none where every hypothesis that held the leaf was pruned
+    if (cluster != nobody) sets_.join(cluster, clusters + pair.column);
   }
   std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
   elements_.clear();
