@@ -12,7 +12,7 @@
 #include <opencv2/video/background_segm.hpp>
 
 #include "marey/detect/appearance.h"
-#include "marey/detect/background.h"
+#include "marey/detect/background/background.h"
 #include "marey/source/video_source.h"
 
 namespace {
@@ -31,7 +31,7 @@ const Clip& clip(int width, int height) {
   static std::map<int, Clip> clips;
   Clip& made = clips[width];
   if (!made.frames.empty()) return made;
-  const auto source = open_video(kVideo);
+  const auto source = source::open_video(kVideo);
   while (made.frames.size() < kFrames) {
     auto frame = source->next();
     if (!frame) break;
@@ -78,7 +78,7 @@ void run(benchmark::State& state, const Step& step) {
 
 void marey_model(benchmark::State& state) {
   const Clip& shown = clip(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  const std::shared_ptr<Background> model = make_background();
+  const std::shared_ptr<detect::background::Background> model = detect::background::make_background();
   model->prime(shown.frames);
   run(state, [model](const Clip& clip, std::size_t i) { benchmark::DoNotOptimize(model->apply(clip.frames[i], {}).mask.data); });
 }
@@ -102,14 +102,14 @@ void upper_body_colour(benchmark::State& state) {
   person.box = {1500, 800, height * 0.4, height};
   const cv::Rect part(1500, 800 + static_cast<int>(0.2 * height), static_cast<int>(0.4 * height), static_cast<int>(0.3 * height));
   const double ours = least_time(shown, [&](const Clip& clip, std::size_t i) {
-    benchmark::DoNotOptimize(upper_body(clip.frames[i].picture, {.mask = mask}, {&person, 1}, 0));
+    benchmark::DoNotOptimize(detect::upper_body(clip.frames[i].picture, {.mask = mask}, {&person, 1}, 0));
   });
   const double theirs = least_time(shown, [&](const Clip& clip, std::size_t i) {
     cv::Mat lab;
     cv::cvtColor(clip.bgr[i](part), lab, cv::COLOR_BGR2Lab);
     benchmark::DoNotOptimize(cv::mean(lab));
   });
-  for (auto _ : state) benchmark::DoNotOptimize(upper_body(shown.frames[0].picture, {.mask = mask}, {&person, 1}, 0));
+  for (auto _ : state) benchmark::DoNotOptimize(detect::upper_body(shown.frames[0].picture, {.mask = mask}, {&person, 1}, 0));
   state.counters["us"] = ours * 1e3;
   state.counters["against_convert"] = theirs / ours;
 }

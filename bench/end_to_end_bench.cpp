@@ -36,7 +36,7 @@ void opencv_decode(const std::string& video, bool with_mog2) {
 }
 
 void marey_decode(const std::string& video) {
-  const auto source = marey::open_source(video);
+  const auto source = marey::source::open_source(video);
   while (source->next()) continue;
 }
 
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {
     whole = std::min(whole, seconds_of([&] {
-                       frames = static_cast<double>(marey::track_people({.pictures = video}, {.tracks = tracks}).frames);
+                       frames = static_cast<double>(marey::pipeline::track_people({.pictures = video}, {.tracks = tracks}).frames);
                      }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(video, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(video, false); }));

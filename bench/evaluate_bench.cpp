@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include "marey/evaluate/evaluation.h"
-#include "marey/format/mot.h"
+#include "marey/format/tracks/mot.h"
 
 namespace {
 
@@ -46,8 +46,9 @@ Scene walkers(int people, int frames) {
 void read_mot_text(benchmark::State& state) {
   std::string text;
   const Scene scene = walkers(22, 2000);
-  for (const LabelledBox& box : scene.tracks) marey::append_mot(text, box);
-  for (auto _ : state) benchmark::DoNotOptimize(marey::parse_mot(text, "tracks", marey::MotKind::tracks));
+  for (const LabelledBox& box : scene.tracks) marey::format::tracks::append_mot(text, box);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(marey::format::tracks::parse_mot(text, "tracks", marey::format::tracks::MotKind::tracks));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene.tracks.size()));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
@@ -56,7 +57,7 @@ BENCHMARK(read_mot_text)->Unit(benchmark::kMillisecond);
 void evaluate_people(benchmark::State& state) {
   const int people = static_cast<int>(state.range(0));
   const Scene scene = walkers(people, 20'000 / people);
-  for (auto _ : state) benchmark::DoNotOptimize(marey::evaluate(scene.truth, scene.tracks));
+  for (auto _ : state) benchmark::DoNotOptimize(marey::evaluate::evaluate(scene.truth, scene.tracks));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene.truth.size()));
 }
 BENCHMARK(evaluate_people)->ArgName("people")->Arg(5)->Arg(22)->Arg(100)->Arg(500)->Unit(benchmark::kMillisecond);

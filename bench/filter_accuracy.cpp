@@ -187,14 +187,14 @@ int main(int argc, char** argv) {
       fmt::print("{:22}", "");
       for (const auto& [name, make] : kinds) fmt::print("{:^26}", name);
       fmt::print("\n");
-      for (const NamedFilter& filter : named_filters()) {
+      for (const filter::NamedFilter& filter : filter::named_filters()) {
         fmt::print("{:22}", filter.name);
         for (const auto& [name, make] : kinds) {
           Result result;
           for (int i = 0; i < targets; ++i) {
             Draw draw{std::mt19937(seed * 1000 + static_cast<unsigned>(i))};
             const Place place = make(draw);
-            with_filter<2>(filter.options, Follow{place, rate, noise, seed + static_cast<unsigned>(i), result});
+            filter::with_filter<2>(filter.options, Follow{place, rate, noise, seed + static_cast<unsigned>(i), result});
           }
           fmt::print("{:6.2f}/{:5.2f} {:4.1f}% {:4.0f}   ", root_mean_square(result.errors), median(result.errors),
                      100.0 * static_cast<double>(result.outside) / static_cast<double>(result.errors.size()), median(result.radii));

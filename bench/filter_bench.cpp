@@ -101,12 +101,12 @@ struct Run {
 };
 
 template <int D>
-void run(benchmark::State& state, const NamedFilter& filter) {
-  with_filter<D>(filter.options, Run<D>{state, order_of(std::string(filter.name))});
+void run(benchmark::State& state, const filter::NamedFilter& filter) {
+  filter::with_filter<D>(filter.options, Run<D>{state, order_of(std::string(filter.name))});
 }
 
 const int registered = [] {
-  for (const NamedFilter& filter : named_filters()) {
+  for (const filter::NamedFilter& filter : filter::named_filters()) {
     const std::string name(filter.name);
     benchmark::RegisterBenchmark((name + "/2D").c_str(), [&filter](benchmark::State& state) { run<2>(state, filter); });
     benchmark::RegisterBenchmark((name + "/3D").c_str(), [&filter](benchmark::State& state) { run<3>(state, filter); });

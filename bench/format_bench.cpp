@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "marey/format/motion.h"
-#include "marey/format/take_file.h"
+#include "marey/format/motion/motion.h"
+#include "marey/format/take/take_file.h"
 
 namespace marey {
 namespace {
@@ -35,8 +35,8 @@ TakeFrame frame_of(std::int64_t index) {
   return frame;
 }
 
-MotionPlan plan() {
-  MotionPlan plan;
+format::motion::MotionPlan plan() {
+  format::motion::MotionPlan plan;
   plan.info.header.rate_hz = 120;
   for (int m = 1; m <= kMarkers; ++m) plan.info.tracks.push_back({TrackId(m), fmt::format("M{}", m)});
   plan.last_frame = kFrames - 1;
@@ -50,8 +50,8 @@ void per_frame(benchmark::State& state, std::size_t bytes) {
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * bytes));
 }
 
-void write_all(const std::string& path, MotionFormat format, const std::vector<TakeFrame>& frames) {
-  const auto writer = create_motion(path, format, plan());
+void write_all(const std::string& path, format::motion::MotionFormat format, const std::vector<TakeFrame>& frames) {
+  const auto writer = format::motion::create_motion(path, format, plan());
   for (const TakeFrame& frame : frames) writer->write(frame);
   writer->finish();
 }
@@ -62,7 +62,7 @@ std::vector<TakeFrame> all_frames() {
   return frames;
 }
 
-void write_format(benchmark::State& state, MotionFormat format, const char* name) {
+void write_format(benchmark::State& state, format::motion::MotionFormat format, const char* name) {
   const std::string path = place(name);
   const auto frames = all_frames();
   for (auto _ : state) write_all(path, format, frames);
@@ -70,11 +70,11 @@ void write_format(benchmark::State& state, MotionFormat format, const char* name
   std::filesystem::remove(path);
 }
 
-void read_format(benchmark::State& state, MotionFormat format, const char* name) {
+void read_format(benchmark::State& state, format::motion::MotionFormat format, const char* name) {
   const std::string path = place(name);
   write_all(path, format, all_frames());
   for (auto _ : state) {
-    const auto reader = open_motion(path, format);
+    const auto reader = format::motion::open_motion(path, format);
     while (const auto frame = reader->next()) benchmark::DoNotOptimize(frame->points.data());
   }
   per_frame(state, std::filesystem::file_size(path));
@@ -110,15 +110,15 @@ void read_plainly(benchmark::State& state) {
 }
 
 BENCHMARK(write_plainly)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, c3d, MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, take, MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, trc, MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, csv, MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, c3d, format::motion::MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, take, format::motion::MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, trc, format::motion::MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, csv, format::motion::MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
 BENCHMARK(read_plainly)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, c3d, MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, take, MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, trc, MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, csv, MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, c3d, format::motion::MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, take, format::motion::MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, trc, format::motion::MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, csv, format::motion::MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace marey

@@ -9,8 +9,8 @@
 
 #include "marey/filter/kalman.h"
 #include "marey/reconstruct/place_people.h"
-#include "marey/simulate/match_cameras.h"
-#include "marey/simulate/match_view.h"
+#include "marey/simulate/match/match_cameras.h"
+#include "marey/simulate/match/match_view.h"
 #include "marey/simulate/random.h"
 #include "marey/track/ground/ground_tracker.h"
 
@@ -23,8 +23,9 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-GroundAssociation association(std::int64_t index) {
-  constexpr GroundAssociation all[] = {GroundAssociation::gnn, GroundAssociation::jpda, GroundAssociation::mht};
+track::ground::GroundAssociation association(std::int64_t index) {
+  constexpr track::ground::GroundAssociation all[] = {track::ground::GroundAssociation::gnn, track::ground::GroundAssociation::jpda,
+                                                      track::ground::GroundAssociation::mht};
   return all[index];
 }
 
@@ -34,21 +35,22 @@ using Boxes = std::vector<std::vector<Detection>>;
 /// A simulated match seen by `cameras`, 10 s of it, boxes with noise, misses and false ones.
 struct Match {
   explicit Match(int count) {
-    MatchCamerasOptions options;
+    simulate::match::MatchCamerasOptions options;
     options.cameras = count;
-    for (const RigCamera& camera : match_cameras(options, 1).cameras) cameras.push_back(camera.camera().value());
-    MatchMotion motion(1);
-    const auto figures = match_figures(1);
-    Random random(1);
+    for (const RigCamera& camera : simulate::match::match_cameras(options, 1).cameras) cameras.push_back(camera.camera().value());
+    simulate::match::MatchMotion motion(1);
+    const auto figures = simulate::match::match_figures(1);
+    simulate::Random random(1);
     for (int frame = 0; frame < 250; ++frame) {
       motion.advance(frame / rate);
-      std::array<Stance, kMatchPeople> stances;
-      for (std::size_t i = 0; i < stances.size(); ++i) stances[i] = match_stance(motion.people()[i], Matrix<3>::Identity());
+      std::array<simulate::people::Stance, simulate::match::kMatchPeople> stances;
+      for (std::size_t i = 0; i < stances.size(); ++i)
+        stances[i] = simulate::match::match_stance(motion.people()[i], Matrix<3>::Identity());
       auto& boxes = instants.emplace_back();
       for (const Camera& camera : cameras) {
         auto& seen = boxes.emplace_back();
-        for (const LabelledBox& one :
-             detect_match(look_at(camera, figures, stances), camera, Matrix<3>::Identity(), {}, frame, {}, random)) {
+        for (const LabelledBox& one : simulate::match::detect_match(simulate::match::look_at(camera, figures, stances), camera,
+                                                                    Matrix<3>::Identity(), {}, frame, {}, random)) {
           seen.emplace_back();
           seen.back().box = one.box;
           seen.back().score = one.score;
@@ -68,22 +70,23 @@ void instant_of_a_match(benchmark::State& state) {
   double spent = 0, bound = 0;
   std::size_t observations = 0;
   for (auto _ : state) {
-    const auto tracker = make_ground_tracker({.associate = association(state.range(0))}, views);
-    std::vector<Kalman<2>> known(kMatchPeople, Kalman<2>({2, 3, 3}, Vector<2>::Zero(), Matrix<2>::Identity()));
+    const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(0))}, views);
+    std::vector<filter::Kalman<2>> known(simulate::match::kMatchPeople,
+                                         filter::Kalman<2>({2, 3, 3}, Vector<2>::Zero(), Matrix<2>::Identity()));
     double here = 0;
     for (std::size_t frame = 0; frame < match.instants.size(); ++frame) {
       const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / rate);
       auto begin = std::chrono::steady_clock::now();
-      std::vector<PlacedPeople> placed;
-      std::vector<GroundLook> looks;
+      std::vector<reconstruct::PlacedPeople> placed;
+      std::vector<track::ground::CameraObservations> looks;
       for (int c = 0; c < static_cast<int>(views.size()); ++c)
-        placed.push_back(place_people(match.instants[frame][c], views[c], CameraId{c}));
+        placed.push_back(reconstruct::place_people(match.instants[frame][c], views[c], CameraId{c}));
       for (int c = 0; c < static_cast<int>(views.size()); ++c) looks.push_back({CameraId{c}, now, placed[c].seen});
       benchmark::DoNotOptimize(tracker->step(now, looks));
       here += seconds_since(begin);
       begin = std::chrono::steady_clock::now();
-      for (Kalman<2>& one : known) one.predict(1 / rate);
-      for (const PlacedPeople& look : placed) {
+      for (filter::Kalman<2>& one : known) one.predict(1 / rate);
+      for (const reconstruct::PlacedPeople& look : placed) {
         for (std::size_t i = 0; i < look.seen.size(); ++i)
           known[i % known.size()].correct(look.seen[i].value, look.seen[i].covariance);
         observations += look.seen.size();
@@ -112,14 +115,14 @@ void tracker_alone(benchmark::State& state) {
   Matrix<3> ground_from_image;
   ground_from_image << 0.1, 0, 0, 0, -0.1, side, 0, 0, 1;
   const GroundView view(ground_from_image, cv::Size(static_cast<int>(10 * side), static_cast<int>(10 * side)));
-  const auto tracker = make_ground_tracker({.associate = association(state.range(1))}, {view});
-  Random random(1);
+  const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(1))}, {view});
+  simulate::Random random(1);
   std::vector<Vector<2>> places, velocities;
-  std::vector<Kalman<2>> known;
+  std::vector<filter::Kalman<2>> known;
   for (int i = 0; i < count; ++i) {
     places.emplace_back(random.uniform(0, side), random.uniform(0, side));
     velocities.emplace_back(random.gaussian(0, 2), random.gaussian(0, 2));
-    known.emplace_back(KalmanOptions{2, 3, 3}, places.back(), Matrix<2>::Identity());
+    known.emplace_back(filter::KalmanOptions{2, 3, 3}, places.back(), Matrix<2>::Identity());
   }
   double spent = 0, bound = 0;
   int frame = 0;
@@ -139,14 +142,14 @@ void tracker_alone(benchmark::State& state) {
       one.box = Box{10 * one.value.x() - 3, 10 * (side - one.value.y()) - 18, 6, 18};
     }
     const Timestamp now = timestamp_from_seconds(frame++ / rate);
-    const GroundLook look{CameraId{0}, now, seen};
+    const track::ground::CameraObservations look{CameraId{0}, now, seen};
     auto begin = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(tracker->step(now, {&look, 1}));
     const double here = seconds_since(begin);
     state.SetIterationTime(here);
     spent += here;
     begin = std::chrono::steady_clock::now();
-    for (Kalman<2>& one : known) one.predict(1 / rate);
+    for (filter::Kalman<2>& one : known) one.predict(1 / rate);
     for (std::size_t i = 0; i < seen.size(); ++i) known[i].correct(seen[i].value, seen[i].covariance);
     benchmark::DoNotOptimize(known.data());
     bound += seconds_since(begin);

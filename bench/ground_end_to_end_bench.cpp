@@ -14,7 +14,7 @@
 #include <opencv2/videoio.hpp>
 #include <unistd.h>
 
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/match_files.h"
 #include "marey/pipeline/track_ground.h"
 
@@ -39,19 +39,20 @@ void opencv_decode(const std::string& video, bool with_mog2) {
 }
 
 void compare(const std::string& folder, cv::Size size) {
-  marey::MatchFilesOptions match;
+  marey::pipeline::MatchFilesOptions match;
   match.cameras.cameras = 1, match.cameras.size = size;
   match.seconds = kSeconds, match.boxes = false, match.films = true;
-  marey::write_match(match, folder);
-  const marey::Rig rig = marey::read_rig(folder + "/rig.toml");
-  marey::GroundOutput output;
+  marey::pipeline::write_match(match, folder);
+  const marey::Rig rig = marey::format::rig::read_rig(folder + "/rig.toml");
+  marey::pipeline::GroundOutput output;
   output.tracks = folder + "/out.csv";
-  marey::TrackGroundOptions options;
+  marey::pipeline::TrackGroundOptions options;
   options.pitch.emplace();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole;
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {
-    whole = std::min(whole, seconds_of([&] { frames = static_cast<double>(marey::track_ground(rig, output, options).frames); }));
+    whole = std::min(whole,
+                     seconds_of([&] { frames = static_cast<double>(marey::pipeline::track_ground(rig, output, options).frames); }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(rig.cameras[0].source, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(rig.cameras[0].source, false); }));
   }

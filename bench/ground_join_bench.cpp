@@ -25,7 +25,7 @@ class Game {
     for (int& id : ids_) id = next_id_++;
   }
 
-  void record(int instants, GroundRecorder& recorder) {
+  void record(int instants, track::ground::GroundRecorder& recorder) {
     for (int k = 0; k < instants; ++k) {
       const Timestamp now = timestamp_from_seconds(k / rate);
       tracks_.clear();
@@ -33,7 +33,7 @@ class Game {
       claims_.clear();
       for (int i = 0; i < people; ++i) move(i);
       std::sort(tracks_.begin(), tracks_.end(), [](const Track<2>& a, const Track<2>& b) { return a.id < b.id; });
-      const GroundLook look{CameraId{0}, now, seen_};
+      const track::ground::CameraObservations look{CameraId{0}, now, seen_};
       recorder.add(k, now, tracks_, {&look, 1}, claims_);
     }
   }
@@ -59,14 +59,14 @@ class Game {
     tracks_.push_back(track);
   }
 
-  Random random_{1};
+  simulate::Random random_{1};
   std::vector<Vector<2>> places_, velocities_;
   std::vector<int> ids_;
   std::vector<int> hidden_;
   int next_id_ = 1;
   std::vector<Track<2>> tracks_;
   std::vector<Observation<2>> seen_;
-  std::vector<GroundClaim> claims_;
+  std::vector<track::ground::ObservationMatch> claims_;
 };
 
 double now_s() {
@@ -74,7 +74,7 @@ double now_s() {
 }
 
 double filter_seconds(std::int64_t samples) {
-  Kalman<2> filter({.acceleration_noise = 2.5, .initial_speed = 3}, Vector<2>::Zero(), Matrix<2>::Identity());
+  filter::Kalman<2> filter({.acceleration_noise = 2.5, .initial_speed = 3}, Vector<2>::Zero(), Matrix<2>::Identity());
   const Matrix<2> R = 0.04 * Matrix<2>::Identity();
   const double begin = now_s();
   for (std::int64_t k = 0; k < samples; ++k) {
@@ -90,10 +90,10 @@ void second_pass(benchmark::State& state) {
   double least = 1e9;
   std::size_t rows = 0;
   for (auto _ : state) {
-    GroundRecorder recorder;
+    track::ground::GroundRecorder recorder;
     Game().record(instants, recorder);
     const double begin = now_s();
-    const GroundRecorder::Joined joined = std::move(recorder).join();
+    const track::ground::GroundRecorder::Joined joined = std::move(recorder).join();
     const double took = now_s() - begin;
     least = std::min(least, took);
     rows = joined.recording.samples.size();

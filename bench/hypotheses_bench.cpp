@@ -24,9 +24,9 @@ double now_s() {
 }
 
 /// A scuffle: every row has three columns in its gate.
-std::vector<GatedPair> scuffle(int count) {
-  Random random(4);
-  std::vector<GatedPair> pairs;
+std::vector<assign::GatedPair> scuffle(int count) {
+  simulate::Random random(4);
+  std::vector<assign::GatedPair> pairs;
   for (int row = 0; row < count; ++row) {
     for (int neighbour = -1; neighbour <= 1; ++neighbour) {
       const double gain = neighbour == 0 ? random.uniform(5, 9) : random.uniform(2, 7);
@@ -40,9 +40,9 @@ void k_best(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   const int k = static_cast<int>(state.range(1));
   const auto pairs = scuffle(count);
-  const AssignmentProblem problem{count, count, pairs};
-  KBestAssigner assigner;
-  GatedAssigner one;
+  const assign::AssignmentProblem problem{count, count, pairs};
+  assign::KBestAssigner assigner;
+  assign::GatedAssigner one;
   double ours = 0;
   double single = 0;
   for (auto _ : state) {
@@ -73,7 +73,7 @@ class Game {
     return std::vector<GroundView>(static_cast<std::size_t>(cameras_), GroundView(ground_from_image, cv::Size(1450, 1080)));
   }
 
-  std::span<const GroundLook> next(Timestamp now) {
+  std::span<const track::ground::CameraObservations> next(Timestamp now) {
     for (std::size_t i = 0; i < places_.size(); ++i) {
       velocities_[i] += Vector<2>(random_.gaussian(0, 0.4), random_.gaussian(0, 0.4)) - 0.02 * velocities_[i] -
                         0.001 * (places_[i] - Vector<2>(52.5, 34));
@@ -97,17 +97,17 @@ class Game {
   }
 
  private:
-  Random random_;
+  simulate::Random random_;
   std::vector<Vector<2>> places_, velocities_;
   int cameras_;
   std::vector<std::vector<Observation<2>>> seen_;
-  std::vector<GroundLook> looks_;
+  std::vector<track::ground::CameraObservations> looks_;
 };
 
 void ground_step(benchmark::State& state) {
   Game game(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  const auto gnn = make_ground_tracker({.associate = GroundAssociation::gnn}, game.views());
-  const auto mht = make_ground_tracker({.associate = GroundAssociation::mht}, game.views());
+  const auto gnn = track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::gnn}, game.views());
+  const auto mht = track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::mht}, game.views());
   int frame = 0;
   double of_gnn = 0;
   double of_mht = 0;

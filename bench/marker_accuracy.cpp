@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 #include <fmt/core.h>
 
-#include "marey/detect/marker_detector.h"
-#include "marey/simulate/discs.h"
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/simulate/markers/discs.h"
 
 namespace {
 
@@ -58,22 +58,22 @@ void measure(const Row& row, int samples) {
   double normalised = 0;
   int missed = 0, extra = 0;
   std::vector<Vector<2>> bias(2 * bins, Vector<2>::Zero());  // sum of errors and count, by the place within the pixel
-  MarkerDetector detector;
+  detect::markers::MarkerDetector detector;
   for (int image_index = 0; image_index * kGrid * kGrid < samples; ++image_index) {
     cv::Mat clean(pitch * kGrid, pitch * kGrid, CV_32FC1, cv::Scalar(kBackground));
-    std::vector<Disc> discs;
+    std::vector<simulate::markers::Disc> discs;
     for (int i = 0; i < kGrid * kGrid; ++i) {
       const Vector<2> centre(i % kGrid * pitch + pitch / 2 + phase(random), i / kGrid * pitch + pitch / 2 + phase(random));
       discs.push_back({centre, row.radius, kLevel, row.blur});
     }
-    draw_discs(clean, discs);
-    const cv::Mat image = expose(clean, row.noise, 1000 + image_index);
+    simulate::markers::draw_discs(clean, discs);
+    const cv::Mat image = simulate::markers::expose(clean, row.noise, 1000 + image_index);
     Frame frame;
     frame.index = image_index;
     frame.picture = Picture(image);
     const auto found = detector.detect(frame, {}).detections;
     extra += static_cast<int>(found.size());
-    for (const Disc& disc : discs) {
+    for (const simulate::markers::Disc& disc : discs) {
       plain.add(centroid(image, disc.centre, row.radius + 4, false) - disc.centre);
       weighted.add(centroid(image, disc.centre, row.radius + 4, true) - disc.centre);
       const Detection* best = nullptr;
@@ -96,11 +96,11 @@ void measure(const Row& row, int samples) {
   }
   double worst = 0;
   for (const auto& bin : bias) worst = std::max(worst, std::abs(bin.x() / std::max(1.0, bin.y())));
-  const Disc disc{{0, 0}, row.radius, kLevel, row.blur};
+  const simulate::markers::Disc disc{{0, 0}, row.radius, kLevel, row.blur};
   fmt::print("{:6.1f} {:5.2f} {:5.1f} | {:9.4f} {:9.4f} | {:8.4f} {:8.4f} | {:6.3f} {:6.3f} | {:7.4f} | {:6.2f} | {:4} {:4}\n",
              row.radius, row.blur, row.noise, plain.rms(), weighted.rms(), ours.rms(),
-             disc_centre_bound(disc, kBackground, row.noise), row.must, row.goal, worst, normalised / (ours.count / 2.0), missed,
-             extra);
+             simulate::markers::disc_centre_bound(disc, kBackground, row.noise), row.must, row.goal, worst,
+             normalised / (ours.count / 2.0), missed, extra);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "marey/detect/marker_detector.h"
-#include "marey/simulate/discs.h"
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/simulate/markers/discs.h"
 
 namespace {
 
@@ -29,10 +29,10 @@ const cv::Mat& scene(int width, int height, int depth, int markers = 50) {
   cv::Mat clean(height, width, CV_32FC1, cv::Scalar(12 * scale));
   for (int i = 0; i < markers; ++i) {
     const double px = x(random), py = y(random);
-    const Disc disc{{px, py}, radius(random), 202 * scale};
-    draw_discs(clean, std::span(&disc, 1));
+    const simulate::markers::Disc disc{{px, py}, radius(random), 202 * scale};
+    simulate::markers::draw_discs(clean, std::span(&disc, 1));
   }
-  image = expose(clean, 3 * scale, 1, depth);
+  image = simulate::markers::expose(clean, 3 * scale, 1, depth);
   return image;
 }
 
@@ -44,7 +44,7 @@ const cv::Mat& scene(const benchmark::State& state) {
 void marey_detector(benchmark::State& state) {
   Frame frame;
   frame.picture = Picture(scene(state));
-  MarkerDetector detector;
+  detect::markers::MarkerDetector detector;
   std::size_t found = 0;
   for (auto _ : state) found = detector.detect(frame, {}).detections.size();
   state.counters["found"] = static_cast<double>(found);
@@ -107,7 +107,7 @@ BENCHMARK(opencv_blob_detector)->Apply(sizes);
 void glare(benchmark::State& state) {
   Frame frame;
   frame.picture = Picture(scene(1280, 1024, CV_8U, 5000));
-  MarkerDetector detector;
+  detect::markers::MarkerDetector detector;
   for (auto _ : state) benchmark::DoNotOptimize(detector.detect(frame, {}));
 }
 BENCHMARK(glare)->Unit(benchmark::kMicrosecond);

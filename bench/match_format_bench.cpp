@@ -8,7 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "marey/format/ground_exchange.h"
+#include "marey/format/match/ground_exchange.h"
 
 namespace marey {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 constexpr int kPeople = 25;
 constexpr int kFrames = 90 * 60 * 25;
 
-const GroundMatch& match() {
-  static const GroundMatch all = [] {
-    GroundMatch one;
+const format::match::GroundMatch& match() {
+  static const format::match::GroundMatch all = [] {
+    format::match::GroundMatch one;
     one.recording.cameras = {"left", "right"};
     for (int id = 1; id <= kPeople; ++id)
       one.recording.people.push_back({id, std::to_string(id), id <= 11 ? "white" : id <= 22 ? "blue" : "referee"});
@@ -53,17 +53,17 @@ void count_bytes(benchmark::State& state, std::size_t bytes) {
       benchmark::Counter(static_cast<double>(state.iterations()) * kPeople * kFrames, benchmark::Counter::kIsRate);
 }
 
-void write_match(benchmark::State& state, GroundFormat format, const char* name) {
+void write_match(benchmark::State& state, format::match::GroundFormat format, const char* name) {
   const Place place(name);
-  const GroundMatch& all = match();
-  for (auto _ : state) write_ground_as(all, place.path, format);
+  const format::match::GroundMatch& all = match();
+  for (auto _ : state) format::match::write_ground_as(all, place.path, format);
   count_bytes(state, std::filesystem::file_size(place.path));
 }
 
-void read_match(benchmark::State& state, GroundFormat format, const char* name) {
+void read_match(benchmark::State& state, format::match::GroundFormat format, const char* name) {
   const Place place(name);
-  write_ground_as(match(), place.path, format);
-  for (auto _ : state) benchmark::DoNotOptimize(read_ground_as(place.path, format).recording.samples.data());
+  format::match::write_ground_as(match(), place.path, format);
+  for (auto _ : state) benchmark::DoNotOptimize(format::match::read_ground_as(place.path, format).recording.samples.data());
   count_bytes(state, std::filesystem::file_size(place.path));
 }
 
@@ -95,11 +95,15 @@ void read_bytes(benchmark::State& state) {
 }
 
 BENCHMARK(write_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(write_match, csv, GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(write_match, tracab, GroundFormat::tracab, "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(write_match, csv, format::match::GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(write_match, tracab, format::match::GroundFormat::tracab, "bench.dat")
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 BENCHMARK(read_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(read_match, csv, GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(read_match, tracab, GroundFormat::tracab, "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(read_match, csv, format::match::GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(read_match, tracab, format::match::GroundFormat::tracab, "bench.dat")
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 }  // namespace
 }  // namespace marey

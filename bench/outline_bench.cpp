@@ -10,7 +10,7 @@
 
 #include "marey/detect/silhouette.h"
 #include "marey/geometry/bspline.h"
-#include "marey/simulate/people_film.h"
+#include "marey/simulate/people/people_film.h"
 #include "marey/track/contour/outline_follower.h"
 
 namespace marey {
@@ -27,12 +27,12 @@ struct Scene {
 const Scene& scene() {
   static const Scene made = [] {
     Scene result;
-    PeopleFilmOptions options;
+    simulate::people::PeopleFilmOptions options;
     options.frames = kFrames;
     options.people = 1;
-    const PeopleFilm film(PeopleSituation::apart, 1, options);
+    const simulate::people::PeopleFilm film(simulate::people::PeopleSituation::apart, 1, options);
     for (int k = 0; k < kFrames; ++k) {
-      const RenderedFrame rendered = film.render(k);
+      const simulate::people::RenderedFrame rendered = film.render(k);
       cv::Mat mask = cv::Mat::zeros(720, 1280, CV_8UC1);
       std::vector<Detection> detections;
       if (!rendered.people.empty()) {
@@ -43,11 +43,11 @@ const Scene& scene() {
           person(box).copyTo(mask(cv::Rect(place, box.size())));
         }
       }
-      for (const Region& region : find_regions(mask, {.min_area = 100})) {
+      for (const detect::Region& region : detect::find_regions(mask, {.min_area = 100})) {
         Detection& one = detections.emplace_back();
         one.centre = region.centre;
         one.box = region.box;
-        one.outline = outline_of(region.runs);
+        one.outline = detect::outline_of(region.runs);
       }
       result.masks.push_back(mask);
       result.detections.push_back(std::move(detections));
@@ -60,10 +60,10 @@ const Scene& scene() {
 /// With silhouettes, every target is seen by the detector and its outline taken from there; without, lines alone follow it.
 void follow_outlines(benchmark::State& state) {
   const bool detected = state.range(0) != 0;
-  OutlineOptions options;
+  track::contour::OutlineOptions options;
   options.control_points = kPoints;
   options.lines = kLines;
-  OutlineFollower follower(options);
+  track::contour::OutlineFollower follower(options);
   std::vector<Track<2>> tracks;
   int frame = 0;
   const auto step = [&](bool all) {

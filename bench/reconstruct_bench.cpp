@@ -13,7 +13,7 @@
 #include "marey/pipeline/reconstruct.h"
 #include "marey/reconstruct/correspond.h"
 #include "marey/simulate/random.h"
-#include "marey/simulate/room.h"
+#include "marey/simulate/room/room.h"
 #include "marey/track/roster_tracker.h"
 
 namespace {
@@ -28,17 +28,17 @@ struct Recording {
   int markers = 0;
 };
 
-Recording record(const RoomOptions& options) {
-  const RoomScene scene(options);
+Recording record(const simulate::room::RoomOptions& options) {
+  const simulate::room::RoomScene scene(options);
   Recording recording;
   recording.markers = options.markers;
   for (const RigCamera& camera : scene.rig().cameras) recording.cameras.push_back(*camera.camera());
   for (std::int64_t i = 0; i < options.frames; ++i) {
     auto& seen = recording.seen.emplace_back();
     auto& owner = recording.owner.emplace_back();
-    const RoomFrame frame = scene.frame(i);
+    const simulate::room::RoomFrame frame = scene.frame(i);
     for (int c = 0; c < std::ssize(frame.seen); ++c) {
-      for (const RoomBlob& blob : frame.seen[static_cast<std::size_t>(c)]) {
+      for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(c)]) {
         Observation<2> one;
         one.value = blob.pixel;
         one.covariance.setZero();
@@ -51,9 +51,9 @@ Recording record(const RoomOptions& options) {
   return recording;
 }
 
-RoomOptions cloud(int cameras, int markers, double dropped, double ghosts, int frames = 40) {
-  RoomOptions options;
-  options.motion = RoomMotion::cloud;
+simulate::room::RoomOptions cloud(int cameras, int markers, double dropped, double ghosts, int frames = 40) {
+  simulate::room::RoomOptions options;
+  options.motion = simulate::room::RoomMotion::cloud;
   options.cameras = cameras;
   options.markers = markers;
   options.dropped = dropped;
@@ -63,24 +63,24 @@ RoomOptions cloud(int cameras, int markers, double dropped, double ghosts, int f
 }
 
 /// Cameras see one point: a ray of each.
-std::vector<SightLine> rays_of(const std::vector<Camera>& cameras, Random& random, double sigma) {
+std::vector<reconstruct::SightLine> rays_of(const std::vector<Camera>& cameras, simulate::Random& random, double sigma) {
   const Vector<3> point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.3, 2));
-  std::vector<SightLine> rays;
+  std::vector<reconstruct::SightLine> rays;
   for (int c = 0; c < std::ssize(cameras); ++c) {
     const auto pixel = cameras[static_cast<std::size_t>(c)].project(point);
     if (!pixel) continue;
     const Vector<2> noisy = *pixel + Vector<2>(random.gaussian(0, sigma), random.gaussian(0, sigma));
-    if (const auto ray = sight_line(cameras[static_cast<std::size_t>(c)], c, noisy, sigma)) rays.push_back(*ray);
+    if (const auto ray = reconstruct::sight_line(cameras[static_cast<std::size_t>(c)], c, noisy, sigma)) rays.push_back(*ray);
   }
   return rays;
 }
 
 void triangulation(benchmark::State& state) {
-  Random random(1);
+  simulate::Random random(1);
   const Recording recording = record(cloud(static_cast<int>(state.range(0)), 1, 0, 0, 1));
-  std::vector<std::vector<SightLine>> points;
+  std::vector<std::vector<reconstruct::SightLine>> points;
   for (int i = 0; i < 500; ++i) points.push_back(rays_of(recording.cameras, random, 0.1));
-  const Triangulator triangulator;
+  const reconstruct::Triangulator triangulator;
   for (auto _ : state) {
     for (const auto& rays : points) benchmark::DoNotOptimize(triangulator(rays));
   }
@@ -91,7 +91,7 @@ BENCHMARK(triangulation)->Arg(2)->Arg(4)->Arg(8)->Arg(32);
 
 /// OpenCV's linear triangulation of two views, 500 points at a time: no iteration, no noise model, no covariance.
 void triangulation_opencv(benchmark::State& state) {
-  Random random(1);
+  simulate::Random random(1);
   const cv::Matx34d left(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0), right(1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0);
   cv::Mat a(2, 500, CV_64F), b(2, 500, CV_64F), homogeneous;
   for (int i = 0; i < 500; ++i) {
@@ -109,13 +109,13 @@ BENCHMARK(triangulation_opencv);
 void correspondence(benchmark::State& state) {
   const Recording recording = record(cloud(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
                                            static_cast<double>(state.range(2)) / 100, static_cast<double>(state.range(3)) / 100));
-  Corresponder corresponder(recording.cameras);
+  reconstruct::Corresponder corresponder(recording.cameras);
   double groups = 0, pure = 0, found = 0, to_find = 0;
   for (std::size_t i = 0; i < recording.seen.size(); ++i) {
     std::map<int, int> views;
     for (const int owner : recording.owner[i]) ++views[owner];
     std::set<int> right;
-    for (const Placed& placed : corresponder.match(recording.seen[i]).points) {
+    for (const reconstruct::Placed& placed : corresponder.match(recording.seen[i]).points) {
       const int owner = recording.owner[i][static_cast<std::size_t>(placed.seen.front())];
       bool same = owner >= 0;
       for (const int s : placed.seen) same &= recording.owner[i][static_cast<std::size_t>(s)] == owner;
@@ -144,10 +144,10 @@ BENCHMARK(correspondence)
 
 /// Blobs to followed markers, one frame: prediction, correspondence, triangulation, tracking. Cameras, markers.
 void chain(benchmark::State& state) {
-  RoomOptions options = cloud(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 0.05, 0.05, 400);
+  simulate::room::RoomOptions options = cloud(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 0.05, 0.05, 400);
   const Recording recording = record(options);
-  Corresponder corresponder(recording.cameras);
-  const auto tracker = make_roster_tracker<3>(space_tracker_options());
+  reconstruct::Corresponder corresponder(recording.cameras);
+  const auto tracker = track::make_roster_tracker<3>(pipeline::space_tracker_options());
   std::vector<Observation<3>> points;
   std::int64_t frame = 0;
   std::size_t next = 0;
@@ -156,7 +156,7 @@ void chain(benchmark::State& state) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(frame++) / options.rate_hz);
     const auto& found = corresponder.match(recording.seen[next], tracker->expected(now));
     points.clear();
-    for (const Placed& placed : found.points) {
+    for (const reconstruct::Placed& placed : found.points) {
       Observation<3> point;
       point.value = placed.point.position;
       point.covariance = placed.point.covariance;
@@ -172,11 +172,11 @@ BENCHMARK(chain)->Unit(benchmark::kMillisecond)->Args({4, 50})->Args({8, 50})->A
 /// The tracker alone, on true places with noise.
 void tracking(benchmark::State& state) {
   const int markers = static_cast<int>(state.range(0));
-  RoomOptions options = cloud(2, markers, 0, 0, 1);
-  const RoomScene scene(options);
-  const auto tracker = make_roster_tracker<3>(space_tracker_options());
+  simulate::room::RoomOptions options = cloud(2, markers, 0, 0, 1);
+  const simulate::room::RoomScene scene(options);
+  const auto tracker = track::make_roster_tracker<3>(pipeline::space_tracker_options());
   std::vector<std::vector<Observation<3>>> frames;
-  Random random(1);
+  simulate::Random random(1);
   for (int i = 0; i < 300; ++i) {
     auto& points = frames.emplace_back();
     for (const Vector<3>& place : scene.points(i / options.rate_hz)) {

@@ -41,7 +41,7 @@ class Crowd {
   }
 
  private:
-  Random random_;
+  simulate::Random random_;
   double side_;
   std::vector<Vector<2>> places_, velocities_;
   std::vector<Observation<2>> seen_;
@@ -50,7 +50,7 @@ class Crowd {
 void tracker_step(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   Crowd crowd(count);
-  const auto tracker = make_tracker<2>({.steady_camera = true});
+  const auto tracker = track::make_tracker<2>({.steady_camera = true});
   int frame = 0;
   for (; frame < 10; ++frame) tracker->step(timestamp_from_seconds(frame / rate), crowd.next());
   for (auto _ : state) {
@@ -68,7 +68,7 @@ BENCHMARK(tracker_step)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::
 void marker_step(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   constexpr double kRate = 30;
-  Random random(3);
+  simulate::Random random(3);
   const double side = 60 * std::sqrt(static_cast<double>(count));
   std::vector<Vector<2>> places, steps;
   for (int i = 0; i < count; ++i) {
@@ -87,7 +87,7 @@ void marker_step(benchmark::State& state) {
       point.box = Box::from_centre(point.value, 8, 8);
     }
   };
-  const auto tracker = make_roster_tracker<2>({});
+  const auto tracker = track::make_roster_tracker<2>({});
   int frame = 0;
   for (; frame < 5; ++frame) {
     look();
@@ -103,9 +103,9 @@ void marker_step(benchmark::State& state) {
 BENCHMARK(marker_step)->Arg(1)->Arg(30)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->MinTime(0.2);
 
 /// Every row with about three columns in its gate.
-std::vector<GatedPair> gated_pairs(int count) {
-  Random random(2);
-  std::vector<GatedPair> pairs;
+std::vector<assign::GatedPair> gated_pairs(int count) {
+  simulate::Random random(2);
+  std::vector<assign::GatedPair> pairs;
   for (int row = 0; row < count; ++row) {
     pairs.push_back({row, row, random.uniform(1, 10)});
     for (int neighbour = 1; neighbour <= 2; ++neighbour) {
@@ -118,7 +118,7 @@ std::vector<GatedPair> gated_pairs(int count) {
 void assign_gated(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   const auto pairs = gated_pairs(count);
-  GatedAssigner assigner;
+  assign::GatedAssigner assigner;
   for (auto _ : state) benchmark::DoNotOptimize(assigner.assign(count, count, pairs));
 }
 BENCHMARK(assign_gated)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMicrosecond);
@@ -126,8 +126,9 @@ BENCHMARK(assign_gated)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::
 void assign_dense(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   std::vector<double> costs(static_cast<std::size_t>(count) * count, 0);
-  for (const GatedPair& pair : gated_pairs(count)) costs[static_cast<std::size_t>(pair.row) * count + pair.column] = -pair.gain;
-  LinearAssigner assigner;
+  for (const assign::GatedPair& pair : gated_pairs(count))
+    costs[static_cast<std::size_t>(pair.row) * count + pair.column] = -pair.gain;
+  assign::LinearAssigner assigner;
   for (auto _ : state) benchmark::DoNotOptimize(assigner.assign(count, count, costs));
 }
 BENCHMARK(assign_dense)->RangeMultiplier(10)->Range(10, 1000)->Unit(benchmark::kMicrosecond);

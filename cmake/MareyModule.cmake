@@ -1,6 +1,6 @@
 # marey_module(NAME SOURCES ... [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
-# Adds one folder of src/marey to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
+# Adds one room of src/marey, "detect" or "detect/markers", to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
 # `marey_video`, because loading that costs a hundred shared libraries at every start. TESTS become one program, NAME_test.
 function(marey_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;VIDEO_SOURCES;TESTS;TEST_LIBRARIES")
@@ -12,11 +12,11 @@ function(marey_module name)
   target_sources(marey PRIVATE ${arg_SOURCES})
   target_sources(marey_video PRIVATE ${arg_VIDEO_SOURCES})
   if(MAREY_TESTS AND arg_TESTS)
+    string(REPLACE "/" "." prefix ${name})
+    string(REPLACE "/" "_" name ${name})
     add_executable(${name}_test ${arg_TESTS})
-    target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings ${arg_TEST_LIBRARIES})
-    target_include_directories(${name}_test PRIVATE "${PROJECT_SOURCE_DIR}/tests")  # for "support/..."
-    target_compile_definitions(${name}_test PRIVATE MAREY_ROOT="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
+    target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings marey_test_support ${arg_TEST_LIBRARIES})
+    gtest_discover_tests(${name}_test TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   endif()
 endfunction()
 
@@ -36,4 +36,10 @@ endif()
 if(MAREY_TESTS)
   include(GoogleTest)
   enable_testing()
+  # For "support/...". Where the checkout lies is known to this one object, so that a compiler's cache serves all the others.
+  add_library(marey_test_support STATIC "${PROJECT_SOURCE_DIR}/tests/support/data.cpp")
+  target_compile_features(marey_test_support PUBLIC cxx_std_20)
+  target_include_directories(marey_test_support PUBLIC "${PROJECT_SOURCE_DIR}/tests")
+  target_compile_definitions(marey_test_support PRIVATE MAREY_ROOT="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(marey_test_support PRIVATE marey_warnings)
 endif()

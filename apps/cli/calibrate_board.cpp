@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "marey/format/rig_file.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/rig/rig_sources.h"
 
 #include "calibrate_commands.h"
 #include "progress_bar.h"
@@ -20,7 +20,7 @@ namespace {
 struct CalibrateBoard {
   std::string rig, board, out;
   std::vector<std::string> sources;
-  BoardRunOptions run;
+  pipeline::BoardRunOptions run;
   bool json = false;
   bool quiet = false;
 };
@@ -30,10 +30,10 @@ nlohmann::json figures_of(const Figures& found) {
   return {{"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
 }
 
-nlohmann::json as_json(const BoardRun& run) {
+nlohmann::json as_json(const pipeline::BoardRun& run) {
   nlohmann::json cameras;
   for (std::size_t i = 0; i < run.rig.cameras.size(); ++i) {
-    const BoardRigPose& found = run.found.cameras[i];
+    const calibrate::board::BoardRigPose& found = run.found.cameras[i];
     const Vector<3> centre = run.rig.cameras[i].camera_from_world->inverse().translation;
     nlohmann::json camera = figures_of(found);
     camera["centre"] = {centre.x(), centre.y(), centre.z()};
@@ -46,10 +46,10 @@ nlohmann::json as_json(const BoardRun& run) {
   return {{"all", figures_of(run.found)}, {"cameras", cameras}, {"jitter_s", run.found.jitter_s}, {"warnings", run.found.warnings}};
 }
 
-void print_table(const BoardRun& run) {
+void print_table(const pipeline::BoardRun& run) {
   fmt::print("{:<14} {:>8} {:>8} {:>13} {:>9} {:>26}\n", "camera", "RMS px", "mean px", "corners", "offset ms", "centre m");
   for (std::size_t i = 0; i < run.rig.cameras.size(); ++i) {
-    const BoardRigPose& found = run.found.cameras[i];
+    const calibrate::board::BoardRigPose& found = run.found.cameras[i];
     const Vector<3> centre = run.rig.cameras[i].camera_from_world->inverse().translation;
     fmt::print("{:<14} {:>8.3f} {:>8.3f} {:>13} {:>9.2f} {:>8.4f} {:>8.4f} {:>8.4f}\n", run.rig.cameras[i].name, found.rms_px,
                found.mean_px, fmt::format("{}/{}", found.inliers, found.observations),
@@ -60,19 +60,19 @@ void print_table(const BoardRun& run) {
 }
 
 void run(const CalibrateBoard& command) {
-  const Board board = parse_board(command.board);
-  Rig rig = read_rig(command.rig);
-  set_sources(rig, command.sources);
-  BoardRunOptions options = command.run;
-  BoardRun found;
+  const calibrate::board::Board board = calibrate::board::parse_board(command.board);
+  Rig rig = format::rig::read_rig(command.rig);
+  format::rig::set_sources(rig, command.sources);
+  pipeline::BoardRunOptions options = command.run;
+  pipeline::BoardRun found;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](const std::string& camera, std::int64_t done, std::optional<std::int64_t> all) {
       bar.show("looking for the board in " + camera, done, all);
     };
-    found = calibrate_board_from(rig, board, options);
+    found = pipeline::calibrate_board_from(rig, board, options);
   }
-  write_rig(found.rig, command.out);
+  format::rig::write_rig(found.rig, command.out);
   for (const std::string& sentence : found.found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
     fmt::print("{}\n", as_json(found).dump(2));

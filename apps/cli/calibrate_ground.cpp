@@ -8,7 +8,7 @@
 
 #include "marey/calibrate/ground.h"
 #include "marey/core/error.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/board_on_ground.h"
 #include "marey/pipeline/camera_blobs.h"
 
@@ -23,7 +23,7 @@ struct CalibrateGround {
   RigInputs inputs;
   std::string frame = "0,0;0.2,0;0.6,0;0,0.4";
   std::string board, out;
-  MarkerOptions markers;
+  detect::markers::MarkerOptions markers;
   bool scale = false;
   bool json = false;
   bool quiet = false;
@@ -42,28 +42,29 @@ std::vector<Vector<3>> frame_of(const std::string& text) {
   return frame;
 }
 
-GroundFound ground_of(const CalibrateGround& command, Rig& rig, ProgressBar& bar) {
-  if (!command.board.empty()) return board_on_ground(rig, parse_board(command.board));
-  CameraBlobs blobs;
+calibrate::GroundFound ground_of(const CalibrateGround& command, Rig& rig, ProgressBar& bar) {
+  if (!command.board.empty()) return pipeline::board_on_ground(rig, calibrate::board::parse_board(command.board));
+  pipeline::CameraBlobs blobs;
   if (!command.inputs.observations.empty()) {
-    blobs = read_blobs(command.inputs.observations, rig);
+    blobs = pipeline::read_blobs(command.inputs.observations, rig);
   } else {
-    blobs = find_blobs(rig, command.markers, [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
+    blobs =
+        pipeline::find_blobs(rig, command.markers, [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
   }
   for (const std::string& sentence : blobs.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   std::vector<std::vector<Vector<2>>> still;
-  for (const auto& frames : blobs.seen) still.push_back(still_blobs(frames));
-  return find_ground(rig, still, frame_of(command.frame), command.scale);
+  for (const auto& frames : blobs.seen) still.push_back(calibrate::still_blobs(frames));
+  return calibrate::find_ground(rig, still, frame_of(command.frame), command.scale);
 }
 
 void run(const CalibrateGround& command) {
   Rig rig = rig_of(command.inputs);
-  GroundFound found;
+  calibrate::GroundFound found;
   {
     ProgressBar bar(command.quiet);
     found = ground_of(command, rig, bar);
   }
-  write_rig(moved_to_ground(rig, found.ground_from_world, found.scale), command.out);
+  format::rig::write_rig(calibrate::moved_to_ground(rig, found.ground_from_world, found.scale), command.out);
   if (command.json) {
     fmt::print("{}\n", nlohmann::json{{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.seen_by}}.dump(2));
   } else if (!command.quiet) {

@@ -10,7 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
 #include "marey/draw/coverage_plot.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/format/whole_file.h"
 
 #include "calibrate_commands.h"
@@ -22,20 +22,20 @@ namespace {
 struct CalibrateLens {
   std::string input, board, out, picture;
   std::string name = "camera";
-  LensRunOptions run;
+  pipeline::LensRunOptions run;
   bool json = false;
   bool quiet = false;
 };
 
-nlohmann::json as_json(const CalibrateLens& command, const LensRun& run) {
-  const LensCalibration& found = run.calibration;
+nlohmann::json as_json(const CalibrateLens& command, const pipeline::LensRun& run) {
+  const calibrate::LensCalibration& found = run.calibration;
   const nlohmann::json figures = {
       {"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
   nlohmann::json camera = figures;
-  const Vector<2>& focal = focal_of(found.lens);
-  const Vector<2>& principal = principal_of(found.lens);
+  const Vector<2>& focal = geometry::focal_of(found.lens);
+  const Vector<2>& principal = geometry::principal_of(found.lens);
   camera["size"] = {found.size.width, found.size.height};
-  camera["model"] = name_of(found.lens);
+  camera["model"] = geometry::name_of(found.lens);
   camera["focal"] = {focal.x(), focal.y()};
   camera["principal"] = {principal.x(), principal.y()};
   camera["distortion"] = std::visit([](const auto& lens) { return nlohmann::json(lens.distortion); }, found.lens);
@@ -43,7 +43,7 @@ nlohmann::json as_json(const CalibrateLens& command, const LensRun& run) {
   camera["deviation"] = {{"focal", found.deviation.focal * focal.x()},
                          {"principal", {found.deviation.principal.x(), found.deviation.principal.y()}},
                          {"distortion", found.deviation.distortion}};
-  for (const LensCalibration::View& view : found.views) {
+  for (const calibrate::LensCalibration::View& view : found.views) {
     nlohmann::json entry = {{"name", view.name}, {"rms_px", view.rms_px}};
     if (!view.refused.empty()) entry["refused"] = view.refused;
     camera["views"].push_back(std::move(entry));
@@ -51,12 +51,12 @@ nlohmann::json as_json(const CalibrateLens& command, const LensRun& run) {
   return {{"all", figures}, {"cameras", {{command.name, camera}}}, {"warnings", found.warnings}};
 }
 
-void print_table(const LensRun& run) {
-  const LensCalibration& found = run.calibration;
-  const Vector<2>& focal = focal_of(found.lens);
-  const Vector<2>& principal = principal_of(found.lens);
+void print_table(const pipeline::LensRun& run) {
+  const calibrate::LensCalibration& found = run.calibration;
+  const Vector<2>& focal = geometry::focal_of(found.lens);
+  const Vector<2>& principal = geometry::principal_of(found.lens);
   int used = 0;
-  for (const LensCalibration::View& view : found.views) used += view.refused.empty() ? 1 : 0;
+  for (const calibrate::LensCalibration::View& view : found.views) used += view.refused.empty() ? 1 : 0;
   fmt::print("{} pictures, {} show the board, {} used; corners cover {:.0f} % of the picture\n", run.frames, run.sightings, used,
              100 * found.covered);
   fmt::print("  error       {:8.3f} px RMS, {:.3f} px mean over {} of {} corners\n", found.rms_px, found.mean_px, found.inliers,
@@ -64,7 +64,7 @@ void print_table(const LensRun& run) {
   fmt::print("  focal       {:8.2f} {:8.2f} px  ± {:.2f}\n", focal.x(), focal.y(), found.deviation.focal * focal.x());
   fmt::print("  principal   {:8.2f} {:8.2f} px  ± {:.2f} {:.2f}\n", principal.x(), principal.y(), found.deviation.principal.x(),
              found.deviation.principal.y());
-  fmt::print("  {:<8}   ", name_of(found.lens));
+  fmt::print("  {:<8}   ", geometry::name_of(found.lens));
   std::visit(
       [&](const auto& lens) {
         for (std::size_t i = 0; i < lens.distortion.size(); ++i) {
@@ -73,12 +73,12 @@ void print_table(const LensRun& run) {
       },
       found.lens);
   fmt::print("\n");
-  for (const LensCalibration::View& view : found.views) {
+  for (const calibrate::LensCalibration::View& view : found.views) {
     if (!view.refused.empty()) fmt::print("  not used: {}: {}\n", view.name, view.refused);
   }
 }
 
-Rig rig_of(const CalibrateLens& command, const LensCalibration& found) {
+Rig rig_of(const CalibrateLens& command, const calibrate::LensCalibration& found) {
   RigCamera camera;
   camera.name = command.name;
   camera.size = found.size;
@@ -89,30 +89,30 @@ Rig rig_of(const CalibrateLens& command, const LensCalibration& found) {
   return rig;
 }
 
-void draw(const CalibrateLens& command, const LensCalibration& found) {
-  CoveragePlot plot;
+void draw(const CalibrateLens& command, const calibrate::LensCalibration& found) {
+  draw::CoveragePlot plot;
   plot.title = fmt::format("{}: {:.3f} px RMS over {} corners, {:.0f} % covered", command.name, found.rms_px, found.inliers,
                            100 * found.covered);
   plot.size = found.size;
-  for (const LensCalibration::View& view : found.views) {
+  for (const calibrate::LensCalibration::View& view : found.views) {
     for (std::size_t i = 0; i < view.pixels.size(); ++i)
       plot.marks.push_back({view.pixels[i], i < view.errors.size() ? view.errors[i] : Vector<2>::Zero(), view.refused.empty()});
   }
-  WholeFile file(command.picture);
-  file.write(to_svg(plot));
+  format::WholeFile file(command.picture);
+  file.write(draw::to_svg(plot));
   file.finish();
 }
 
 void run(const CalibrateLens& command) {
-  const Board board = parse_board(command.board);
-  LensRunOptions options = command.run;
-  LensRun found;
+  const calibrate::board::Board board = calibrate::board::parse_board(command.board);
+  pipeline::LensRunOptions options = command.run;
+  pipeline::LensRun found;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { bar.show("looking for the board", done, all); };
-    found = calibrate_lens_from(command.input, board, options);
+    found = pipeline::calibrate_lens_from(command.input, board, options);
   }
-  if (!command.out.empty()) write_rig(rig_of(command, found.calibration), command.out);
+  if (!command.out.empty()) format::rig::write_rig(rig_of(command, found.calibration), command.out);
   if (!command.picture.empty()) draw(command, found.calibration);
   for (const std::string& sentence : found.calibration.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
@@ -135,7 +135,7 @@ void add_calibrate_lens(CLI::App& calibrate) {
       ->required();
   command->add_option("-o,--out", options->out, "rig file for the camera");
   command->add_option("--model", options->run.lens.model, "of the lens")
-      ->check(CLI::IsMember(lens_models()))
+      ->check(CLI::IsMember(calibrate::lens_models()))
       ->capture_default_str();
   command
       ->add_option("--coefficients", options->run.lens.coefficients, "how many of the model's distortion coefficients are sought")

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/rig_file.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/rig/rig_sources.h"
 
 #include "calibrate_commands.h"
 #include "known.h"
@@ -41,12 +41,12 @@ std::map<std::string, std::string> parse_points(const std::vector<std::string>& 
   return result;
 }
 
-nlohmann::json as_json(const PitchRun& run) {
+nlohmann::json as_json(const pipeline::PitchRun& run) {
   nlohmann::json cameras;
   double sum = 0, square = 0;
   int inliers = 0, observations = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
-    const PitchViewResult& found = run.calibration.views[i];
+    const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     double camera_sum = 0, camera_square = 0;
     int good = 0;
     nlohmann::json points = nlohmann::json::array();
@@ -74,9 +74,9 @@ nlohmann::json as_json(const PitchRun& run) {
     sum += camera_sum, square += camera_square, inliers += good, observations += all;
   }
   nlohmann::json offsets = nlohmann::json::object();
-  for (const RigOffsets::Camera& camera : run.offsets.cameras) {
-    nlohmann::json& entry = offsets[camera.name] = {{"verdict", offset_verdict_name(camera.found.verdict)}};
-    if (camera.found.verdict != OffsetVerdict::found) continue;
+  for (const pipeline::RigOffsets::Camera& camera : run.offsets.cameras) {
+    nlohmann::json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
+    if (camera.found.verdict != calibrate::pitch::OffsetVerdict::found) continue;
     entry["offset_s"] = camera.offset_s;
     entry["found_s"] = camera.found.offset_s;
     entry["deviation_s"] = camera.found.deviation_s;
@@ -91,9 +91,9 @@ nlohmann::json as_json(const PitchRun& run) {
           {"warnings", run.warnings}};
 }
 
-void print_report(const PitchRun& run) {
+void print_report(const pipeline::PitchRun& run) {
   for (std::size_t i = 0; i < run.views.size(); ++i) {
-    const PitchViewResult& found = run.calibration.views[i];
+    const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     const Vector<3>& centre = found.camera.centre();
     const auto used = std::count(found.inlier.begin(), found.inlier.end(), 1);
     const Vector<2> place = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
@@ -116,19 +116,19 @@ void print_report(const PitchRun& run) {
 }
 
 void run(const CalibratePitch& command) {
-  Rig rig = read_rig(command.rig);
-  set_sources(rig, command.sources);
-  PitchRunOptions options;
+  Rig rig = format::rig::read_rig(command.rig);
+  format::rig::set_sources(rig, command.sources);
+  pipeline::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;
   options.synced = command.synced;
-  PitchRun found;
+  pipeline::PitchRun found;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](const std::string& what, int done, int all) { bar.show(what, done, all); };
-    found = calibrate_pitch_of(rig, parse_points(command.points), options);
+    found = pipeline::calibrate_pitch_of(rig, parse_points(command.points), options);
   }
-  write_rig(found.rig, command.out);
+  format::rig::write_rig(found.rig, command.out);
   for (const std::string& sentence : found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
     fmt::print("{}\n", as_json(found).dump(2));

@@ -6,10 +6,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "marey/calibrate/wand.h"
+#include "marey/calibrate/wand/wand.h"
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/camera_blobs.h"
 
 #include "calibrate_commands.h"
@@ -23,41 +23,41 @@ struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
   std::string lens = "auto";
-  MarkerOptions markers;
-  WandOptions options;
+  detect::markers::MarkerOptions markers;
+  calibrate::wand::WandOptions options;
   bool in_step = false;
   bool json = false;
   bool quiet = false;
 };
 
-WandShape wand_of(const std::string& text) {
-  WandShape wand;
+calibrate::wand::WandShape wand_of(const std::string& text) {
+  calibrate::wand::WandShape wand;
   if (text == "led") return wand;
   wand.distances = numbers_in(text, "--wand", "the markers' distances from the first in m, as 0,0.12,0.30, or led");
   if (wand.distances.size() >= 2) return wand;
   throw Error("--wand {}: a wand has two or three markers; a single light is \"led\"", text);
 }
 
-std::optional<KnownDistance> distance_of(const std::string& text) {
+std::optional<calibrate::wand::KnownDistance> distance_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto comma = text.find(','), equal = text.find('=');
   if (comma == std::string::npos || equal == std::string::npos || equal < comma) {
     throw Error("--distance {}: write CAM1,CAM2=METRES, two cameras' names and how far they stand apart", text);
   }
   const double metres = numbers_in(text.substr(equal + 1), "--distance", "CAM1,CAM2=METRES").front();
-  return KnownDistance{text.substr(0, comma), text.substr(comma + 1, equal - comma - 1), metres};
+  return calibrate::wand::KnownDistance{text.substr(0, comma), text.substr(comma + 1, equal - comma - 1), metres};
 }
 
-nlohmann::json as_json(const FitQuality& fit) {
+nlohmann::json as_json(const calibrate::FitQuality& fit) {
   return {{"mean_px", fit.mean_px}, {"rms_px", fit.rms_px}, {"inliers", fit.inliers}, {"observations", fit.observations}};
 }
 
-nlohmann::json as_json(const WandResult& result) {
-  const RigReport& report = result.report;
+nlohmann::json as_json(const calibrate::wand::WandResult& result) {
+  const calibrate::RigReport& report = result.report;
   nlohmann::json json = {{"all", as_json(report.all)}, {"cameras", nlohmann::json::object()}};
   json["all"]["noise_px"] = report.noise_px;
   for (std::size_t c = 0; c < report.cameras.size(); ++c) {
-    const CameraReport& camera = report.cameras[c];
+    const calibrate::CameraReport& camera = report.cameras[c];
     nlohmann::json& entry = json["cameras"][camera.name] = as_json(camera.fit);
     entry["coverage"] = camera.coverage;
     entry["world_error_mm"] = camera.world_error_mm;
@@ -83,15 +83,15 @@ nlohmann::json as_json(const WandResult& result) {
   return json;
 }
 
-void print_table(const WandResult& result) {
-  const RigReport& report = result.report;
+void print_table(const calibrate::wand::WandResult& result) {
+  const calibrate::RigReport& report = result.report;
   fmt::print("{:<16} {:>8} {:>8} {:>9} {:>9} {:>9} {:>10} {:>10}\n", "camera", "mean px", "rms px", "inliers", "of", "coverage",
              "error mm", "offset ms");
-  const auto row = [](const std::string& name, const FitQuality& fit) {
+  const auto row = [](const std::string& name, const calibrate::FitQuality& fit) {
     fmt::print("{:<16} {:>8.3f} {:>8.3f} {:>9} {:>9}", name, fit.mean_px, fit.rms_px, fit.inliers, fit.observations);
   };
   for (std::size_t c = 0; c < report.cameras.size(); ++c) {
-    const CameraReport& camera = report.cameras[c];
+    const calibrate::CameraReport& camera = report.cameras[c];
     row(camera.name, camera.fit);
     fmt::print(" {:>7.0f} % {:>10.3f} {:>10.3f}\n", 100 * camera.coverage, camera.world_error_mm,
                1000 * result.rig.cameras[c].offset_s.value_or(0));
@@ -109,15 +109,16 @@ void print_table(const WandResult& result) {
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
 }
 
-WandInput read(const CalibrateWand& command, bool& timed, ProgressBar& bar) {
-  WandInput input;
+calibrate::wand::WandInput read(const CalibrateWand& command, bool& timed, ProgressBar& bar) {
+  calibrate::wand::WandInput input;
   input.wand = wand_of(command.wand);
   input.rig = rig_of(command.inputs);
-  CameraBlobs blobs;
+  pipeline::CameraBlobs blobs;
   if (!command.inputs.observations.empty()) {
-    blobs = read_blobs(command.inputs.observations, input.rig);
+    blobs = pipeline::read_blobs(command.inputs.observations, input.rig);
   } else {
-    blobs = find_blobs(input.rig, command.markers, [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
+    blobs = pipeline::find_blobs(input.rig, command.markers,
+                                 [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
   }
   for (const std::string& sentence : blobs.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   timed = blobs.timed;
@@ -126,20 +127,22 @@ WandInput read(const CalibrateWand& command, bool& timed, ProgressBar& bar) {
 }
 
 void run(const CalibrateWand& command) {
-  WandOptions options = command.options;
+  calibrate::wand::WandOptions options = command.options;
   options.distance = distance_of(command.distance);
-  options.lens = command.lens == "fixed" ? LensUse::fixed : command.lens == "refined" ? LensUse::refined : LensUse::automatic;
-  WandResult result;
+  options.lens = command.lens == "fixed"     ? calibrate::wand::LensUse::fixed
+                 : command.lens == "refined" ? calibrate::wand::LensUse::refined
+                                             : calibrate::wand::LensUse::automatic;
+  calibrate::wand::WandResult result;
   {
     ProgressBar bar(command.quiet);
     bool timed = true;
-    const WandInput input = read(command, timed, bar);
+    const calibrate::wand::WandInput input = read(command, timed, bar);
     options.find_offsets = timed && !command.in_step;
     std::int64_t step = 0;
     options.step = [&](std::string_view what) { bar.show(what, step++, std::nullopt); };
-    result = calibrate_wand(input, options);
+    result = calibrate::wand::calibrate_wand(input, options);
   }
-  write_rig(result.rig, command.out);
+  format::rig::write_rig(result.rig, command.out);
   if (command.json) {
     fmt::print("{}\n", as_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!command.quiet) {

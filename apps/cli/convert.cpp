@@ -10,9 +10,9 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
-#include "marey/format/motion.h"
-#include "marey/format/rig_exchange.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/motion/motion.h"
+#include "marey/format/rig/rig_exchange.h"
 
 #include "commands.h"
 #include "convert_ground.h"
@@ -33,31 +33,33 @@ struct ConvertOptions {
   bool quiet = false;
 };
 
-UpAxis axis_of(const std::string& name) {
-  return name == "y" ? UpAxis::y : UpAxis::z;
+format::motion::UpAxis axis_of(const std::string& name) {
+  return name == "y" ? format::motion::UpAxis::y : format::motion::UpAxis::z;
 }
 
 /// `--up` is the axis of B; where B is a take, whose z is up always, it is that of A.
-std::pair<UpAxis, UpAxis> axes(const ConvertOptions& options, MotionFormat from, MotionFormat to) {
-  const UpAxis up = axis_of(options.up);
+std::pair<format::motion::UpAxis, format::motion::UpAxis> axes(const ConvertOptions& options, format::motion::MotionFormat from,
+                                                               format::motion::MotionFormat to) {
+  const format::motion::UpAxis up = axis_of(options.up);
   if (!options.from_up.empty()) {
-    if (from == MotionFormat::take) throw Error("a take's z is up always; --from-up is for other files");
+    if (from == format::motion::MotionFormat::take) throw Error("a take's z is up always; --from-up is for other files");
     return {axis_of(options.from_up), up};
   }
-  if (to == MotionFormat::take) return {up, UpAxis::z};
-  return {UpAxis::z, up};
+  if (to == format::motion::MotionFormat::take) return {up, format::motion::UpAxis::z};
+  return {format::motion::UpAxis::z, up};
 }
 
-MotionFormat format_to_write(const ConvertOptions& options) {
-  if (!options.format.empty()) return parse_motion_format(options.format);
-  const auto format = motion_format_of_name(options.to);
-  if (!format) throw Error("{}: its ending is of no format; name one with --format: {}", options.to, motion_format_names());
+format::motion::MotionFormat format_to_write(const ConvertOptions& options) {
+  if (!options.format.empty()) return format::motion::parse_motion_format(options.format);
+  const auto format = format::motion::motion_format_of_name(options.to);
+  if (!format)
+    throw Error("{}: its ending is of no format; name one with --format: {}", options.to, format::motion::motion_format_names());
   return *format;
 }
 
-MotionFormat format_to_read(const ConvertOptions& options) {
-  const auto format = fs::is_directory(options.from) ? std::nullopt : motion_format_of_content(options.from);
-  if (!format) throw Error("{}: is none of the files that Marey reads: {}", options.from, motion_format_names());
+format::motion::MotionFormat format_to_read(const ConvertOptions& options) {
+  const auto format = fs::is_directory(options.from) ? std::nullopt : format::motion::motion_format_of_content(options.from);
+  if (!format) throw Error("{}: is none of the files that Marey reads: {}", options.from, format::motion::motion_format_names());
   return *format;
 }
 
@@ -71,34 +73,36 @@ void leave_out_others(TakeFrame& frame, const std::vector<TakeTrack>& tracks) {
 }
 
 void convert_rig(const ConvertOptions& options) {
-  const auto by_name = rig_format_of_name(options.to);
+  const auto by_name = format::rig::rig_format_of_name(options.to);
   if (options.format.empty() && !by_name) {
-    throw Error("{}: its ending is of no format of calibrations; name one with --format: {}", options.to, rig_format_names());
+    throw Error("{}: its ending is of no format of calibrations; name one with --format: {}", options.to,
+                format::rig::rig_format_names());
   }
   if (!options.up.empty() || !options.from_up.empty()) {
     throw Error("{}: is a calibration, whose z is up always; --up and --from-up are for points", options.from);
   }
-  write_rig_as(read_rig_any(options.from), options.to, options.format.empty() ? *by_name : parse_rig_format(options.format));
+  format::rig::write_rig_as(format::rig::read_rig_any(options.from), options.to,
+                            options.format.empty() ? *by_name : format::rig::parse_rig_format(options.format));
 }
 
 void convert_motion(const ConvertOptions& options) {
-  const MotionFormat from = format_to_read(options), to = format_to_write(options);
+  const format::motion::MotionFormat from = format_to_read(options), to = format_to_write(options);
   std::error_code error;
   if (fs::equivalent(options.from, options.to, error))
     throw Error("{}: cannot be converted into itself; name another file", options.to);
   const auto [from_up, to_up] = axes(options, from, to);
   // Read twice: most formats begin with what is known only at the end.
-  const auto first = open_motion(options.from, from, from_up);
-  MotionPlan plan = plan_of(*first, options.from);
+  const auto first = format::motion::open_motion(options.from, from, from_up);
+  format::motion::MotionPlan plan = format::motion::plan_of(*first, options.from);
   for (const std::string& sentence : first->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
   // A file that says so itself is still believed only where the user says it too: many say it by mistake.
-  if (plan.info.up == UpAxis::y && from_up == UpAxis::z) {
+  if (plan.info.up == format::motion::UpAxis::y && from_up == format::motion::UpAxis::z) {
     fmt::print(stderr, "marey: warning: {}: says that y is up; {} turns it so that z is\n", options.from,
-               to == MotionFormat::take ? "--up y" : "--from-up y");
+               to == format::motion::MotionFormat::take ? "--up y" : "--from-up y");
   }
   if (options.labelled) std::erase_if(plan.info.tracks, [](const TakeTrack& track) { return track.label.empty(); });
-  const auto reader = open_motion(options.from, from, from_up);
-  const auto writer = create_motion(options.to, to, plan, to_up);
+  const auto reader = format::motion::open_motion(options.from, from, from_up);
+  const auto writer = format::motion::create_motion(options.to, to, plan, to_up);
   ProgressBar progress(options.quiet);
   std::int64_t done = 0;
   while (auto frame = reader->next()) {
@@ -113,7 +117,7 @@ void convert(const ConvertOptions& options) {
   std::error_code error;
   if (fs::equivalent(options.from, options.to, error))
     throw Error("{}: cannot be converted into itself; name another file", options.to);
-  if (ground_format_of_content(options.from)) {
+  if (format::match::ground_format_of_content(options.from)) {
     if (!options.up.empty() || !options.from_up.empty())
       throw Error("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
     return convert_ground(options.from, options.to, options.format, options.ground);
@@ -141,8 +145,8 @@ void add_convert(CLI::App& app) {
       ->required();
   command
       ->add_option("--format", options->format,
-                   "B's format in place of its ending: " + motion_format_names() + "; of people on the ground " +
-                       ground_format_names() + "; of a calibration " + rig_format_names())
+                   "B's format in place of its ending: " + format::motion::motion_format_names() + "; of people on the ground " +
+                       format::match::ground_format_names() + "; of a calibration " + format::rig::rig_format_names())
       ->check(known([](const std::string& name) {
         const auto is = [&](auto parse) {
           try {
@@ -152,7 +156,8 @@ void add_convert(CLI::App& app) {
             return false;
           }
         };
-        if (!is(parse_motion_format) && !is(parse_rig_format)) parse_ground_format(name);
+        if (!is(format::motion::parse_motion_format) && !is(format::rig::parse_rig_format))
+          format::match::parse_ground_format(name);
       }));
   command->add_option("--up", options->up, "the axis that is up in B (in A, where B is a take); coordinates are turned accordingly")
       ->check(CLI::IsMember({"y", "z"}))

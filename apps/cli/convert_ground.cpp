@@ -5,8 +5,8 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/format/text_rows.h"
 
 #include "known.h"
@@ -16,19 +16,19 @@ namespace marey::cli {
 namespace {
 
 /// FIRST-LAST, frames counted from 0.
-GroundPeriod parse_period(const std::string& text, int number) {
+format::match::GroundPeriod parse_period(const std::string& text, int number) {
   const std::size_t dash = text.find('-', 1);
-  const auto first = whole_number_of(std::string_view(text).substr(0, dash));
-  const auto last = dash == std::string::npos ? std::nullopt : whole_number_of(std::string_view(text).substr(dash + 1));
+  const auto first = format::whole_number_of(std::string_view(text).substr(0, dash));
+  const auto last = dash == std::string::npos ? std::nullopt : format::whole_number_of(std::string_view(text).substr(dash + 1));
   if (!first || !last || *first < 0 || *last < *first || *last > 1'000'000'000)
     throw Error("\"{}\" is no period; give its first and last frame, counted from 0, as 0-67499", text);
   return {number, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)};
 }
 
-GroundFrame frame_of(const GroundConversion& options) {
-  GroundFrame frame{options.y_down, options.centred};
+format::match::GroundFrame frame_of(const GroundConversion& options) {
+  format::match::GroundFrame frame{options.y_down, options.centred};
   if (options.rig.empty()) return frame;
-  const Rig rig = read_rig(options.rig);
+  const Rig rig = format::rig::read_rig(options.rig);
   if (!rig.ground_from_world)
     throw Error("{}: says nothing of the ground; `marey calibrate pitch` makes a rig that does", options.rig);
   // A reflection: seen from above, y grows to the right of x, downwards.
@@ -37,8 +37,8 @@ GroundFrame frame_of(const GroundConversion& options) {
 }
 
 /// Whether coordinates are the user's; else they are the pitch's.
-bool is_plain(GroundFormat format) {
-  return format == GroundFormat::csv || format == GroundFormat::mot;
+bool is_plain(format::match::GroundFormat format) {
+  return format == format::match::GroundFormat::csv || format == format::match::GroundFormat::mot;
 }
 
 }  // namespace
@@ -72,25 +72,27 @@ void add_ground_conversion(CLI::App& command, GroundConversion& options) {
 
 void convert_ground(const std::string& from, const std::string& to, const std::string& format_name,
                     const GroundConversion& options) {
-  const auto by_name = ground_format_of_name(to);
+  const auto by_name = format::match::ground_format_of_name(to);
   if (format_name.empty() && !by_name)
-    throw Error("{}: its ending is of no format of people on the ground; name one with --format: {}", to, ground_format_names());
+    throw Error("{}: its ending is of no format of people on the ground; name one with --format: {}", to,
+                format::match::ground_format_names());
   // "csv" is a name of points' formats, and what everyone will try.
-  const GroundFormat out = format_name.empty()    ? *by_name
-                           : format_name == "csv" ? GroundFormat::csv
-                                                  : parse_ground_format(format_name);
-  const GroundFrame frame = frame_of(options);
-  const auto in = ground_format_of_content(from).value_or(GroundFormat::csv);
-  GroundMatch match = read_ground_as(from, in, {options.metadata, parse_pitch_size(options.size), options.rate_hz});
+  const format::match::GroundFormat out = format_name.empty()    ? *by_name
+                                          : format_name == "csv" ? format::match::GroundFormat::csv
+                                                                 : format::match::parse_ground_format(format_name);
+  const format::match::GroundFrame frame = frame_of(options);
+  const auto in = format::match::ground_format_of_content(from).value_or(format::match::GroundFormat::csv);
+  format::match::GroundMatch match =
+      format::match::read_ground_as(from, in, {options.metadata, parse_pitch_size(options.size), options.rate_hz});
   if (!options.home.empty()) match.home = options.home;
   if (!options.away.empty()) match.away = options.away;
   if (!options.periods.empty()) match.periods.clear();
   for (const std::string& period : options.periods)
     match.periods.push_back(parse_period(period, static_cast<int>(match.periods.size()) + 1));
-  if (is_plain(in) && !is_plain(out)) to_corner(match.recording, match.pitch, frame);
-  if (!is_plain(in) && is_plain(out)) from_corner(match.recording, match.pitch, frame);
+  if (is_plain(in) && !is_plain(out)) format::match::to_corner(match.recording, match.pitch, frame);
+  if (!is_plain(in) && is_plain(out)) format::match::from_corner(match.recording, match.pitch, frame);
   std::vector<std::string> warnings = match.warnings;
-  const std::vector<std::string> lost = write_ground_as(match, to, out);
+  const std::vector<std::string> lost = format::match::write_ground_as(match, to, out);
   warnings.insert(warnings.end(), lost.begin(), lost.end());
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
 }

@@ -10,7 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/evaluate/evaluation.h"
-#include "marey/format/mot.h"
+#include "marey/format/tracks/mot.h"
 
 #include "commands.h"
 #include "evaluate_ground.h"
@@ -33,8 +33,8 @@ std::string frames_of(const std::vector<LabelledBox>& boxes) {
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> doubts(const EvaluateOptions& options, const MotTable& truth, const MotTable& tracks,
-                                const Evaluation& result) {
+std::vector<std::string> doubts(const EvaluateOptions& options, const format::tracks::MotTable& truth,
+                                const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
   std::vector<std::string> sentences = truth.warnings;
   sentences.insert(sentences.end(), tracks.warnings.begin(), tracks.warnings.end());
   if (truth.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box that is to be judged", options.truth));
@@ -51,7 +51,7 @@ std::vector<std::string> doubts(const EvaluateOptions& options, const MotTable& 
   return sentences;
 }
 
-nlohmann::json as_json(const Evaluation& result, double iou, const std::vector<std::string>& warnings) {
+nlohmann::json as_json(const evaluate::Evaluation& result, double iou, const std::vector<std::string>& warnings) {
   nlohmann::json json = as_json(result);
   json["iou"] = iou;
   json["true_boxes"] = result.true_boxes;
@@ -60,7 +60,7 @@ nlohmann::json as_json(const Evaluation& result, double iou, const std::vector<s
   return json;
 }
 
-std::string verdict(const Evaluation& result) {
+std::string verdict(const evaluate::Evaluation& result) {
   if (!result.clear.mota) return "There is no truth, so nothing can be said of the tracks.";
   const double hota = result.hota.hota;
   const char* grade = hota >= 0.75 ? "Excellent" : hota >= 0.6 ? "Good" : hota >= 0.45 ? "Fair" : hota >= 0.3 ? "Poor" : "Bad";
@@ -76,8 +76,8 @@ void print_row(const char* name, const std::string& value, const char* meaning) 
   fmt::print("  {:<5} {:>9}   {}\n", name, value, meaning);
 }
 
-void print_table(const Evaluation& result, double iou) {
-  const ClearScores& clear = result.clear;
+void print_table(const evaluate::Evaluation& result, double iou) {
+  const evaluate::ClearScores& clear = result.clear;
   fmt::print("{} frames; truth: {} objects, {} boxes; tracks: {}, {} boxes. A box counts as found from an overlap (IoU) of {}.\n\n",
              result.frames, result.objects, result.true_boxes, result.tracks, result.track_boxes, iou);
   fmt::print("Overall\n");
@@ -108,10 +108,10 @@ void print_table(const Evaluation& result, double iou) {
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw Error("only one of --truth and --tracks can be standard input");
   if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json);
-  MotTable truth = read_mot(options.truth, MotKind::truth);
+  format::tracks::MotTable truth = format::tracks::read_mot(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
-  const MotTable tracks = read_mot(options.tracks, MotKind::tracks);
-  const Evaluation result = evaluate(truth.boxes, tracks.boxes, options.iou);
+  const format::tracks::MotTable tracks = format::tracks::read_mot(options.tracks, format::tracks::MotKind::tracks);
+  const evaluate::Evaluation result = evaluate::evaluate(truth.boxes, tracks.boxes, options.iou);
   const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
+#include "marey/format/match/ground_exchange.h"
 #include "marey/pipeline/judge_match.h"
 
 #include "scores.h"
@@ -18,30 +18,30 @@
 namespace marey::cli {
 namespace {
 
-void add_spread(nlohmann::json& json, const char* name, const char* unit, const std::optional<ErrorSpread>& spread) {
+void add_spread(nlohmann::json& json, const char* name, const char* unit, const std::optional<evaluate::ErrorSpread>& spread) {
   const auto key = [&](const char* which) { return fmt::format("{}_{}_{}", name, which, unit); };
   json[key("rms")] = spread ? nlohmann::json(spread->rms) : nlohmann::json();
   json[key("median")] = spread ? nlohmann::json(spread->median) : nlohmann::json();
   json[key("p95")] = spread ? nlohmann::json(spread->p95) : nlohmann::json();
 }
 
-std::optional<double> share_kept(const std::vector<PersonFate>& people) {
+std::optional<double> share_kept(const std::vector<evaluate::PersonFate>& people) {
   if (people.empty()) return std::nullopt;
-  const auto kept = std::count_if(people.begin(), people.end(), [](const PersonFate& person) { return person.kept(); });
+  const auto kept = std::count_if(people.begin(), people.end(), [](const evaluate::PersonFate& person) { return person.kept(); });
   return static_cast<double>(kept) / static_cast<double>(people.size());
 }
 
 /// Of the reported places, those where nobody is.
-std::optional<double> share_false(const ClearScores& clear) {
+std::optional<double> share_false(const evaluate::ClearScores& clear) {
   if (!clear.precision) return std::nullopt;
   return 1 - *clear.precision;
 }
 
-nlohmann::json people_json(const MatchJudgement& judgement) {
-  std::map<int, WayLengths> ways;
-  for (const WayLengths& way : judgement.ways) ways[way.id] = way;
+nlohmann::json people_json(const pipeline::MatchJudgement& judgement) {
+  std::map<int, pipeline::PathLengths> ways;
+  for (const pipeline::PathLengths& way : judgement.ways) ways[way.id] = way;
   nlohmann::json people = nlohmann::json::array();
-  for (const PersonFate& person : judgement.evaluation.people) {
+  for (const evaluate::PersonFate& person : judgement.evaluation.people) {
     nlohmann::json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
                          {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
                          {"kept", person.kept()}};
@@ -55,8 +55,8 @@ nlohmann::json people_json(const MatchJudgement& judgement) {
   return people;
 }
 
-nlohmann::json as_json(const MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
-  const Evaluation& scores = judgement.evaluation.scores;
+nlohmann::json as_json(const pipeline::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
+  const evaluate::Evaluation& scores = judgement.evaluation.scores;
   nlohmann::json json = as_json(scores);
   json["distance"] = distance;
   json["paired_by"] = judgement.by_time ? "time" : "frame";
@@ -79,13 +79,13 @@ void print_row(const char* name, const std::string& value, const char* meaning) 
   fmt::print("  {:<9} {:>24}   {}\n", name, value, meaning);
 }
 
-std::string words_of(const std::optional<ErrorSpread>& spread) {
+std::string words_of(const std::optional<evaluate::ErrorSpread>& spread) {
   return spread ? fmt::format("{:.3f} / {:.3f} / {:.3f}", spread->rms, spread->median, spread->p95) : "none";
 }
 
-void print_table(const MatchJudgement& judgement, double distance) {
-  const Evaluation& scores = judgement.evaluation.scores;
-  const ClearScores& clear = scores.clear;
+void print_table(const pipeline::MatchJudgement& judgement, double distance) {
+  const evaluate::Evaluation& scores = judgement.evaluation.scores;
+  const evaluate::ClearScores& clear = scores.clear;
   fmt::print("{} instants; truth: {} people, {} places; tracks: {}, {} places. Someone counts as found within {} m.\n\n",
              scores.frames, scores.objects, scores.true_boxes, scores.tracks, scores.track_boxes, distance);
   fmt::print("Finding\n");
@@ -110,7 +110,7 @@ void print_table(const MatchJudgement& judgement, double distance) {
 
 /// What a user should know before believing the figures.
 std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const GroundRecording& truth,
-                                const GroundRecording& tracks, const MatchJudgement& judgement) {
+                                const GroundRecording& tracks, const pipeline::MatchJudgement& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
   if (truth.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
   if (tracks.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
@@ -129,11 +129,11 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 }  // namespace
 
 void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
-  const GroundMatch tracks_match = read_ground_any(tracks_name);
+  const format::match::GroundMatch tracks_match = format::match::read_ground_any(tracks_name);
   const GroundRecording& tracks = tracks_match.recording;
   // A truth that has frames and no times has the tracks'.
-  const GroundRecording truth = read_ground_any(truth_name, {{}, {}, tracks_match.rate_hz}).recording;
-  const MatchJudgement judgement = judge_match(truth, tracks, distance);
+  const GroundRecording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks_match.rate_hz}).recording;
+  const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (json) {

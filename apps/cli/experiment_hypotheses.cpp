@@ -14,12 +14,12 @@ namespace marey::cli {
 namespace {
 
 struct ExperimentHypotheses {
-  HypothesesExperimentOptions options;
+  pipeline::HypothesesExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-nlohmann::json as_json(const HypothesesExperiment& experiment) {
+nlohmann::json as_json(const pipeline::HypothesesExperiment& experiment) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t kind = 0; kind < experiment.kinds.size(); ++kind) {
     nlohmann::json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
@@ -37,14 +37,14 @@ nlohmann::json as_json(const HypothesesExperiment& experiment) {
 }
 
 void run(const ExperimentHypotheses& command) {
-  HypothesesExperimentOptions options = command.options;
-  HypothesesExperiment experiment;
+  pipeline::HypothesesExperimentOptions options = command.options;
+  pipeline::HypothesesExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("scenes", done, all); };
-    experiment = run_hypotheses_experiment(options);
+    experiment = pipeline::run_hypotheses_experiment(options);
   }
-  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : to_text(experiment));
+  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : pipeline::to_text(experiment));
 }
 
 }  // namespace
@@ -53,8 +53,8 @@ void add_experiment_hypotheses(CLI::App& experiment) {
   auto options = std::make_shared<ExperimentHypotheses>();
   CLI::App* hypotheses = experiment.add_subcommand(
       "hypotheses", "People who cross, run side by side and stop together: who keeps them apart, nearest neighbour or hypotheses");
-  EncounterOptions& encounters = options->options.encounters;
-  GroundTrackerOptions& tracker = options->options.tracker;
+  simulate::EncounterOptions& encounters = options->options.encounters;
+  track::ground::GroundTrackerOptions& tracker = options->options.tracker;
   hypotheses->add_option("--scenes", options->options.scenes, "of each kind of meeting")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();

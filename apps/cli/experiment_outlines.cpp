@@ -15,19 +15,19 @@ namespace marey::cli {
 namespace {
 
 struct ExperimentOutlines {
-  OutlineExperimentOptions options;
+  pipeline::OutlineExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-nlohmann::json as_json(const OutlineExperiment& experiment) {
+nlohmann::json as_json(const pipeline::OutlineExperiment& experiment) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t c = 0; c < experiment.cases.size(); ++c) {
-    const OutlineCase& what = experiment.cases[c];
+    const pipeline::OutlineCase& what = experiment.cases[c];
     nlohmann::json entry = {{"case", what.name}, {"height_px", what.height_px}, {"films", what.videos}, {"people", what.people}};
     if (what.true_jitter) entry["true_jitter_px"] = *what.true_jitter;
     for (const auto& row : experiment.rows) {
-      const OutlineScore& score = row.scores[c];
+      const pipeline::OutlineScore& score = row.scores[c];
       nlohmann::json& method = entry["methods"][row.method];
       method = {{"iou", score.iou}, {"lost", score.lost}, {"followed", score.followed}, {"frames", score.frames}};
       if (score.centre_error) method["centre_error_px"] = *score.centre_error;
@@ -40,15 +40,15 @@ nlohmann::json as_json(const OutlineExperiment& experiment) {
 }
 
 void run(const ExperimentOutlines& command) {
-  OutlineExperimentOptions options = command.options;
-  OutlineExperiment experiment;
+  pipeline::OutlineExperimentOptions options = command.options;
+  pipeline::OutlineExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("films", done, all); };
-    experiment = run_outline_experiment(options);
+    experiment = pipeline::run_outline_experiment(options);
   }
   if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", options.only);
-  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : to_text(experiment));
+  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : pipeline::to_text(experiment));
 }
 
 }  // namespace

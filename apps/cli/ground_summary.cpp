@@ -13,7 +13,7 @@ nlohmann::json path_or_null(const std::string& path) {
   return path.empty() ? nlohmann::json() : nlohmann::json(path);
 }
 
-std::int64_t camera_frames(const GroundSummary& summary) {
+std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
   std::int64_t sum = 0;
   for (const auto& camera : summary.cameras) sum += camera.counts.frames;
   return sum;
@@ -25,7 +25,7 @@ double share(std::int64_t part, std::int64_t whole) {
 
 }  // namespace
 
-void print_json(const GroundSummary& summary, const GroundOutput& output, double elapsed) {
+void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
   nlohmann::json cameras = nlohmann::json::array();
   for (const auto& [name, counts] : summary.cameras) {
     cameras.push_back({{"name", name},
@@ -35,7 +35,7 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
                        {"dropped", {{"outside", counts.outside}, {"noise", counts.noise}, {"misfits", counts.misfits}}}});
   }
   nlohmann::json teams = nlohmann::json::array();
-  for (const Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
+  for (const analyse::Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
   const nlohmann::json json = {{"frames", summary.frames},
                                {"seconds", summary.seconds},
                                {"people", summary.people},
@@ -56,13 +56,13 @@ void print_json(const GroundSummary& summary, const GroundOutput& output, double
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_summary(const GroundSummary& summary, const GroundOutput& output, double elapsed) {
+void print_summary(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
   for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   const std::size_t count = summary.cameras.size();
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.people,
              summary.people == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
              static_cast<double>(camera_frames(summary)) / elapsed);
-  for (const Teams::Team& team : summary.teams) fmt::print(stderr, "team {}: {} people\n", team.name, team.people);
+  for (const analyse::Teams::Team& team : summary.teams) fmt::print(stderr, "team {}: {} people\n", team.name, team.people);
   if (summary.predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
                share(summary.predicted, summary.rows));

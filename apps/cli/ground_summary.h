@@ -5,9 +5,9 @@
 namespace marey::cli {
 
 /// On standard output. `elapsed` in s.
-void print_json(const GroundSummary& summary, const GroundOutput& output, double elapsed);
+void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed);
 
 /// On standard error, so that tracks may go to standard output.
-void print_summary(const GroundSummary& summary, const GroundOutput& output, double elapsed);
+void print_summary(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed);
 
 }  // namespace marey::cli

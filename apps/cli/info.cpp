@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
-#include "marey/format/motion.h"
-#include "marey/format/rig_exchange.h"
-#include "marey/format/take_file.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/motion/motion.h"
+#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/take/take_file.h"
 
 #include "commands.h"
 #include "info_ground.h"
@@ -29,19 +29,19 @@ struct InfoOptions {
   bool json = false;
 };
 
-std::string_view words_of(MotionFormat format) {
+std::string_view words_of(format::motion::MotionFormat format) {
   switch (format) {
-    case MotionFormat::take:
+    case format::motion::MotionFormat::take:
       return "a take";
-    case MotionFormat::c3d:
+    case format::motion::MotionFormat::c3d:
       return "a C3D file";
-    case MotionFormat::trc:
+    case format::motion::MotionFormat::trc:
       return "a TRC file";
-    case MotionFormat::csv:
+    case format::motion::MotionFormat::csv:
       return "a CSV file of points, one row each";
-    case MotionFormat::motive:
+    case format::motion::MotionFormat::motive:
       return "a CSV file of Motive's";
-    case MotionFormat::nexus:
+    case format::motion::MotionFormat::nexus:
       return "a CSV file of Nexus's";
   }
   return {};
@@ -118,7 +118,8 @@ void print_tracks(const TakeSummary& summary) {
   }
 }
 
-void print_motion(const std::string& path, MotionFormat format, const MotionInfo& info, const TakeSummary& summary) {
+void print_motion(const std::string& path, format::motion::MotionFormat format, const format::motion::MotionInfo& info,
+                  const TakeSummary& summary) {
   fmt::print("{}: {}{}\n", path, words_of(format),
              summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
   row("name", info.header.name);
@@ -140,8 +141,8 @@ void print_motion(const std::string& path, MotionFormat format, const MotionInfo
   row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.points),
                             percent(summary.points - filled - predicted, summary.points), percent(filled, summary.points),
                             percent(predicted, summary.points)));
-  if (format == MotionFormat::take) row("observations", counted(summary.observations));
-  if (info.up) row("up", *info.up == UpAxis::y ? "y" : "z");
+  if (format == format::motion::MotionFormat::take) row("observations", counted(summary.observations));
+  if (info.up) row("up", *info.up == format::motion::UpAxis::y ? "y" : "z");
   for (const TakeEdit& edit : info.edits) row("edit", edit.time.empty() ? edit.what : edit.time + ": " + edit.what);
   if (info.header.rig) {
     row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
@@ -166,7 +167,7 @@ nlohmann::json as_json(const Rig& rig) {
   return cameras;
 }
 
-nlohmann::json as_json(MotionFormat format, const MotionInfo& info, const TakeSummary& summary) {
+nlohmann::json as_json(format::motion::MotionFormat format, const format::motion::MotionInfo& info, const TakeSummary& summary) {
   nlohmann::json tracks = nlohmann::json::array();
   for (const auto& count : summary.tracks) {
     nlohmann::json entry{{"id", number(count.track.id)},
@@ -180,7 +181,7 @@ nlohmann::json as_json(MotionFormat format, const MotionInfo& info, const TakeSu
     }
     tracks.push_back(std::move(entry));
   }
-  nlohmann::json result{{"format", motion_format_name(format)},
+  nlohmann::json result{{"format", format::motion::motion_format_name(format)},
                         {"complete", summary.complete},
                         {"name", info.header.name},
                         {"made_by", info.header.made_by},
@@ -195,7 +196,7 @@ nlohmann::json as_json(MotionFormat format, const MotionInfo& info, const TakeSu
     result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
   }
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
-  if (info.up) result["up"] = *info.up == UpAxis::y ? "y" : "z";
+  if (info.up) result["up"] = *info.up == format::motion::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = as_json(*info.header.rig);
   nlohmann::json edits = nlohmann::json::array();
   for (const TakeEdit& edit : info.edits) edits.push_back({{"time", edit.time}, {"what", edit.what}});
@@ -207,9 +208,10 @@ void print(const nlohmann::json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void tell_motion(const InfoOptions& options, MotionFormat format) {
-  const auto reader = open_motion(options.file, format);
-  const TakeSummary summary = format == MotionFormat::take ? TakeReader(options.file).summary() : summary_of(*reader);
+void tell_motion(const InfoOptions& options, format::motion::MotionFormat format) {
+  const auto reader = format::motion::open_motion(options.file, format);
+  const TakeSummary summary = format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary()
+                                                                           : format::motion::summary_of(*reader);
   for (const std::string& sentence : reader->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {
     print(as_json(format, reader->info(), summary));
@@ -219,7 +221,7 @@ void tell_motion(const InfoOptions& options, MotionFormat format) {
 }
 
 void tell_rig(const InfoOptions& options) {
-  const Rig rig = read_rig_any(options.file);
+  const Rig rig = format::rig::read_rig_any(options.file);
   if (options.json) return print({{"format", "rig"}, {"cameras", as_json(rig)}});
   fmt::print("{}: a rig of {} camera{}\n", options.file, rig.cameras.size(), rig.cameras.size() == 1 ? "" : "s");
   print_calibration(rig);
@@ -228,16 +230,16 @@ void tell_rig(const InfoOptions& options) {
 
 void run(const InfoOptions& options) {
   const bool folder = std::filesystem::is_directory(options.file);
-  const auto format = folder ? std::nullopt : motion_format_of_content(options.file);
+  const auto format = folder ? std::nullopt : format::motion::motion_format_of_content(options.file);
   if (!folder && ground_format_of_content(options.file)) {
     tell_ground(options.file, options.metadata, options.json);
   } else if (format) {
     tell_motion(options, *format);
-  } else if (rig_format_of_content(options.file)) {
+  } else if (format::rig::rig_format_of_content(options.file)) {
     tell_rig(options);
   } else {
     throw Error("{}: is none of the files that Marey knows: points: {}; people on the ground: {}; calibrations: {}", options.file,
-                motion_format_names(), ground_format_names(), rig_format_names());
+                format::motion::motion_format_names(), format::match::ground_format_names(), format::rig::rig_format_names());
   }
   if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }

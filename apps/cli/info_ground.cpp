@@ -9,28 +9,28 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
+#include "marey/format/match/ground_exchange.h"
 
 namespace marey::cli {
 namespace {
 
-std::string_view words_of(GroundFormat format) {
+std::string_view words_of(format::match::GroundFormat format) {
   switch (format) {
-    case GroundFormat::csv:
+    case format::match::GroundFormat::csv:
       return "people on the ground, one row each";
-    case GroundFormat::mot:
+    case format::match::GroundFormat::mot:
       return "MOTChallenge text with world coordinates";
-    case GroundFormat::metrica:
+    case format::match::GroundFormat::metrica:
       return "a pair of Metrica's CSV files";
-    case GroundFormat::tracab:
+    case format::match::GroundFormat::tracab:
       return "a TRACAB file";
-    case GroundFormat::epts:
+    case format::match::GroundFormat::epts:
       return "a FIFA EPTS file";
-    case GroundFormat::soccernet:
+    case format::match::GroundFormat::soccernet:
       return "a game state of SoccerNet";
-    case GroundFormat::sportec:
+    case format::match::GroundFormat::sportec:
       return "positional data of DFL (Sportec)";
-    case GroundFormat::statsperform:
+    case format::match::GroundFormat::statsperform:
       return "an MA25 file of StatsPerform";
   }
   return {};
@@ -58,16 +58,16 @@ Extent extent_of(const GroundRecording& recording) {
   return extent;
 }
 
-nlohmann::json as_json(const GroundMatch& match, GroundFormat format, const Extent& extent) {
+nlohmann::json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
   const GroundRecording& recording = match.recording;
   nlohmann::json people = nlohmann::json::array(), periods = nlohmann::json::array();
   for (std::size_t i = 0; i < recording.people.size(); ++i) {
     const auto& person = recording.people[i];
     people.push_back({{"id", person.id}, {"label", person.label}, {"team", person.team}, {"instants", extent.seen[i]}});
   }
-  for (const GroundPeriod& period : match.periods)
+  for (const format::match::GroundPeriod& period : match.periods)
     periods.push_back({{"period", period.number}, {"first_frame", period.first_frame}, {"last_frame", period.last_frame}});
-  nlohmann::json result{{"format", ground_format_name(format)},
+  nlohmann::json result{{"format", format::match::ground_format_name(format)},
                         {"rate_hz", match.rate_hz},
                         {"instants", extent.instants},
                         {"places", recording.samples.size()},
@@ -90,14 +90,15 @@ void row(const char* name, const std::string& value) {
   fmt::print("  {:<13} {}\n", name, value);
 }
 
-void print_table(const std::string& file, const GroundMatch& match, GroundFormat format, const Extent& extent) {
+void print_table(const std::string& file, const format::match::GroundMatch& match, format::match::GroundFormat format,
+                 const Extent& extent) {
   const GroundRecording& recording = match.recording;
   fmt::print("{}: {}\n", file, words_of(format));
   if (recording.samples.empty()) return row("people", "nobody is in it");
   const auto &first = recording.samples.front(), &last = recording.samples.back();
   row("length", fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz", last.time - first.time + 1 / match.rate_hz,
                             extent.instants, first.frame, last.frame, match.rate_hz));
-  for (const GroundPeriod& period : match.periods)
+  for (const format::match::GroundPeriod& period : match.periods)
     row("period", fmt::format("{}: frames {} to {}", period.number, period.first_frame, period.last_frame));
   row("pitch", fmt::format("{:g} x {:g} m", match.pitch.length, match.pitch.width));
   row("places", fmt::format("{}, x {:.2f} to {:.2f} m, y {:.2f} to {:.2f} m", recording.samples.size(), extent.low.x(),
@@ -113,9 +114,9 @@ void print_table(const std::string& file, const GroundMatch& match, GroundFormat
 }  // namespace
 
 void tell_ground(const std::string& file, const std::string& metadata, bool json) {
-  const auto format = ground_format_of_content(file);
-  if (!format) throw Error("{}: holds no people on the ground; these are read: {}", file, ground_format_names());
-  const GroundMatch match = read_ground_as(file, *format, {metadata, {}, 25});
+  const auto format = format::match::ground_format_of_content(file);
+  if (!format) throw Error("{}: holds no people on the ground; these are read: {}", file, format::match::ground_format_names());
+  const format::match::GroundMatch match = format::match::read_ground_as(file, *format, {metadata, {}, 25});
   for (const std::string& sentence : match.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   const Extent extent = extent_of(match.recording);
   if (json) {

@@ -35,18 +35,18 @@ void add_marker_options(CLI::App& command, MarkerFlags& flags) {
       ->group(group);
 }
 
-TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
-  TrackMarkersOptions options;
+pipeline::TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
+  pipeline::TrackMarkersOptions options;
   options.markers = flags.limits;
   options.markers.threshold = flags.threshold;
   options.markers.dark = flags.dark;
   if (!flags.colour.empty()) {
-    options.markers.colour = parse_marker_colour(flags.colour);
+    options.markers.colour = detect::markers::parse_marker_colour(flags.colour);
     options.markers.colour->least_saturation = flags.saturation.value_or(options.markers.colour->least_saturation);
   }
-  if (!flags.mask.empty()) options.markers.mask = read_mask(flags.mask);
-  if (!flags.labels.empty()) options.tracker.labels = read_labels(flags.labels);
-  if (!filter.empty()) options.tracker.filter = filter_named(filter);
+  if (!flags.mask.empty()) options.markers.mask = pipeline::read_mask(flags.mask);
+  if (!flags.labels.empty()) options.tracker.labels = pipeline::read_labels(flags.labels);
+  if (!filter.empty()) options.tracker.filter = filter::filter_named(filter);
   options.fit_noise = flags.fit_noise;
   options.live = live;
   return options;

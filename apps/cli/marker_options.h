@@ -18,12 +18,12 @@ struct MarkerFlags {
   std::string mask;
   bool dark = false;
   bool fit_noise = false;
-  MarkerOptions limits;  ///< its areas, roundness and time of the automatic mask
+  detect::markers::MarkerOptions limits;  ///< its areas, roundness and time of the automatic mask
 };
 
 void add_marker_options(CLI::App& command, MarkerFlags& flags);
 
 /// Reads the files that the flags name. Throws Error where one cannot be read.
-TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
+pipeline::TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

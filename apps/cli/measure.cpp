@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
+#include "marey/format/match/ground_exchange.h"
 #include "marey/format/whole_file.h"
 #include "marey/pipeline/measure_match.h"
 
@@ -21,7 +21,7 @@ namespace {
 struct MeasureCommand {
   std::string tracks, out, report;
   std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68";
-  MeasureOptions options;
+  analyse::MeasureOptions options;
   std::string metadata;
   double rate_hz = 25;
   bool json = false;
@@ -41,9 +41,9 @@ std::vector<double> parse_zones(const std::string& text) {
   return zones;
 }
 
-void print_json(const Measurement& measured) {
+void print_json(const analyse::Measurement& measured) {
   nlohmann::json people = nlohmann::json::array(), teams = nlohmann::json::array();
-  for (const PersonMeasure& person : measured.people) {
+  for (const analyse::PersonMeasure& person : measured.people) {
     people.push_back({{"id", person.id},
                       {"label", person.label},
                       {"team", person.team},
@@ -57,7 +57,7 @@ void print_json(const Measurement& measured) {
                       {"zone_s", person.zone_s},
                       {"zone_m", person.zone_m}});
   }
-  for (const TeamMeasure& team : measured.teams) {
+  for (const analyse::TeamMeasure& team : measured.teams) {
     teams.push_back({{"team", team.team},
                      {"people", team.people},
                      {"distance_m", team.distance_m},
@@ -68,27 +68,27 @@ void print_json(const Measurement& measured) {
   fmt::print("{}\n", nlohmann::json{{"people", people}, {"teams", teams}}.dump(2));
 }
 
-void print_table(const Measurement& measured) {
+void print_table(const analyse::Measurement& measured) {
   fmt::print("{:>5} {:<12} {:<10} {:>11} {:>10} {:>9} {:>8}\n", "id", "label", "team", "distance, m", "mean, m/s", "top, m/s",
              "sprints");
-  for (const PersonMeasure& person : measured.people) {
+  for (const analyse::PersonMeasure& person : measured.people) {
     fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9.2f} {:>8}\n", person.id, person.label, person.team, person.distance_m,
                person.mean_mps, person.top_mps, person.sprints);
   }
 }
 
 void run(const MeasureCommand& command) {
-  MeasureOptions options = command.options;
-  options.path.method = parse_path_method(command.method);
+  analyse::MeasureOptions options = command.options;
+  options.path.method = analyse::parse_path_method(command.method);
   options.zones = parse_zones(command.zones);
   options.pitch = parse_pitch_size(command.size);
-  const Measurement measured =
-      measure(read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
+  const analyse::Measurement measured = analyse::measure(
+      format::match::read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", command.tracks);
-  WholeFile file(command.out);
-  file.write(measurement_csv(measured, options));
+  format::WholeFile file(command.out);
+  file.write(pipeline::measurement_csv(measured, options));
   if (!command.report.empty())
-    write_report(measured, options, std::filesystem::path(command.tracks).stem().string(), command.report);
+    pipeline::write_report(measured, options, std::filesystem::path(command.tracks).stem().string(), command.report);
   file.finish();
   if (command.json) {
     print_json(measured);
@@ -111,7 +111,7 @@ void add_measure(CLI::App& app) {
   command->add_option("-o,--output", options->out, "CSV with a row for each person")->required();
   command->add_option("--report", options->report, "folder for a page with plots, tables, heat maps and ways");
   command->add_option("--smoothing", options->method, "of the ways: lowpass, savgol, kalman or raw")
-      ->check(known([](const std::string& text) { parse_path_method(text); }))
+      ->check(known([](const std::string& text) { analyse::parse_path_method(text); }))
       ->capture_default_str();
   command->add_option("--cutoff", options->options.path.cutoff_hz, "of lowpass, Hz")
       ->check(CLI::Range(0.01, 100.0))

@@ -13,14 +13,14 @@ constexpr double kBodyHeight = 100;
 
 constexpr int kMostControlPoints = 64, kMostLines = 512;
 
-OutlineOptions outline_options(const PeopleFlags& flags) {
-  OutlineOptions options;
+track::contour::OutlineOptions outline_options(const PeopleFlags& flags) {
+  track::contour::OutlineOptions options;
   options.order = flags.order.value_or(options.order);
   options.lines = flags.lines.value_or(options.lines);
   options.control_points = flags.control_points;
-  if (options.order < 2 || options.order > SplineWeights::max_order) {
+  if (options.order < 2 || options.order > geometry::SplineWeights::max_order) {
     throw Error("--order {}: a spline's order is its degree + 1; give 2 to {}, 4 for a cubic", options.order,
-                SplineWeights::max_order);
+                geometry::SplineWeights::max_order);
   }
   if (options.lines < 1 || options.lines > kMostLines) {
     throw Error("--lines {}: an outline is searched along 1 to {} measurement lines", options.lines, kMostLines);
@@ -37,8 +37,10 @@ OutlineOptions outline_options(const PeopleFlags& flags) {
 
 void add_people_options(CLI::App& command, PeopleFlags& flags) {
   const auto group = "Options for --targets people";
-  command.add_option("--background", flags.background, "the model of the empty scene, one of " + background_names())
-      ->check(known([](const std::string& text) { parse_background(text); }))
+  command
+      .add_option("--background", flags.background,
+                  "the model of the empty scene, one of " + detect::background::background_names())
+      ->check(known([](const std::string& text) { detect::background::parse_background(text); }))
       ->group(group);
   auto* outline = command.add_flag("--outline", flags.outline, "follow each person's outline too: a closed spline")->group(group);
   command
@@ -52,11 +54,11 @@ void add_people_options(CLI::App& command, PeopleFlags& flags) {
       ->group(group);
 }
 
-TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
-  TrackPeopleOptions options;
-  options.background = parse_background(flags.background);
+pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
+  pipeline::TrackPeopleOptions options;
+  options.background = detect::background::parse_background(flags.background);
   if (!filter.empty() && filter_named(filter).index() != options.tracker.filter.index()) {
-    options.tracker.filter = scaled(filter_named(filter), 1 / kBodyHeight);
+    options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyHeight);
   }
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;

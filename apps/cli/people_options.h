@@ -11,7 +11,7 @@ namespace marey::cli {
 
 /// What `marey track --targets people` understands beyond what every target needs.
 struct PeopleFlags {
-  std::string background = std::string(AdaptiveOptions::name);
+  std::string background = std::string(detect::background::AdaptiveOptions::name);
   bool outline = false;
   std::optional<int> control_points;
   std::optional<int> order;
@@ -21,6 +21,6 @@ struct PeopleFlags {
 void add_people_options(CLI::App& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.
-TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
+pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

@@ -7,8 +7,8 @@
 
 namespace marey::cli {
 
-PitchSize parse_pitch_size(const std::string& text) {
-  PitchSize size;
+geometry::PitchSize parse_pitch_size(const std::string& text) {
+  geometry::PitchSize size;
   const auto cross = text.find('x');
   const auto read = [](std::string_view part, double& value) {
     const auto [stop, failed] = std::from_chars(part.data(), part.data() + part.size(), value);

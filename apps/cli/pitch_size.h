@@ -7,6 +7,6 @@
 namespace marey::cli {
 
 /// LENGTHxWIDTH in m. Throws Error for what is none, or no pitch.
-PitchSize parse_pitch_size(const std::string& text);
+geometry::PitchSize parse_pitch_size(const std::string& text);
 
 }  // namespace marey::cli

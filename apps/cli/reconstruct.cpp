@@ -22,7 +22,7 @@ namespace {
 struct ReconstructCommand {
   RigInputs inputs;
   std::string out, labels;
-  ReconstructOptions options;
+  pipeline::ReconstructOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -37,7 +37,7 @@ void interrupt(int) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-nlohmann::json as_json(const ReconstructSummary& summary, const std::string& out) {
+nlohmann::json as_json(const pipeline::ReconstructSummary& summary, const std::string& out) {
   nlohmann::json json = {{"frames", summary.frames},
                          {"seconds", summary.seconds},
                          {"rate_hz", summary.rate_hz},
@@ -52,13 +52,13 @@ nlohmann::json as_json(const ReconstructSummary& summary, const std::string& out
                          {"take", out}};
   json["residual_px"] = summary.residual_px ? nlohmann::json(*summary.residual_px) : nlohmann::json();
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
-  for (const StageReport& stage : summary.stages) {
+  for (const pipeline::StageReport& stage : summary.stages) {
     json["stages"][stage.name] = {{"count", stage.count}, {"median_ms", 1000 * stage.median}, {"p99_ms", 1000 * stage.p99}};
   }
   return json;
 }
 
-void print(const ReconstructSummary& summary, const std::string& out) {
+void print(const pipeline::ReconstructSummary& summary, const std::string& out) {
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.markers,
              summary.markers == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
@@ -66,23 +66,23 @@ void print(const ReconstructSummary& summary, const std::string& out) {
   if (summary.residual_px) {
     fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", *summary.residual_px, summary.noise_px);
   }
-  for (const StageReport& stage : summary.stages) {
+  for (const pipeline::StageReport& stage : summary.stages) {
     fmt::print(stderr, "  {:<14} median {:8.3f} ms, 99 % within {:8.3f} ms\n", stage.name, 1000 * stage.median, 1000 * stage.p99);
   }
   fmt::print(stderr, "take: {}\n", out);
 }
 
 void run(const ReconstructCommand& command) {
-  ReconstructOptions options = command.options;
-  if (!command.labels.empty()) options.set = read_marker_set(command.labels);
+  pipeline::ReconstructOptions options = command.options;
+  if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   const auto summary = [&] {
     ProgressBar bar(command.quiet);
-    RunHooks hooks;
+    pipeline::RunHooks hooks;
     hooks.stop = [] { return interrupted.load(); };
-    hooks.progress = [&](const TrackProgress& now) { bar.show("reconstructing", now.done, now.total); };
-    return reconstruct(rig_of(command.inputs), command.inputs.observations, command.out, options, hooks);
+    hooks.progress = [&](const pipeline::TrackProgress& now) { bar.show("reconstructing", now.done, now.total); };
+    return pipeline::reconstruct(rig_of(command.inputs), command.inputs.observations, command.out, options, hooks);
   }();
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
   if (command.json) {
@@ -99,7 +99,7 @@ void add_reconstruct(CLI::App& app) {
   auto options = std::make_shared<ReconstructCommand>();
   CLI::App* command = app.add_subcommand("reconstruct", "Place and follow the markers that several calibrated cameras see");
   add_rig_inputs(*command, options->inputs);
-  ReconstructOptions& how = options->options;
+  pipeline::ReconstructOptions& how = options->options;
   command->add_option("-o,--out", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")->required();
   command->add_option("--labels", options->labels,
                       "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");

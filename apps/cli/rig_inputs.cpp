@@ -5,7 +5,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 
 namespace marey::cli {
 
@@ -19,7 +19,7 @@ void add_rig_inputs(CLI::App& command, RigInputs& inputs) {
 
 Rig rig_of(const RigInputs& inputs) {
   if (inputs.rig.empty() && inputs.observations.empty()) throw CLI::ValidationError("RIG", "give a rig file, or --observations");
-  Rig rig = inputs.rig.empty() ? rig_of_observations(inputs.observations) : read_rig(inputs.rig);
+  Rig rig = inputs.rig.empty() ? format::rig_of_observations(inputs.observations) : format::rig::read_rig(inputs.rig);
   for (const std::string& video : inputs.videos) {
     const auto equal = video.find('=');
     if (equal == std::string::npos) throw Error("\"{}\" names no camera: write CAMERA=VIDEO", video);

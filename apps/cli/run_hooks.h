@@ -22,13 +22,13 @@ bool interrupted();
 /// The exit code of a program that Ctrl-C ended, by the shell's convention.
 inline constexpr int kInterrupted = 130;
 
-constexpr std::string_view words_of(TrackProgress::Step step) {
+constexpr std::string_view words_of(pipeline::TrackProgress::Step step) {
   switch (step) {
-    case TrackProgress::Step::clocks:
+    case pipeline::TrackProgress::Step::clocks:
       return "comparing clocks";
-    case TrackProgress::Step::tracking:
+    case pipeline::TrackProgress::Step::tracking:
       return "tracking";
-    case TrackProgress::Step::drawing:
+    case pipeline::TrackProgress::Step::drawing:
       return "drawing";
   }
   return {};
@@ -42,9 +42,11 @@ void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
   const auto begin = std::chrono::steady_clock::now();
   const auto summary = [&] {
     ProgressBar bar(quiet);
-    RunHooks hooks;
+    pipeline::RunHooks hooks;
     hooks.stop = [] { return interrupted(); };
-    hooks.progress = [&](const TrackProgress& progress) { bar.show(words_of(progress.step), progress.done, progress.total); };
+    hooks.progress = [&](const pipeline::TrackProgress& progress) {
+      bar.show(words_of(progress.step), progress.done, progress.total);
+    };
     return track(hooks);
   }();
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -13,8 +13,8 @@ nlohmann::json or_null(std::optional<double> value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
-nlohmann::json as_json(const Evaluation& scores) {
-  const ClearScores& clear = scores.clear;
+nlohmann::json as_json(const evaluate::Evaluation& scores) {
+  const evaluate::ClearScores& clear = scores.clear;
   return {{"frames", scores.frames},
           {"common_frames", scores.common_frames},
           {"objects", scores.objects},

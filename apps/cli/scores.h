@@ -15,6 +15,6 @@ std::string percent(std::optional<double> share);
 nlohmann::json or_null(std::optional<double> value);
 
 /// What `marey evaluate --json` tells of boxes and of places alike.
-nlohmann::json as_json(const Evaluation& scores);
+nlohmann::json as_json(const evaluate::Evaluation& scores);
 
 }  // namespace marey::cli

@@ -7,7 +7,7 @@
 
 #include "marey/core/error.h"
 #include "marey/pipeline/marker_video.h"
-#include "marey/simulate/marker_scene.h"
+#include "marey/simulate/markers/marker_scene.h"
 
 #include "commands.h"
 
@@ -18,18 +18,19 @@ struct SimulateMarkers {
   std::string situation;
   std::string folder;
   std::uint64_t seed = 1;
-  MarkerSceneOptions scene;
+  simulate::markers::MarkerSceneOptions scene;
   bool quiet = false;
 };
 
 std::string situation_names() {
   std::string names;
-  for (const NamedSituation& known : marker_situations()) names.append(names.empty() ? "" : ", ").append(known.name);
+  for (const simulate::markers::NamedSituation& known : simulate::markers::marker_situations())
+    names.append(names.empty() ? "" : ", ").append(known.name);
   return names;
 }
 
-MarkerSituation situation_of(const std::string& name) {
-  for (const NamedSituation& known : marker_situations()) {
+simulate::markers::MarkerSituation situation_of(const std::string& name) {
+  for (const simulate::markers::NamedSituation& known : simulate::markers::marker_situations()) {
     if (known.name == name) return known.situation;
   }
   throw Error("there is no situation \"{}\"; there are: {}", name, situation_names());
@@ -41,10 +42,11 @@ void run(const SimulateMarkers& command) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error("{}: the folder cannot be made ({})", folder.string(), error.message());
-  const MarkerScene scene = simulate_markers(situation_of(command.situation), command.seed, command.scene);
+  const simulate::markers::MarkerScene scene =
+      simulate::markers::simulate_markers(situation_of(command.situation), command.seed, command.scene);
   const std::string video = (folder / "video.mp4").string(), truth = (folder / "truth.csv").string();
-  film_markers(scene, video);
-  write_marker_truth(scene, truth);
+  pipeline::film_markers(scene, video);
+  pipeline::write_marker_truth(scene, truth);
   if (command.quiet) return;
   fmt::print(stderr, "{} frames, {} {}\nvideo: {}\ntruth: {}\n", scene.frames.size(), scene.frames.front().size(),
              scene.frames.front().size() == 1 ? "marker" : "markers", video, truth);

@@ -18,7 +18,7 @@ namespace marey::cli {
 namespace {
 
 struct SimulateMatch {
-  MatchFilesOptions files;
+  pipeline::MatchFilesOptions files;
   std::string folder;
   std::array<int, 2> size{};
   std::string pitch = "105x68";
@@ -26,7 +26,7 @@ struct SimulateMatch {
 };
 
 void run(const SimulateMatch& command) {
-  MatchFilesOptions options = command.files;
+  pipeline::MatchFilesOptions options = command.files;
   options.cameras.pitch = parse_pitch_size(command.pitch);
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
   std::error_code error;
@@ -34,7 +34,7 @@ void run(const SimulateMatch& command) {
   if (error) throw Error("{}: the folder cannot be made ({})", command.folder, error.message());
   {
     ProgressBar bar(command.quiet);
-    write_match(options, command.folder, [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
+    pipeline::write_match(options, command.folder, [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
   }
   if (command.quiet) return;
   fmt::print(stderr, "{}: rig.toml (the exact cameras), truth.csv (where everybody is), the boxes that each camera sees\n",
@@ -42,9 +42,10 @@ void run(const SimulateMatch& command) {
 }
 
 void add_cameras(CLI::App& match, SimulateMatch& options) {
-  MatchCamerasOptions& cameras = options.files.cameras;
-  const std::map<std::string, MatchStand> stands{
-      {"round", MatchStand::round}, {"football", MatchStand::football}, {"corners", MatchStand::corners}};
+  simulate::match::MatchCamerasOptions& cameras = options.files.cameras;
+  const std::map<std::string, simulate::match::MatchStand> stands{{"round", simulate::match::MatchStand::round},
+                                                                  {"football", simulate::match::MatchStand::football},
+                                                                  {"corners", simulate::match::MatchStand::corners}};
   match
       .add_option("--stand", cameras.stand,
                   "where the cameras are: evenly round the pitch; two on one low stand beside it; two high behind opposite corners")
@@ -64,7 +65,7 @@ void add_cameras(CLI::App& match, SimulateMatch& options) {
   match.add_flag("!--pinhole", cameras.distorted, "lenses without distortion");
 }
 
-void add_films(CLI::App& match, MatchFilesOptions& files) {
+void add_films(CLI::App& match, pipeline::MatchFilesOptions& files) {
   match.add_flag("--render", files.films, "film the match with every camera; rig.toml names the films instead of the boxes");
   match.add_flag("!--no-shadows", files.film.shadows, "films: nobody casts a shadow");
   match.add_option("--noise", files.film.noise, "films: standard deviation of the pixels, grey levels")
@@ -78,7 +79,7 @@ void add_films(CLI::App& match, MatchFilesOptions& files) {
       ->capture_default_str();
 }
 
-void add_detector(CLI::App& match, MatchDetectorOptions& detector) {
+void add_detector(CLI::App& match, simulate::match::MatchDetectorOptions& detector) {
   match.add_option("--missed", detector.missed, "share of people in plain view that a camera's detector misses")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

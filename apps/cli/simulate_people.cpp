@@ -19,32 +19,32 @@ namespace marey::cli {
 namespace {
 
 struct SimulatePeople {
-  PeopleSituation situation = PeopleSituation::crowd;
+  simulate::people::PeopleSituation situation = simulate::people::PeopleSituation::crowd;
   std::string folder = "people";
   std::string ground;
   std::uint64_t seed = 1;
-  PeopleFilmOptions film;
+  simulate::people::PeopleFilmOptions film;
   std::array<int, 2> size{768, 576};
   bool quiet = false;
 };
 
 Picture picture_of(const std::string& path) {
-  auto frame = open_source(path)->next();
+  auto frame = source::open_source(path)->next();
   if (!frame) throw Error("{}: no picture could be read", path);
   return frame->picture;
 }
 
 void run(const SimulatePeople& command) {
-  PeopleFilmOptions options = command.film;
+  simulate::people::PeopleFilmOptions options = command.film;
   options.size = {command.size[0], command.size[1]};
   if (!command.ground.empty()) options.ground = picture_of(command.ground);
-  const PeopleFilm film(command.situation, command.seed, options);
+  const simulate::people::PeopleFilm film(command.situation, command.seed, options);
   std::error_code error;
   std::filesystem::create_directories(command.folder, error);
   if (error) throw Error("{}: the folder cannot be made ({})", command.folder, error.message());
   {
     ProgressBar bar(command.quiet);
-    film_people(film, command.folder, [&](int done, int all) { bar.show("frames", done, all); });
+    pipeline::film_people(film, command.folder, [&](int done, int all) { bar.show("frames", done, all); });
   }
   if (command.quiet) return;
   fmt::print(stderr, "{} frames, {} {}\n{}: video.mp4, truth.txt, positions.csv, silhouettes.jsonl\n", film.frames(),
@@ -57,11 +57,13 @@ void add_simulate_people(CLI::App& simulate) {
   auto options = std::make_shared<SimulatePeople>();
   CLI::App* people =
       simulate.add_subcommand("people", "People who walk and run before a fixed camera, with their exact silhouettes");
-  std::map<std::string, PeopleSituation> situations;
-  for (const NamedPeopleSituation& known : people_situations()) situations.emplace(known.name, known.situation);
-  const std::map<std::string, LightChange> lights{
-      {"steady", LightChange::steady}, {"gradual", LightChange::gradual}, {"sudden", LightChange::sudden}};
-  PeopleFilmOptions& film = options->film;
+  std::map<std::string, simulate::people::PeopleSituation> situations;
+  for (const simulate::people::NamedPeopleSituation& known : simulate::people::people_situations())
+    situations.emplace(known.name, known.situation);
+  const std::map<std::string, simulate::people::LightChange> lights{{"steady", simulate::people::LightChange::steady},
+                                                                    {"gradual", simulate::people::LightChange::gradual},
+                                                                    {"sudden", simulate::people::LightChange::sudden}};
+  simulate::people::PeopleFilmOptions& film = options->film;
   add_choice(*people, "--situation", options->situation, situations, "what they do")->default_str("crowd");
   people->add_option("-o,--output", options->folder, "folder for the video and its truth")->capture_default_str();
   people->add_option("--seed", options->seed, "which of the endlessly many films")->capture_default_str();

@@ -20,8 +20,8 @@ namespace marey::cli {
 namespace {
 
 struct SimulateRoom {
-  RoomOptions room;
-  RoomFilesOptions files;
+  simulate::room::RoomOptions room;
+  pipeline::RoomFilesOptions files;
   std::string folder = "room";
   std::array<int, 2> size{1280, 1024};
   std::array<double, 3> volume{4, 4, 2.5};
@@ -47,8 +47,8 @@ std::vector<double> numbers(const std::string& text, const char* option, const c
   return values;
 }
 
-RoomOptions room_of(const SimulateRoom& command) {
-  RoomOptions room = command.room;
+simulate::room::RoomOptions room_of(const SimulateRoom& command) {
+  simulate::room::RoomOptions room = command.room;
   room.picture = {command.size[0], command.size[1]};
   room.volume = {command.volume[0], command.volume[1], command.volume[2]};
   if (command.wand == "led") {
@@ -64,19 +64,21 @@ RoomOptions room_of(const SimulateRoom& command) {
     const std::vector<double> values = numbers(command.bump, "--bump", form);
     if (values.size() != 3) throw Error("--bump {}: write {}", command.bump, form);
     if (!(values[0] >= 1 && values[0] <= room.cameras)) throw Error("--bump {}: there are {} cameras", command.bump, room.cameras);
-    room.bump = RoomOptions::Bump{.camera = static_cast<int>(values[0]) - 1, .time_s = values[1], .angle = values[2]};
+    room.bump =
+        simulate::room::RoomOptions::Bump{.camera = static_cast<int>(values[0]) - 1, .time_s = values[1], .angle = values[2]};
   }
   return room;
 }
 
 void run(const SimulateRoom& command) {
-  const RoomScene scene(room_of(command));
+  const simulate::room::RoomScene scene(room_of(command));
   std::error_code error;
   std::filesystem::create_directories(command.folder, error);
   if (error) throw Error("{}: the folder cannot be made ({})", command.folder, error.message());
   {
     ProgressBar bar(command.quiet);
-    write_room(scene, command.folder, command.files, [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
+    pipeline::write_room(scene, command.folder, command.files,
+                         [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
   }
   if (command.quiet) return;
   fmt::print(stderr,
@@ -87,9 +89,9 @@ void run(const SimulateRoom& command) {
 }
 
 void add_scene(CLI::App& room, SimulateRoom& options) {
-  RoomOptions& scene = options.room;
-  std::map<std::string, RoomMotion> motions;
-  for (const NamedRoomMotion& known : room_motions()) motions.emplace(known.name, known.motion);
+  simulate::room::RoomOptions& scene = options.room;
+  std::map<std::string, simulate::room::RoomMotion> motions;
+  for (const simulate::room::NamedRoomMotion& known : simulate::room::room_motions()) motions.emplace(known.name, known.motion);
   add_choice(
       room, "--motion", scene.motion, motions,
       "somebody with markers who walks, waves or stands still; a wand that is waved; an L-frame on the ground; a cloud of free "
@@ -111,7 +113,7 @@ void add_scene(CLI::App& room, SimulateRoom& options) {
 }
 
 void add_troubles(CLI::App& room, SimulateRoom& options) {
-  RoomOptions& scene = options.room;
+  simulate::room::RoomOptions& scene = options.room;
   const CLI::Range share(0.0, 0.99);
   room.add_option("--noise", scene.noise_px, "standard deviation of a blob's place, px")
       ->check(CLI::Range(0.0, 100.0))

@@ -18,7 +18,7 @@ namespace marey::cli {
 namespace {
 
 struct TrackCommand {
-  PeopleInput input;
+  pipeline::PeopleInput input;
   std::string out;
   std::string format;
   std::string overlay;
@@ -34,23 +34,23 @@ struct TrackCommand {
 };
 
 /// What the command line names and the format's own ending: video.mp4 becomes video.csv, here.
-std::string default_output(const PeopleInput& input, TrackFormat format) {
+std::string default_output(const pipeline::PeopleInput& input, format::tracks::TrackFormat format) {
   const std::filesystem::path given = input.detections.empty() ? input.pictures : input.detections;
   std::string stem = (given.has_filename() ? given : given.parent_path()).stem().string();
   std::erase_if(stem, [](char c) { return c == '*' || c == '?' || c == '%'; });
   if (stem.empty() || stem == "." || stem == "..") stem = "video";
-  return stem + "_tracks" + std::string(ending_of(format));
+  return stem + "_tracks" + std::string(format::tracks::ending_of(format));
 }
 
-TrackOutput output_of(const TrackCommand& command) {
-  TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
-  const auto by_ending = track_format_of(command.out);
+pipeline::TrackOutput output_of(const TrackCommand& command) {
+  pipeline::TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
+  const auto by_ending = format::tracks::track_format_of(command.out);
   if (!command.format.empty()) {
-    output.format = parse_track_format(command.format);
+    output.format = format::tracks::parse_track_format(command.format);
   } else if (by_ending) {
     output.format = *by_ending;
   } else if (command.people.outline) {
-    output.format = TrackFormat::jsonl;  // the others hold no outlines
+    output.format = format::tracks::TrackFormat::jsonl;  // the others hold no outlines
   }
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty()) output.tracks = default_output(command.input, output.format);
@@ -59,7 +59,7 @@ TrackOutput output_of(const TrackCommand& command) {
 
 /// Runs `track(hooks)` and tells what came of it.
 template <typename Track>
-void run(const TrackCommand& command, const TrackOutput& output, Track&& track) {
+void run(const TrackCommand& command, const pipeline::TrackOutput& output, Track&& track) {
   run_with_progress(command.quiet, track, [&](const auto& summary, double elapsed) {
     if (command.json) {
       print_json(summary, output, elapsed);
@@ -92,23 +92,24 @@ void run(const TrackCommand& command) {
     throw Error("{} is a rig: add --ground to follow people on the ground that its cameras look at", command.input.pictures);
   if (!command.ground.sources.empty())
     throw Error("\"{}\" is one input too many; several cameras need a rig and --ground", command.ground.sources.front());
-  const TrackOutput output = output_of(command);
+  const pipeline::TrackOutput output = output_of(command);
   if (command.targets == "markers") {
     if (command.people.outline) throw Error("--outline follows people; markers are points: leave out one of the two");
     if (!command.input.detections.empty()) throw Error("--detections brings boxes, not markers; leave out --targets markers");
-    const TrackMarkersOptions options = marker_options(command.markers, command.filter, command.live);
-    run(command, output, [&](const RunHooks& hooks) {
-      return track_markers(command.input.pictures, command.input.rate_hz, output, options, hooks);
+    const pipeline::TrackMarkersOptions options = marker_options(command.markers, command.filter, command.live);
+    run(command, output, [&](const pipeline::RunHooks& hooks) {
+      return pipeline::track_markers(command.input.pictures, command.input.rate_hz, output, options, hooks);
     });
   } else {
-    const TrackPeopleOptions options = people_options(command.people, command.filter, command.live);
-    run(command, output, [&](const RunHooks& hooks) { return track_people(command.input, output, options, hooks); });
+    const pipeline::TrackPeopleOptions options = people_options(command.people, command.filter, command.live);
+    run(command, output,
+        [&](const pipeline::RunHooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
   }
 }
 
 std::string filter_names() {
   std::string names;
-  for (const NamedFilter& filter : named_filters()) names.append(names.empty() ? "" : ", ").append(filter.name);
+  for (const filter::NamedFilter& filter : filter::named_filters()) names.append(names.empty() ? "" : ", ").append(filter.name);
   return names;
 }
 
@@ -130,8 +131,8 @@ void add_track(CLI::App& app) {
                       "where the tracks go; - for standard output (default: INPUT_tracks.txt in this folder)");
   command
       ->add_option("--format", options->format,
-                   "one of " + track_format_names() + " (default: by OUT's ending, else mot, with --outline jsonl)")
-      ->check(known([](const std::string& text) { parse_track_format(text); }));
+                   "one of " + format::tracks::track_format_names() + " (default: by OUT's ending, else mot, with --outline jsonl)")
+      ->check(known([](const std::string& text) { format::tracks::parse_track_format(text); }));
   command->add_option("--overlay", options->overlay,
                       "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4; with --ground a folder, which gets "
                       "CAMERA.mp4");
@@ -145,7 +146,7 @@ void add_track(CLI::App& app) {
           },
           "HZ"));
   command->add_option("--filter", options->filter, "what predicts each person's motion, one of " + filter_names())
-      ->check(known([](const std::string& text) { filter_named(text); }));
+      ->check(known([](const std::string& text) { filter::filter_named(text); }));
   command->add_option("--targets", options->targets, "what is followed: people or markers")
       ->check(known([](const std::string& text) {
         if (text != "people" && text != "markers") throw Error("\"{}\" cannot be followed; these can: people, markers", text);

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "marey/core/error.h"
-#include "marey/format/rig_file.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "ground_summary.h"
@@ -20,8 +20,9 @@ namespace {
 constexpr double kBodyHeight = 100;
 constexpr double kBodyMetres = 1.75;
 
-GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
-  GroundOutput output{.tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
+pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
+  pipeline::GroundOutput output{
+      .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
   const std::string format = command.format.empty() ? (flags.camera.empty() ? "csv" : "mot") : command.format;
   if (format != "csv" && format != "mot")
     throw Error("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
@@ -37,24 +38,25 @@ GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
 
 /// Hypotheses cost little beside decoding and looking at pictures; boxes come too fast for them, and live nobody waits for a
 /// decision.
-GroundAssociation usual_association(const Rig& rig, bool live) {
+track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
   const bool pictures =
       std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
-  return pictures && !live ? GroundAssociation::mht : GroundAssociation::gnn;
+  return pictures && !live ? track::ground::GroundAssociation::mht : track::ground::GroundAssociation::gnn;
 }
 
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
-TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people, const Rig& rig) {
-  TrackGroundOptions options;
-  options.eyes.background = parse_background(people.background);
+pipeline::TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
+                                        const Rig& rig) {
+  pipeline::TrackGroundOptions options;
+  options.eyes.background = detect::background::parse_background(people.background);
   options.rate_hz = command.rate_hz;
-  if (!flags.teams.empty()) options.teams.names = parse_teams(flags.teams);
+  if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
-  if (!command.filter.empty()) options.tracker.filter = scaled(filter_named(command.filter), kBodyMetres / kBodyHeight);
+  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyHeight);
   options.tracker.associate =
-      flags.associate.empty() ? usual_association(rig, command.live) : ground_association_named(flags.associate);
+      flags.associate.empty() ? usual_association(rig, command.live) : track::ground::ground_association_named(flags.associate);
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
-  if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? PitchSize{} : parse_pitch_size(flags.size);
+  if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? geometry::PitchSize{} : parse_pitch_size(flags.size);
   if (flags.margin && !options.pitch)
     throw Error("--margin is counted from the edge of a pitch, and {} tells of none; give its --size", command.rig);
   options.margin = flags.margin.value_or(options.margin);
@@ -81,14 +83,14 @@ void add_ground_options(CLI::App& command, GroundFlags& flags) {
   command
       .add_option("--teams", flags.teams,
                   "what the teams wear, \"white,blue\", or what they are called, \"City=white,United=blue\"")
-      ->check(known([](const std::string& text) { parse_teams(text); }))
+      ->check(known([](const std::string& text) { analyse::parse_teams(text); }))
       ->needs(ground)
       ->group(group);
   command
       .add_option("--associate", flags.associate,
                   "how what is seen finds whom it is of: gnn, jpda or mht (default: mht with pictures; gnn with detections alone, "
                   "or --live)")
-      ->check(known([](const std::string& text) { ground_association_named(text); }))
+      ->check(known([](const std::string& text) { track::ground::ground_association_named(text); }))
       ->needs(ground)
       ->group(group);
   command.add_option("--camera", flags.camera, "with --format mot: in whose view")->needs(ground)->group(group);
@@ -99,13 +101,13 @@ void add_ground_options(CLI::App& command, GroundFlags& flags) {
 
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
   if (people.outline) throw Error("--outline follows outlines in one picture; leave it out with --ground");
-  Rig rig = read_rig(command.rig);
-  set_sources(rig, flags.sources);
-  const GroundOutput output = output_of(command, flags);
-  const TrackGroundOptions options = options_of(command, flags, people, rig);
+  Rig rig = format::rig::read_rig(command.rig);
+  format::rig::set_sources(rig, flags.sources);
+  const pipeline::GroundOutput output = output_of(command, flags);
+  const pipeline::TrackGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(
-      command.quiet, [&](const RunHooks& hooks) { return track_ground(rig, output, options, hooks); },
-      [&](const GroundSummary& summary, double elapsed) {
+      command.quiet, [&](const pipeline::RunHooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
+      [&](const pipeline::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);
         } else if (!command.quiet) {

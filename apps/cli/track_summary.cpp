@@ -13,14 +13,14 @@ nlohmann::json path_or_null(const std::string& path) {
   return path.empty() ? nlohmann::json() : nlohmann::json(path);
 }
 
-void print_pictures(const TrackOutput& output) {
+void print_pictures(const pipeline::TrackOutput& output) {
   if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
   if (!output.plot.empty()) fmt::print(stderr, "plot: {}\n", output.plot);
 }
 
 }  // namespace
 
-void print_json(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
+void print_json(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
   nlohmann::json json = {{"frames", summary.frames},
                          {"seconds", summary.seconds},
                          {"people", summary.people},
@@ -37,7 +37,7 @@ void print_json(const TrackSummary& summary, const TrackOutput& output, double e
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_summary(const TrackSummary& summary, const TrackOutput& output, double elapsed) {
+void print_summary(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
   fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.people, summary.people == 1 ? "person" : "people",
              summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
   if (summary.too_brief > 0) fmt::print(stderr, "left out: {} seen too briefly to be believed\n", summary.too_brief);
@@ -51,7 +51,7 @@ void print_summary(const TrackSummary& summary, const TrackOutput& output, doubl
   print_pictures(output);
 }
 
-void print_json(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
+void print_json(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
   nlohmann::json json = {{"frames", summary.frames},         {"seconds", summary.seconds},
                          {"markers", summary.markers},       {"rows", summary.rows},
                          {"detections", summary.detections}, {"elapsed", elapsed},
@@ -64,7 +64,7 @@ void print_json(const MarkerSummary& summary, const TrackOutput& output, double 
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_summary(const MarkerSummary& summary, const TrackOutput& output, double elapsed) {
+void print_summary(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
   fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.markers,
              summary.markers == 1 ? "marker" : "markers", summary.frames, summary.seconds,
              static_cast<double>(summary.frames) / elapsed);

@@ -17,37 +17,37 @@
 namespace marey {
 namespace {
 
-void print_parameters(const AlphaBetaOptions& o) {
+void print_parameters(const filter::AlphaBetaOptions& o) {
   fmt::print("alpha={} beta={}\n", o.alpha, o.beta);
 }
-void print_parameters(const AlphaBetaVariableOptions& o) {
+void print_parameters(const filter::AlphaBetaVariableOptions& o) {
   fmt::print("alpha={} beta={}\n", o.alpha, o.beta);
 }
-void print_parameters(const ExtrapolationOptions& o) {
+void print_parameters(const filter::ExtrapolationOptions& o) {
   fmt::print("bend={}\n", o.bend);
 }
-void print_parameters(const KalmanOptions& o) {
+void print_parameters(const filter::KalmanOptions& o) {
   fmt::print("acceleration_noise={} initial_speed={}\n", o.acceleration_noise, o.initial_speed);
 }
-void print_parameters(const KalmanPaperOptions& o) {
+void print_parameters(const filter::KalmanPaperOptions& o) {
   fmt::print("frame_rate={} r_xx={} r_xy={} r_yy={} initial_velocity_variance={} noise_per_speed={} least_noise={}\n", o.frame_rate,
              o.r_xx, o.r_xy, o.r_yy, o.initial_velocity_variance, o.noise_per_speed, o.least_noise);
 }
-void print_parameters(const KalmanAccelerationOptions& o) {
+void print_parameters(const filter::KalmanAccelerationOptions& o) {
   fmt::print("jerk_noise={} initial_speed={} initial_acceleration={}\n", o.jerk_noise, o.initial_speed, o.initial_acceleration);
 }
-void print_parameters(const ExtendedKalmanOptions& o) {
+void print_parameters(const filter::ExtendedKalmanOptions& o) {
   fmt::print("acceleration_noise={} turn_sigma={} turn_time={} initial_speed={}\n", o.noise.acceleration_noise, o.noise.turn_sigma,
              o.noise.turn_time, o.initial_speed);
 }
-void print_parameters(const UnscentedKalmanOptions& o) {
+void print_parameters(const filter::UnscentedKalmanOptions& o) {
   fmt::print("acceleration_noise={} turn_sigma={} turn_time={} initial_speed={} kappa={}\n", o.noise.acceleration_noise,
              o.noise.turn_sigma, o.noise.turn_time, o.initial_speed, o.kappa);
 }
-void print_parameters(const CondensationOptions& o) {
+void print_parameters(const filter::CondensationOptions& o) {
   fmt::print("particles={}\n", o.particles);
 }
-void print_parameters(const InteractingModelsOptions& o) {
+void print_parameters(const filter::InteractingModelsOptions& o) {
   fmt::print("cruise_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} initial_speed={} ",
              o.cruise_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
   fmt::print("swerve_rate={} swerve_speed={} swerve_share={} share_0={} share_1={} share_2={}\n", o.swerve_rate, o.swerve_speed,
@@ -101,7 +101,8 @@ class Walk {
   }
 
   template <typename F>
-  static void print_line(double dt, bool seen, const Vector<D>& z, const Matrix<D>& R, const F& predicted, const F& filter) {
+  static void print_line(double dt, bool seen, const Vector<D>& z, const Matrix<D>& R, const F& predicted,
+                         const F& filter) {
     fmt::print("{:.17g} {:d}", dt, seen);
     print_entries(z);
     print_entries(R);
@@ -125,12 +126,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const marey::FilterOptions options = marey::filter_named(argv[1]);
+    const marey::filter::FilterOptions options = marey::filter::filter_named(argv[1]);
     const auto seed = static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10));
     if (std::string(argv[2]) == "2") {
-      marey::with_filter<2>(options, marey::Walk<2>(seed));
+      marey::filter::with_filter<2>(options, marey::Walk<2>(seed));
     } else {
-      marey::with_filter<3>(options, marey::Walk<3>(seed));
+      marey::filter::with_filter<3>(options, marey::Walk<3>(seed));
     }
   } catch (const marey::Error& error) {
     fmt::print(stderr, "{}\n", error.what());

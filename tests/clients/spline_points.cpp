@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
 #include "marey/simulate/random.h"
 
@@ -18,14 +19,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   const int order = std::atoi(argv[1]), count = std::atoi(argv[2]);
-  if (order < 2 || order > marey::SplineWeights::max_order || count < order || count < 3) return 2;
-  marey::Random random(std::strtoull(argv[3], nullptr, 10));
+  if (order < 2 || order > marey::geometry::SplineWeights::max_order || count < order || count < 3) return 2;
+  marey::simulate::Random random(std::strtoull(argv[3], nullptr, 10));
   std::vector<marey::Vector<2>> points;
   for (int i = 0; i < count; ++i) {
     const double x = random.uniform(0, 100);
     points.emplace_back(x, random.uniform(0, 100));
   }
-  const marey::ClosedSpline spline(order, points);
+  const marey::geometry::ClosedSpline spline(order, points);
   for (const auto& point : points) fmt::print("{:.17g} {:.17g} ", point.x(), point.y());
   fmt::print("\n{:.17g} {:.17g} {:.17g} {:.17g}\n", spline.area(), spline.centroid().x(), spline.centroid().y(), spline.length());
   for (int i = 0; i < 40 * count; ++i) {

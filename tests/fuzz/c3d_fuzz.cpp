@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/format/c3d.h"
+#include "marey/format/motion/c3d.h"
 
 namespace {
 
@@ -18,7 +18,7 @@ void check(bool holds) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const auto reader = marey::read_c3d(std::as_bytes(std::span(data, size)), "file");
+    const auto reader = marey::format::motion::read_c3d(std::as_bytes(std::span(data, size)), "file");
     check(reader->info().header.rate_hz > 0);
     std::int64_t last = -1;
     while (const auto frame = reader->next()) {

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_exchange.h"
-#include "marey/format/ground_file.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_file.h"
 
 namespace {
 
@@ -14,25 +14,25 @@ void check(bool holds) {
   if (!holds) std::abort();
 }
 
-marey::GroundMatch parse(unsigned which, std::string_view first, std::string_view second) {
+marey::format::match::GroundMatch parse(unsigned which, std::string_view first, std::string_view second) {
   switch (which % 8) {
     case 0:
-      return marey::parse_mot_world(first, "file", 25);
+      return marey::format::match::parse_mot_world(first, "file", 25);
     case 1:
-      return marey::parse_metrica(first, "file", second, "file", {});
+      return marey::format::match::parse_metrica(first, "file", second, "file", {});
     case 2:
-      return marey::parse_tracab(first, "file", second, "file");
+      return marey::format::match::parse_tracab(first, "file", second, "file");
     case 3:
-      return marey::parse_epts(first, "file", second, "file");
+      return marey::format::match::parse_epts(first, "file", second, "file");
     case 4:
-      return marey::parse_soccernet(first, "file", {});
+      return marey::format::match::parse_soccernet(first, "file", {});
     case 5:
-      return marey::parse_sportec(first, "file", second, "file");
+      return marey::format::match::parse_sportec(first, "file", second, "file");
     case 6:
-      return marey::parse_statsperform(first, "file", {});
+      return marey::format::match::parse_statsperform(first, "file", {});
     default: {
-      marey::GroundMatch match;
-      match.recording = marey::parse_ground(first, "file");
+      marey::format::match::GroundMatch match;
+      match.recording = marey::format::match::parse_ground(first, "file");
       return match;
     }
   }
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t end = text.find('\0');
   const std::string_view second = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
   try {
-    const marey::GroundMatch match = parse(data[0], text.substr(0, end), second);
+    const marey::format::match::GroundMatch match = parse(data[0], text.substr(0, end), second);
     check(match.rate_hz > 0 && match.pitch.length > 0 && match.pitch.width > 0);
     std::int32_t last = -1;
     for (const auto& sample : match.recording.samples) {

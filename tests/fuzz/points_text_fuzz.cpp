@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/format/motion_csv.h"
-#include "marey/format/trc.h"
+#include "marey/format/motion/motion_csv.h"
+#include "marey/format/motion/trc.h"
 
 namespace {
 
@@ -16,7 +16,7 @@ void check(bool holds) {
   if (!holds) std::abort();
 }
 
-void walk(marey::MotionReader& reader) {
+void walk(marey::format::motion::MotionReader& reader) {
   check(reader.info().header.rate_hz > 0);
   std::int64_t last = -1;
   while (const auto frame = reader.next()) {
@@ -33,7 +33,8 @@ void walk(marey::MotionReader& reader) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  for (const auto read : {marey::read_trc, marey::read_tidy_csv, marey::read_motive_csv, marey::read_nexus_csv}) {
+  for (const auto read : {marey::format::motion::read_trc, marey::format::motion::read_tidy_csv,
+                          marey::format::motion::read_motive_csv, marey::format::motion::read_nexus_csv}) {
     try {
       walk(*read(text, "file"));
     } catch (const marey::Error& error) {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 
 namespace {
 
@@ -27,7 +27,8 @@ void check_message(std::string_view message) {
 void check_camera(const marey::RigCamera& camera) {
   check(!camera.name.empty() && std::isfinite(camera.offset_s.value_or(0)));
   if (camera.size) check(camera.size->width > 0 && camera.size->height > 0);
-  if (camera.lens) check(marey::focal_of(*camera.lens).minCoeff() > 0 && marey::principal_of(*camera.lens).allFinite());
+  if (camera.lens)
+    check(marey::geometry::focal_of(*camera.lens).minCoeff() > 0 && marey::geometry::principal_of(*camera.lens).allFinite());
   if (camera.camera_from_world) {
     const auto& R = camera.camera_from_world->rotation;
     check((R * R.transpose() - marey::Matrix<3>::Identity()).norm() < 1e-8 && R.determinant() > 0);
@@ -43,13 +44,13 @@ void check_camera(const marey::RigCamera& camera) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   marey::Rig rig;
   try {
-    rig = marey::parse_rig({reinterpret_cast<const char*>(data), size}, "file");
+    rig = marey::format::rig::parse_rig({reinterpret_cast<const char*>(data), size}, "file");
   } catch (const marey::Error& error) {
     check_message(error.what());
     return 0;
   }
   for (const marey::RigCamera& camera : rig.cameras) check_camera(camera);
-  const std::string text = marey::rig_text(rig);
-  check(marey::rig_text(marey::parse_rig(text, "file")) == text);
+  const std::string text = marey::format::rig::rig_text(rig);
+  check(marey::format::rig::rig_text(marey::format::rig::parse_rig(text, "file")) == text);
   return 0;
 }

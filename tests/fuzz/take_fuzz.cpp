@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
-#include "marey/format/take_file.h"
+#include "marey/format/take/take_file.h"
 
 namespace {
 
@@ -29,7 +29,7 @@ const std::string& memory_file(const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string& path = memory_file(data, size);
   try {
-    marey::TakeReader reader(path);
+    marey::format::take::TakeReader reader(path);
     check(reader.header().rate_hz > 0);
     reader.summary();
     reader.edits();

@@ -7,8 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/core/geometry.h"
 #include "marey/detect/silhouette.h"
-#include "marey/geometry/box.h"
 
 namespace marey::bodies {
 
@@ -44,8 +44,8 @@ inline void draw(cv::Mat& mask, const Box& box, double stride = 0.5) {
 }
 
 /// All pixels of `mask`, in order.
-inline std::vector<PixelRun> runs(const cv::Mat& mask) {
-  std::vector<PixelRun> result;
+inline std::vector<detect::PixelRun> runs(const cv::Mat& mask) {
+  std::vector<detect::PixelRun> result;
   for (int y = 0; y < mask.rows; ++y) {
     for (int x = 0; x < mask.cols; ++x) {
       if (mask.at<std::uint8_t>(y, x) == 0) continue;

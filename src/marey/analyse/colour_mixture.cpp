@@ -9,7 +9,7 @@
 
 #include "marey/core/perceived.h"
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 constexpr double narrowest = 3, widest = 10;    // of one kind: standard deviation, as perceived
@@ -159,4 +159,4 @@ ColourMixture find_colours(std::span<const ColourSeen> seen, int most) {
   return mixture;
 }
 
-}  // namespace marey
+}  // namespace marey::analyse

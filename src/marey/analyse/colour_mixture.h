@@ -13,7 +13,7 @@
 
 #include "marey/core/appearance.h"
 
-namespace marey {
+namespace marey::analyse {
 
 struct ColourSeen {
   Appearance colour;  ///< with its own deviation
@@ -33,4 +33,4 @@ struct ColourMixture {
 /// At most `most` kinds. None where nothing was seen.
 ColourMixture find_colours(std::span<const ColourSeen> seen, int most = 6);
 
-}  // namespace marey
+}  // namespace marey::analyse

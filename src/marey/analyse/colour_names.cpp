@@ -9,7 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/perceived.h"
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 // Shirts in the open, filmed from afar: duller than a painter's colours.
@@ -81,4 +81,4 @@ double colours_apart(const Appearance& a, const Appearance& b) {
   return (perceived(a) - perceived(b)).norm();
 }
 
-}  // namespace marey
+}  // namespace marey::analyse

@@ -6,7 +6,7 @@
 
 #include "marey/core/appearance.h"
 
-namespace marey {
+namespace marey::analyse {
 
 /// A word people use for a shirt's colour, and a shirt of that colour as video shows it.
 struct ColourName {
@@ -26,4 +26,4 @@ std::string name_of_colour(const Appearance& colour);
 /// How different two shirts look: the distance of the two as perceived (core/perceived.h).
 double colours_apart(const Appearance& a, const Appearance& b);
 
-}  // namespace marey
+}  // namespace marey::analyse

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 /// How often `fast(i)` holds without a break for at least `least` steps.
@@ -165,4 +165,4 @@ Measurement measure(const GroundRecording& recording, const MeasureOptions& opti
   return result;
 }
 
-}  // namespace marey
+}  // namespace marey::analyse

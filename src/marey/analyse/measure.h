@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "marey/analyse/smooth_path.h"
+#include "marey/core/geometry.h"
 #include "marey/core/ground_recording.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey {
+namespace marey::analyse {
 
 struct MeasureOptions {
   PathOptions path;
@@ -17,7 +18,7 @@ struct MeasureOptions {
   std::vector<double> zones = {2, 4, 5.5, 7};
   double sprint_mps = 7, sprint_s = 1;       ///< a sprint is at least so fast for at least so long
   double effort_mps2 = 2.5, effort_s = 0.5;  ///< the same of accelerations and decelerations
-  PitchSize pitch;                           ///< for heat maps
+  geometry::PitchSize pitch;                 ///< for heat maps
   double cell_m = 2;                         ///< of heat maps
 };
 
@@ -64,4 +65,4 @@ struct Measurement {
 /// Distances, speeds, efforts and places of everyone, from smoothed ways (`smooth_paths`). Cost: linear in the samples.
 Measurement measure(const GroundRecording& recording, const MeasureOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::analyse

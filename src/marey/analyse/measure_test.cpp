@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 GroundRecording one_person(double rate, double seconds, const std::function<Vector<2>(double)>& place, double noise) {
@@ -122,4 +122,4 @@ TEST(Measure, TeamsHaveALengthAWidthAndAHull) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::analyse

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 /// The places of one piece at an even rate: the median of its steps.
@@ -195,4 +195,4 @@ std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathO
   return paths;
 }
 
-}  // namespace marey
+}  // namespace marey::analyse

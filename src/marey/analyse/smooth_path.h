@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::analyse {
 
 struct PathOptions {
   enum class Method { lowpass, savgol, kalman, raw };
@@ -52,4 +52,4 @@ struct TimedPlace {
 /// `measured` in the order of time, times growing. Pieces of fewer than two places are left out.
 std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::analyse

@@ -11,7 +11,7 @@
 #include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 constexpr double least_team = 0.12;    // share of all people's time that a team's people have at least
@@ -36,7 +36,7 @@ struct Presence {
   double near_goal[2] = {0, 0};  // s before the goal at x = 0 and before the other
 };
 
-std::vector<Presence> presences(const GroundRecording& recording, const std::optional<PitchSize>& pitch) {
+std::vector<Presence> presences(const GroundRecording& recording, const std::optional<geometry::PitchSize>& pitch) {
   std::vector<Presence> all(recording.people.size());
   std::vector<double> last(recording.people.size(), -1e9);
   for (const GroundRecording::Sample& sample : recording.samples) {
@@ -279,4 +279,4 @@ void note_teams(const Teams& teams, GroundRecording& recording) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::analyse

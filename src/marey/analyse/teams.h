@@ -13,7 +13,7 @@
 #include "marey/core/ground_recording.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey {
+namespace marey::analyse {
 
 /// A team as the user knows it.
 struct TeamName {
@@ -25,10 +25,10 @@ struct TeamName {
 std::vector<TeamName> parse_teams(std::string_view text);
 
 struct TeamOptions {
-  std::vector<TeamName> names;     ///< none: teams are called by their colours
-  double sure = 0.8;               ///< who belongs to a team with less probability stays without
-  double shortest = 0.8;           ///< s; who was seen for less likewise
-  std::optional<PitchSize> pitch;  ///< where goals are, for keepers; without it there are none
+  std::vector<TeamName> names;               ///< none: teams are called by their colours
+  double sure = 0.8;                         ///< who belongs to a team with less probability stays without
+  double shortest = 0.8;                     ///< s; who was seen for less likewise
+  std::optional<geometry::PitchSize> pitch;  ///< where goals are, for keepers; without it there are none
 };
 
 struct Teams {
@@ -55,4 +55,4 @@ Teams find_teams(const GroundRecording& recording, std::span<const std::optional
 /// none.
 void note_teams(const Teams& teams, GroundRecording& recording);
 
-}  // namespace marey
+}  // namespace marey::analyse

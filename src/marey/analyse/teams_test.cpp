@@ -8,7 +8,7 @@
 #include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::analyse {
 namespace {
 
 /// People and what they wear; each stands about somewhere for some seconds.
@@ -40,7 +40,7 @@ struct Scene {
     }
   }
 
-  Teams find(const TeamOptions& options = {.names = {}, .pitch = PitchSize{}}) {
+  Teams find(const TeamOptions& options = {.names = {}, .pitch = geometry::PitchSize{}}) {
     std::stable_sort(recording.samples.begin(), recording.samples.end(),
                      [](const auto& a, const auto& b) { return a.frame < b.frame; });
     return find_teams(recording, wears, options);
@@ -88,7 +88,7 @@ TEST(Teams, TwoTeamsKeepersAndRefereesAreTold) {
 
 TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
   Scene scene = match(3, "red", "yellow");
-  const Teams teams = scene.find({.names = parse_teams("Away=yellow, Home=red"), .pitch = PitchSize{}});
+  const Teams teams = scene.find({.names = parse_teams("Away=yellow, Home=red"), .pitch = geometry::PitchSize{}});
   ASSERT_EQ(teams.teams.size(), 2U);
   EXPECT_EQ(teams.teams[0].name, "Away");
   EXPECT_EQ(teams.members[0].team, 1);
@@ -159,4 +159,4 @@ TEST(ColourNames, EveryWordNamesItself) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::analyse

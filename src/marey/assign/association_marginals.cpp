@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace marey {
+namespace marey::assign {
 
 std::span<const double> AssociationMarginals::find(int rows, int columns, std::span<const GatedPair> pairs) {
   probability_.assign(pairs.size(), 0);
@@ -118,4 +118,4 @@ void AssociationMarginals::sum_best(std::span<const GatedPair> pairs, int rows, 
   for (const Arc& arc : arcs_) probability_[arc.pair] /= total;
 }
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -15,7 +15,7 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/k_best_assignments.h"
 
-namespace marey {
+namespace marey::assign {
 
 class AssociationMarginals {
  public:
@@ -49,4 +49,4 @@ class AssociationMarginals {
   KBestAssigner best_;
 };
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 /// The slow twin: every answer is listed.
@@ -92,4 +92,4 @@ TEST(AssociationMarginals, NothingComesOfNothing) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-namespace marey {
+namespace marey::assign {
 
 /// Which of the elements 0 … n − 1 hang together, by union and find: the clusters of a graph whose edges are told one by one, in
 /// any order. A set is named by its lowest element, so that names do not depend on the order of the edges.
@@ -37,4 +37,4 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-}  // namespace marey
+}  // namespace marey::assign

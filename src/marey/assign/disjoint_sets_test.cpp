@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 TEST(DisjointSets, AsPaintingNeighboursUntilNothingChanges) {
@@ -36,4 +36,4 @@ TEST(DisjointSets, AsPaintingNeighboursUntilNothingChanges) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace marey {
+namespace marey::assign {
 
 void GatedAssigner::find_components(int rows, int columns, std::span<const GatedPair> pairs) {
   components_.reset(rows + columns);
@@ -80,4 +80,4 @@ void GatedAssigner::solve_greedily(std::span<GatedPair> pairs) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::assign

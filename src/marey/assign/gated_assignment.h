@@ -15,7 +15,7 @@
 #include "marey/assign/disjoint_sets.h"
 #include "marey/assign/linear_assignment.h"
 
-namespace marey {
+namespace marey::assign {
 
 /// A row that may be given a column, and what that is worth. Pairs with gain ≤ 0 are never chosen. Each pair occurs once.
 struct GatedPair {
@@ -48,4 +48,4 @@ class GatedAssigner {
   LinearAssigner dense_;
 };
 
-}  // namespace marey
+}  // namespace marey::assign

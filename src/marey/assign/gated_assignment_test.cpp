@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 double gain_of(std::span<const int> columns, std::span<const GatedPair> pairs) {
@@ -99,4 +99,4 @@ TEST(GatedAssigner, NothingToAssign) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

@@ -4,7 +4,7 @@
 #include <functional>
 #include <tuple>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -322,4 +322,4 @@ void KBestAssigner::follow_path(const Part& part, int from, int to) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -23,7 +23,7 @@
 
 #include "marey/assign/gated_assignment.h"
 
-namespace marey {
+namespace marey::assign {
 
 /// Who may be whom. Unlike for the best answer alone, pairs with a gain ≤ 0 count too: they are in answers that are less worth.
 struct AssignmentProblem {
@@ -122,4 +122,4 @@ class KBestAssigner {
   std::vector<std::pair<double, int>> reached_;  // a heap of nodes
 };
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 struct Whole {
@@ -133,4 +133,4 @@ TEST(KBestAssigner, NothingToAssign) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

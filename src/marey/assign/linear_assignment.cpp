@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace marey {
+namespace marey::assign {
 
 std::span<const int> LinearAssigner::assign(int rows, int columns, std::span<const double> costs) {
   assert(costs.size() == static_cast<std::size_t>(rows) * columns && "one cost for each pair");
@@ -87,4 +87,4 @@ int LinearAssigner::find_path(int row, int columns, const double* costs) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace marey {
+namespace marey::assign {
 
 class LinearAssigner {
  public:
@@ -32,4 +32,4 @@ class LinearAssigner {
   double path_cost_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::assign

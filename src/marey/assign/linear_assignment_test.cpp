@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 /// Every way to give each of the shorter side one of the longer.
@@ -66,4 +66,4 @@ TEST(LinearAssignment, NothingToAssign) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

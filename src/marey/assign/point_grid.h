@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::assign {
 
 template <int D>
 class PointGrid {
@@ -101,4 +101,4 @@ class PointGrid {
   double cell_ = 1;
 };
 
-}  // namespace marey
+}  // namespace marey::assign

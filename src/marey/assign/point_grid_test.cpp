@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 template <int D>
@@ -58,4 +58,4 @@ TEST(PointGrid, LooksAtFewOfMany) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

@@ -5,7 +5,7 @@
 #include <queue>
 #include <utility>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 constexpr int nobody = GatedAssigner::nobody;
@@ -130,4 +130,4 @@ std::vector<int> sparse_assignment(int rows, int columns, std::span<const GatedP
   return Solver(rows, columns, pairs).solve();
 }
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -13,10 +13,10 @@
 
 #include "marey/assign/gated_assignment.h"
 
-namespace marey {
+namespace marey::assign {
 
 /// For every row its column, or GatedAssigner::nobody; the sum of gains is the greatest there is. Rows lie in [0, rows), columns in
 /// [0, columns), gains are finite; pairs with gain ≤ 0 are never chosen; each pair occurs once.
 std::vector<int> sparse_assignment(int rows, int columns, std::span<const GatedPair> pairs);
 
-}  // namespace marey
+}  // namespace marey::assign

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::assign {
 namespace {
 
 /// Numbers that are the same everywhere.
@@ -81,4 +81,4 @@ TEST(SparseAssignment, AgreesWithTheDenseSolverOnLargerOnes) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::assign

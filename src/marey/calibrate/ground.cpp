@@ -12,7 +12,7 @@
 #include "marey/calibrate/rays.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr double kSamePlace = 3;       // px, within which a blob has stood still
@@ -41,7 +41,7 @@ std::vector<View> views_of(const Rig& rig, std::span<const std::vector<Vector<2>
     View view{*camera, c, {}};
     for (const auto& blob : blobs[c]) {
       const auto ray = camera->ray(blob);
-      view.lines.push_back(ray ? std::optional(SightLine{*ray, kSigmaPx / focal_of(camera->lens()).x()}) : std::nullopt);
+      view.lines.push_back(ray ? std::optional(SightLine{*ray, kSigmaPx / geometry::focal_of(camera->lens()).x()}) : std::nullopt);
     }
     views.push_back(std::move(view));
   }
@@ -184,14 +184,14 @@ GroundFound fit(const std::vector<SpacePoint>& points, const std::vector<std::si
 
 }  // namespace
 
-std::vector<Vector<2>> still_blobs(std::span<const BlobFrame> frames) {
+std::vector<Vector<2>> still_blobs(std::span<const wand::BlobFrame> frames) {
   struct Place {
     Vector<2> sum = Vector<2>::Zero();
     std::size_t count = 0;
     Vector<2> mean() const { return sum / static_cast<double>(count); }
   };
   std::vector<Place> places;
-  for (const BlobFrame& frame : frames) {
+  for (const wand::BlobFrame& frame : frames) {
     for (const auto& blob : frame.blobs) {
       auto place =
           std::find_if(places.begin(), places.end(), [&](const Place& one) { return (one.mean() - blob).norm() < kSamePlace; });
@@ -241,4 +241,4 @@ Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scal
   return moved;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

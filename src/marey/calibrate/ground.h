@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "marey/calibrate/wand_marks.h"
+#include "marey/calibrate/wand/wand_marks.h"
 #include "marey/core/rig.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 struct GroundFound {
   Rigid3 ground_from_world;  ///< ground = scale · (rotation · world + translation)
@@ -21,7 +21,7 @@ struct GroundFound {
 };
 
 /// Blobs that stand still, averaged: those in half of the frames at least. px.
-std::vector<Vector<2>> still_blobs(std::span<const BlobFrame> frames);
+std::vector<Vector<2>> still_blobs(std::span<const wand::BlobFrame> frames);
 
 /// `frame`: the markers' places on the ground, m, three at least, not on a line, their distances all of their own. `blobs` by
 /// camera of the rig; cameras without a pose are passed over. Where `free_scale`, the frame's size sets the rig's. Throws Error,
@@ -32,4 +32,4 @@ GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> 
 /// The rig with its world moved to the ground.
 Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale);
 
-}  // namespace marey
+}  // namespace marey::calibrate

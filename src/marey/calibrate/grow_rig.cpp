@@ -9,7 +9,7 @@
 #include "marey/calibrate/two_views.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr std::size_t kLeastShared = 12;  // instants that two cameras have to share to begin
@@ -26,9 +26,10 @@ double median(std::vector<double> values) {
 
 class Grower {
  public:
-  Grower(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed)
+  Grower(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& wand, const wand::WandTable& table,
+         std::uint64_t seed)
       : at_(cameras, wand, table), markers_(wand.markers()), seed_(seed) {
-    for (const WandCamera& camera : cameras) known_.push_back(camera.lens);
+    for (const wand::WandCamera& camera : cameras) known_.push_back(camera.lens);
   }
 
   Growth run() {
@@ -59,15 +60,15 @@ class Grower {
   void require_proportions(const std::vector<double>& shares) const;
   void add_next();
   bool set_camera(std::size_t c);
-  BundleResult adjust_all(Bundle& bundle, int rounds);
-  std::vector<int> fill(Bundle& bundle) const;
+  bundle::BundleResult adjust_all(bundle::Bundle& bundle, int rounds);
+  std::vector<int> fill(bundle::Bundle& bundle) const;
 
   void blame(std::string cause) {
     if (cause_.empty()) cause_ = std::move(cause);
   }
 
-  WandPlacement at_;
-  std::vector<Lens> known_;  // as they were given or guessed
+  wand::WandPlacement at_;
+  std::vector<geometry::Lens> known_;  // as they were given or guessed
   std::size_t markers_;
   std::uint64_t seed_;
   std::string cause_;  // why the first of the pairs that failed did
@@ -135,7 +136,7 @@ void Grower::begin() {
   for (std::size_t k = 0; k < start->instants.size(); ++k) {
     if (start->views.inlier[k]) at_.place(start->instants[k]);
   }
-  Bundle bundle;
+  bundle::Bundle bundle;
   adjust_all(bundle, 2);
 }
 
@@ -178,7 +179,7 @@ void Grower::add_next() {
   for (const auto& [count, c] : candidates) {
     if (!set_camera(c)) continue;
     at_.place_all();
-    Bundle bundle;
+    bundle::Bundle bundle;
     adjust_all(bundle, 1);
     return;
   }
@@ -207,20 +208,20 @@ bool Grower::set_camera(std::size_t c) {
 }
 
 /// What stands and is placed, as a bundle; gives each camera's place in it, -1 for none.
-std::vector<int> Grower::fill(Bundle& bundle) const {
+std::vector<int> Grower::fill(bundle::Bundle& bundle) const {
   std::vector<int> place_in_bundle(at_.cameras(), -1);
   const bool lens_shows = markers_ > 1 || standing() > 2;
   bundle.wand = at_.wand().distances;
   for (std::size_t c = 0; c < at_.cameras(); ++c) {
     if (!at_.poses[c]) continue;
     place_in_bundle[c] = static_cast<int>(bundle.cameras.size());
-    BundleCamera camera{at_.camera(c).lens, *at_.poses[c], 0, lens_shows ? at_.camera(c).freedom : LensFreedom{}};
+    bundle::BundleCamera camera{at_.camera(c).lens, *at_.poses[c], 0, lens_shows ? at_.camera(c).freedom : bundle::LensFreedom{}};
     camera.known = known_[c];
     camera.refine_pose = !bundle.cameras.empty();
     bundle.cameras.push_back(camera);
   }
   for (std::size_t i = 0; i < at_.instants(); ++i) {
-    bundle.bodies.push_back(at_.bodies[i].value_or(Body(Vector<3>(Vector<3>::Zero()))));
+    bundle.bodies.push_back(at_.bodies[i].value_or(bundle::Body(Vector<3>(Vector<3>::Zero()))));
     for (std::size_t c = 0; at_.bodies[i] && c < at_.cameras(); ++c) {
       for (std::size_t m = 0; at_.poses[c] && at_.sees(i, c) && m < markers_; ++m) {
         bundle.observations.push_back({place_in_bundle[c], static_cast<int>(i), static_cast<int>(m), at_.pixel(i, c, m)});
@@ -231,18 +232,18 @@ std::vector<int> Grower::fill(Bundle& bundle) const {
 }
 
 /// Adjusts the cameras that stand and what is placed, and takes both over.
-BundleResult Grower::adjust_all(Bundle& bundle, int rounds) {
+bundle::BundleResult Grower::adjust_all(bundle::Bundle& bundle, int rounds) {
   const std::vector<int> place_in_bundle = fill(bundle);
-  BundleOptions options;
+  bundle::BundleOptions options;
   options.noise_px = 0;
   for (std::size_t c = 0; c < at_.cameras(); ++c) options.noise_px = std::max(options.noise_px, at_.camera(c).sigma_px / 2);
   options.rounds = rounds;
   options.tolerance = 1e-6;
   options.deviations = false;
-  const BundleResult result = adjust(bundle, options);
+  const bundle::BundleResult result = bundle::adjust(bundle, options);
   for (std::size_t c = 0; c < at_.cameras(); ++c) {
     if (place_in_bundle[c] < 0) continue;
-    const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(place_in_bundle[c])];
+    const bundle::BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(place_in_bundle[c])];
     at_.poses[c] = camera.camera_from_world;
     at_.set_lens(c, camera.lens);
   }
@@ -254,11 +255,12 @@ BundleResult Grower::adjust_all(Bundle& bundle, int rounds) {
 
 }  // namespace
 
-Growth grow_rig(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed) {
+Growth grow_rig(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& wand, const wand::WandTable& table,
+                std::uint64_t seed) {
   return Grower(cameras, wand, table, seed).run();
 }
 
-std::vector<std::vector<int>> shared_views(const WandTable& table, std::size_t cameras) {
+std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::size_t cameras) {
   std::vector<std::vector<int>> shared(cameras, std::vector<int>(cameras, 0));
   for (const auto& row : table) {
     for (std::size_t a = 0; a < cameras; ++a) {
@@ -290,4 +292,4 @@ void require_connected(const std::vector<std::string>& names, const std::vector<
       fmt::join(here, ", "), fmt::join(there, ", "), least);
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -10,25 +10,26 @@
 #include <string>
 #include <vector>
 
-#include "marey/calibrate/bundle.h"
-#include "marey/calibrate/wand_placement.h"
+#include "marey/calibrate/bundle/bundle.h"
+#include "marey/calibrate/wand/wand_placement.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 struct Growth {
-  Bundle bundle;  ///< body i is instant i; those not placed have no observations
-  BundleResult fit;
+  bundle::Bundle bundle;  ///< body i is instant i; those not placed have no observations
+  bundle::BundleResult fit;
 };
 
 /// In the frame of the bundle's first camera; a single light's scale is arbitrary. `table` has all of the wand's markers, or
 /// nothing. Throws Error, with the cause and what to do, where cameras cannot be related: one place, a plane, a wand of other
 /// proportions.
-Growth grow_rig(const std::vector<WandCamera>& cameras, const WandShape& wand, const WandTable& table, std::uint64_t seed);
+Growth grow_rig(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& wand, const wand::WandTable& table,
+                std::uint64_t seed);
 
 /// At how many instants two cameras both see the wand, by camera and camera.
-std::vector<std::vector<int>> shared_views(const WandTable& table, std::size_t cameras);
+std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::size_t cameras);
 
 /// Refuses cameras that share too few instants, one way or another, to become one rig.
 void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int least);
 
-}  // namespace marey
+}  // namespace marey::calibrate

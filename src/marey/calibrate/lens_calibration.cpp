@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "marey/calibrate/board_pose.h"
+#include "marey/calibrate/board/board_pose.h"
 #include "marey/calibrate/lens_start.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr int kLeastViews = 3;
@@ -21,28 +21,28 @@ constexpr double kLeastSpread = 5 * std::numbers::pi / 180;  // between the dire
 constexpr double kWorseThanOthers = 4;                       // times the median error: then a view is put out whole
 constexpr double kAlwaysGood = 0.5;                          // px: but never one as good as this
 
-LensFreedom freedom_of(const LensOptions& options, int step) {
-  LensFreedom freedom;
-  freedom.focal = LensFreedom::free;
-  if (step >= 1) freedom.distortion[0] = LensFreedom::free;
+bundle::LensFreedom freedom_of(const LensOptions& options, int step) {
+  bundle::LensFreedom freedom;
+  freedom.focal = bundle::LensFreedom::free;
+  if (step >= 1) freedom.distortion[0] = bundle::LensFreedom::free;
   if (step < 2) return freedom;
-  freedom.principal = LensFreedom::free;
-  freedom.aspect = options.square_pixels ? 0 : LensFreedom::free;
-  const int count = options.model == TsaiLens::name ? 1 : options.coefficients;
+  freedom.principal = bundle::LensFreedom::free;
+  freedom.aspect = options.square_pixels ? 0 : bundle::LensFreedom::free;
+  const int count = options.model == geometry::TsaiLens::name ? 1 : options.coefficients;
   for (std::size_t i = 0; i < freedom.distortion.size(); ++i)
-    freedom.distortion[i] = static_cast<int>(i) < count ? LensFreedom::free : 0;
+    freedom.distortion[i] = static_cast<int>(i) < count ? bundle::LensFreedom::free : 0;
   return freedom;
 }
 
 /// One camera that stands still, one board for each view.
 class Solver {
  public:
-  Solver(const Board& board, std::span<const LensView> views, const LensOptions& options, const Lens& start)
+  Solver(const board::Board& board, std::span<const LensView> views, const LensOptions& options, const geometry::Lens& start)
       : board_(board), views_(views), options_(options), used_(views.size(), true) {
     for (int id = 0; id < board.corner_count(); ++id) bundle_.board.push_back(board.corner(id));
     bundle_.cameras.push_back({start, {}, 0, {}, false, false});
     for (std::size_t i = 0; i < views.size(); ++i) {
-      const auto pose = board_pose(board, views[i].board, start);
+      const auto pose = board::board_pose(board, views[i].board, start);
       used_[i] = pose.has_value();
       bundle_.bodies.emplace_back(pose.value_or(Rigid3{}));
     }
@@ -50,7 +50,7 @@ class Solver {
 
   /// Step by step from the focal length to all numbers; no corner is put out on the way.
   void approach() {
-    BundleOptions how;
+    bundle::BundleOptions how;
     how.rounds = 0;
     how.deviations = false;
     how.tolerance = 1e-6;
@@ -71,18 +71,18 @@ class Solver {
       for (const double here : misfit) verdict.push_back(here <= limit);
       if (verdict == used_ || std::ranges::count(verdict, true) < kLeastViews) return;
       for (std::size_t i = 0; i < verdict.size(); ++i) {
-        if (verdict[i] && !used_[i]) bundle_.bodies[i] = *board_pose(board_, views_[i].board, bundle_.cameras[0].lens);
+        if (verdict[i] && !used_[i]) bundle_.bodies[i] = *board::board_pose(board_, views_[i].board, bundle_.cameras[0].lens);
       }
       used_ = verdict;
-      BundleOptions how;
+      bundle::BundleOptions how;
       how.rounds = 0;
       how.deviations = false;
       solve(2, how);
     }
   }
 
-  BundleResult finish() {
-    BundleOptions how;
+  bundle::BundleResult finish() {
+    bundle::BundleOptions how;
     how.noise_px = std::max(0.02, last_.noise_px);
     how.least_outlier_px = 0.5;
     how.outlier_sigmas = 6;
@@ -90,34 +90,34 @@ class Solver {
     return last_;
   }
 
-  const Bundle& bundle() const { return bundle_; }
+  const bundle::Bundle& bundle() const { return bundle_; }
   bool used(std::size_t view) const { return used_[view]; }
   int used_views() const { return static_cast<int>(std::ranges::count(used_, true)); }
 
  private:
-  BundleResult solve(int step, const BundleOptions& how) {
+  bundle::BundleResult solve(int step, const bundle::BundleOptions& how) {
     bundle_.observations.clear();
     for (std::size_t i = 0; i < views_.size(); ++i) {
       if (!used_[i]) continue;
-      for (const BoardCorner& corner : views_[i].board.corners)
+      for (const board::BoardCorner& corner : views_[i].board.corners)
         bundle_.observations.push_back({0, static_cast<int>(i), corner.id, corner.pixel, Vector<2>::Zero()});
     }
     bundle_.cameras[0].freedom = freedom_of(options_, step);
-    last_ = adjust(bundle_, how);
+    last_ = bundle::adjust(bundle_, how);
     return last_;
   }
 
   /// How far corners are off in every view, used or not: the median, px, which single wrong corners do not move. 1e6 where the
   /// lens as it is gives no pose.
   std::vector<double> view_misfit() const {
-    const Lens& lens = bundle_.cameras[0].lens;
+    const geometry::Lens& lens = bundle_.cameras[0].lens;
     std::vector<double> all;
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      const BoardView& view = views_[i].board;
-      const auto pose = used_[i] ? std::optional(std::get<Rigid3>(bundle_.bodies[i])) : board_pose(board_, view, lens);
+      const board::BoardView& view = views_[i].board;
+      const auto pose = used_[i] ? std::optional(std::get<Rigid3>(bundle_.bodies[i])) : board::board_pose(board_, view, lens);
       std::vector<double> distances;
-      for (const BoardCorner& corner : view.corners) {
-        const auto pixel = pose ? pixel_of(lens, *pose * board_.corner(corner.id)) : std::nullopt;
+      for (const board::BoardCorner& corner : view.corners) {
+        const auto pixel = pose ? board::pixel_of(lens, *pose * board_.corner(corner.id)) : std::nullopt;
         distances.push_back(pixel ? (*pixel - corner.pixel).norm() : 1e6);
       }
       const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -127,12 +127,12 @@ class Solver {
     return all;
   }
 
-  const Board& board_;
+  const board::Board& board_;
   std::span<const LensView> views_;
   const LensOptions& options_;
   std::vector<bool> used_;
-  Bundle bundle_;
-  BundleResult last_;
+  bundle::Bundle bundle_;
+  bundle::BundleResult last_;
 };
 
 /// The widest angle between the directions that two used boards face, rad.
@@ -161,21 +161,21 @@ double covered_share(const std::vector<LensCalibration::View>& views, const cv::
   return static_cast<double>(fields.size()) / (columns * rows);
 }
 
-std::vector<LensCalibration::View> describe(const Board& board, std::span<const LensView> views, const Solver& solver) {
+std::vector<LensCalibration::View> describe(const board::Board& board, std::span<const LensView> views, const Solver& solver) {
   std::vector<LensCalibration::View> described;
-  const Lens& lens = solver.bundle().cameras[0].lens;
+  const geometry::Lens& lens = solver.bundle().cameras[0].lens;
   for (std::size_t i = 0; i < views.size(); ++i) {
     LensCalibration::View view;
     view.name = views[i].name;
-    for (const BoardCorner& corner : views[i].board.corners) view.pixels.push_back(corner.pixel);
-    const auto pose =
-        solver.used(i) ? std::optional(std::get<Rigid3>(solver.bundle().bodies[i])) : board_pose(board, views[i].board, lens);
-    const auto rms = pose ? board_rms(board, views[i].board, lens, *pose) : std::nullopt;
+    for (const board::BoardCorner& corner : views[i].board.corners) view.pixels.push_back(corner.pixel);
+    const auto pose = solver.used(i) ? std::optional(std::get<Rigid3>(solver.bundle().bodies[i]))
+                                     : board::board_pose(board, views[i].board, lens);
+    const auto rms = pose ? board::board_rms(board, views[i].board, lens, *pose) : std::nullopt;
     if (rms) {
       view.camera_from_board = pose;
       view.rms_px = *rms;
-      for (const BoardCorner& corner : views[i].board.corners)
-        view.errors.push_back(corner.pixel - *pixel_of(lens, *pose * board.corner(corner.id)));
+      for (const board::BoardCorner& corner : views[i].board.corners)
+        view.errors.push_back(corner.pixel - *board::pixel_of(lens, *pose * board.corner(corner.id)));
     }
     if (!solver.used(i)) {
       view.refused =
@@ -205,10 +205,11 @@ void warn(LensCalibration& result, double spread, int used) {
 }  // namespace
 
 std::vector<std::string> lens_models() {
-  return {std::string(BrownLens::name), std::string(FisheyeLens::name), std::string(TsaiLens::name)};
+  return {std::string(geometry::BrownLens::name), std::string(geometry::FisheyeLens::name), std::string(geometry::TsaiLens::name)};
 }
 
-LensCalibration calibrate_lens(const Board& board, cv::Size size, std::span<const LensView> views, const LensOptions& options) {
+LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
+                               const LensOptions& options) {
   if (static_cast<int>(views.size()) < kLeastViews)
     throw Error(
         "the board was seen in {} pictures, and a lens needs {} at least; show it in 15 or more, near and far, tilted, and in "
@@ -216,7 +217,7 @@ LensCalibration calibrate_lens(const Board& board, cv::Size size, std::span<cons
         views.size(), kLeastViews);
   const auto start = first_lens(board, size, views, options.model);
   if (!start)
-    throw Error("no focal length explains what was seen of the board; is {} the board in the pictures?", to_string(board));
+    throw Error("no focal length explains what was seen of the board; is {} the board in the pictures?", board::to_string(board));
   Solver solver(board, views, options, *start);
   solver.approach();
   solver.refuse_bad_views();
@@ -224,8 +225,8 @@ LensCalibration calibrate_lens(const Board& board, cv::Size size, std::span<cons
     throw Error(
         "only {} pictures of the board agree with each other, and a lens needs {} at least; is {} the board in the pictures, flat "
         "and still?",
-        solver.used_views(), kLeastViews, to_string(board));
-  const BundleResult found = solver.finish();
+        solver.used_views(), kLeastViews, board::to_string(board));
+  const bundle::BundleResult found = solver.finish();
   const double spread = spread_of(solver);
   if (spread < kLeastSpread)
     throw Error(
@@ -248,4 +249,4 @@ LensCalibration calibrate_lens(const Board& board, cv::Size size, std::span<cons
   return result;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

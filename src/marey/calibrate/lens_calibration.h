@@ -15,16 +15,16 @@
 
 #include <opencv2/core/types.hpp>
 
-#include "marey/calibrate/board.h"
-#include "marey/calibrate/board_detector.h"
-#include "marey/calibrate/bundle.h"
+#include "marey/calibrate/board/board.h"
+#include "marey/calibrate/board/board_detector.h"
+#include "marey/calibrate/bundle/bundle.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 /// A board seen in one picture of a lens.
 struct LensView {
   std::string name;  ///< what messages call the picture
-  BoardView board;
+  board::BoardView board;
 };
 
 struct LensOptions {
@@ -34,9 +34,9 @@ struct LensOptions {
 };
 
 struct LensCalibration {
-  Lens lens;
-  cv::Size size;              ///< px
-  CameraDeviation deviation;  ///< by the noise seen
+  geometry::Lens lens;
+  cv::Size size;                      ///< px
+  bundle::CameraDeviation deviation;  ///< by the noise seen
   double rms_px = 0, mean_px = 0;
   double noise_px = 0;  ///< each axis
   int inliers = 0, observations = 0;
@@ -56,9 +56,10 @@ struct LensCalibration {
 
 /// `views` of one board in pictures of `size` px. Throws Error, with cause and remedy, where they cannot tell the lens: fewer than
 /// three usable views, or the board at one angle in all.
-LensCalibration calibrate_lens(const Board& board, cv::Size size, std::span<const LensView> views, const LensOptions& options = {});
+LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
+                               const LensOptions& options = {});
 
 /// The lens models' names.
 std::vector<std::string> lens_models();
 
-}  // namespace marey
+}  // namespace marey::calibrate

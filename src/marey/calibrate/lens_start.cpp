@@ -4,22 +4,22 @@
 #include <cmath>
 #include <vector>
 
-#include "marey/calibrate/board_pose.h"
+#include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr std::size_t kViewsTried = 12;                         // spread over all: a guess needs no more
 constexpr double kNarrowest = 20, kWidest = 0.2, kStep = 1.15;  // focal length in picture widths
 
 /// Median over the views of how far corners are from where this lens and the view's best pose would put them.
-std::optional<double> misfit(const Board& board, std::span<const LensView> views, const Lens& lens) {
+std::optional<double> misfit(const board::Board& board, std::span<const LensView> views, const geometry::Lens& lens) {
   std::vector<double> misfits;
   const std::size_t stride = std::max<std::size_t>(1, views.size() / kViewsTried);
   for (std::size_t i = 0; i < views.size(); i += stride) {
-    const auto pose = board_pose(board, views[i].board, lens);
-    const auto rms = pose ? board_rms(board, views[i].board, lens, *pose) : std::nullopt;
+    const auto pose = board::board_pose(board, views[i].board, lens);
+    const auto rms = pose ? board::board_rms(board, views[i].board, lens, *pose) : std::nullopt;
     misfits.push_back(rms.value_or(1e6));
   }
   const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
@@ -29,23 +29,24 @@ std::optional<double> misfit(const Board& board, std::span<const LensView> views
 
 }  // namespace
 
-Lens plain_lens(const std::string& model, double focal, const Vector<2>& principal) {
-  if (model == BrownLens::name) return BrownLens{{focal, focal}, principal, {}};
-  if (model == FisheyeLens::name) return FisheyeLens{{focal, focal}, principal, {}};
-  if (model == TsaiLens::name) return TsaiLens{{focal, focal}, principal, {}};
+geometry::Lens plain_lens(const std::string& model, double focal, const Vector<2>& principal) {
+  if (model == geometry::BrownLens::name) return geometry::BrownLens{{focal, focal}, principal, {}};
+  if (model == geometry::FisheyeLens::name) return geometry::FisheyeLens{{focal, focal}, principal, {}};
+  if (model == geometry::TsaiLens::name) return geometry::TsaiLens{{focal, focal}, principal, {}};
   throw Error("lens model \"{}\" is not known; take brown, fisheye or tsai", model);
 }
 
-std::optional<Lens> first_lens(const Board& board, cv::Size size, std::span<const LensView> views, const std::string& model) {
+std::optional<geometry::Lens> first_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
+                                         const std::string& model) {
   const Vector<2> middle((size.width - 1) / 2.0, (size.height - 1) / 2.0);
-  std::optional<Lens> best;
+  std::optional<geometry::Lens> best;
   double least = 0;
   for (double widths = kWidest; widths < kNarrowest; widths *= kStep) {
-    const Lens lens = plain_lens(model, widths * std::max(size.width, size.height), middle);
+    const geometry::Lens lens = plain_lens(model, widths * std::max(size.width, size.height), middle);
     const auto off = misfit(board, views, lens);
     if (off && (!best || *off < least)) best = lens, least = *off;
   }
   return best;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-namespace marey {
+namespace marey::calibrate {
 
 double angle_off(const SightLine& line, const Vector<3>& point) {
   const Vector<3> to = point - line.ray.origin;
@@ -59,4 +59,4 @@ std::optional<Vector<3>> agreed_point(std::span<const SightLine> lines, double g
   return meeting_point(best);
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

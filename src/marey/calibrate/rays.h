@@ -3,9 +3,10 @@
 #include <optional>
 #include <span>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 /// A ray and how far, rad, it may be off.
 struct SightLine {
@@ -23,4 +24,4 @@ double angle_off(const SightLine& line, const Vector<3>& point);
 /// The point that most lines agree on within `gate` sigmas, two at least; where not all agree every two of them propose one.
 std::optional<Vector<3>> agreed_point(std::span<const SightLine> lines, double gate);
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr double kGate = 4;          // standard deviations within which a wand is explained
@@ -60,7 +60,7 @@ std::vector<Rigid3> propose(std::span<const SeenWand> wands, const ResectionOpti
   std::vector<Rigid3> poses;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const cv::Mat &r = rotations[i], &t = translations[i];
-    const Rigid3 pose{rotation_from({r.at<double>(0), r.at<double>(1), r.at<double>(2)}),
+    const Rigid3 pose{geometry::rotation_from({r.at<double>(0), r.at<double>(1), r.at<double>(2)}),
                       {t.at<double>(0), t.at<double>(1), t.at<double>(2)}};
     if (pose.rotation.allFinite() && pose.translation.allFinite()) poses.push_back(pose);
   }
@@ -94,4 +94,4 @@ std::optional<Resection> resect(std::span<const SeenWand> wands, const Resection
   return best;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -9,14 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "marey/calibrate/wand_marks.h"
+#include "marey/calibrate/wand/wand_marks.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 /// A wand whose markers' places are known, and the bearings at which the camera sees them.
 struct SeenWand {
-  std::array<Vector<3>, WandShape::most> world, bearing;
+  std::array<Vector<3>, wand::WandShape::most> world, bearing;
 };
 
 struct ResectionOptions {
@@ -35,4 +36,4 @@ struct Resection {
 /// Nothing where fewer than four wands or points are given, or no pose explains so many.
 std::optional<Resection> resect(std::span<const SeenWand> wands, const ResectionOptions& options);
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -5,7 +5,7 @@
 
 #include "marey/calibrate/rig_report.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 struct Grade {
@@ -57,4 +57,4 @@ void grade(RigReport& report, int columns, double wand_m) {
   report.meaning = fmt::format("{}{}{}", kGrades[worst].use, limit.empty() ? "" : "; limited by ", limit);
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

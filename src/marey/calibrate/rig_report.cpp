@@ -11,13 +11,13 @@
 
 #include "marey/calibrate/rays.h"
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 constexpr int kColumns = 10, kRows = 8;  // parts of a picture whose coverage is counted
 constexpr double kMm = 1000;
 
-std::vector<Camera> cameras_of(const Bundle& bundle, const std::vector<cv::Size>& sizes) {
+std::vector<Camera> cameras_of(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes) {
   std::vector<Camera> cameras;
   for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
     cameras.emplace_back(bundle.cameras[c].lens, bundle.cameras[c].camera_from_world, sizes[c]);
@@ -122,25 +122,25 @@ std::optional<Vector<3>> refined_point(const std::vector<const Camera*>& cameras
 
 }  // namespace
 
-RigReport report_on(const Bundle& bundle, const BundleResult& fit, const std::vector<std::string>& names,
+RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fit, const std::vector<std::string>& names,
                     const std::vector<cv::Size>& sizes) {
-  const auto errors = errors_of(bundle);
+  const auto errors = bundle::errors_of(bundle);
   std::vector<Sum> sums(bundle.cameras.size());
   std::vector<double> world(bundle.cameras.size(), 0);
   std::vector<std::set<int>> parts(bundle.cameras.size());
   std::vector<Vector<3>> points;
   Sum all;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const BundleObservation& seen = bundle.observations[i];
+    const bundle::BundleObservation& seen = bundle.observations[i];
     const auto c = static_cast<std::size_t>(seen.camera);
     const double error = errors[i] ? errors[i]->norm() : 0;
     sums[c].add(error, fit.inlier[i]);
     all.add(error, fit.inlier[i]);
     if (!fit.inlier[i]) continue;
-    const Vector<3> point = marker_position(bundle, seen);
+    const Vector<3> point = bundle::marker_position(bundle, seen);
     points.push_back(point);
     parts[c].insert(part_of(seen.pixel, sizes[c]));
-    world[c] += error * (bundle.cameras[c].camera_from_world * point).norm() / focal_of(bundle.cameras[c].lens).x();
+    world[c] += error * (bundle.cameras[c].camera_from_world * point).norm() / geometry::focal_of(bundle.cameras[c].lens).x();
   }
   RigReport report;
   report.all = all.quality();
@@ -156,10 +156,10 @@ RigReport report_on(const Bundle& bundle, const BundleResult& fit, const std::ve
   return report;
 }
 
-HeldOutReport judge_held_out(const Bundle& bundle, const std::vector<cv::Size>& sizes) {
+HeldOutReport judge_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes) {
   const auto cameras = cameras_of(bundle, sizes);
-  std::map<std::pair<int, int>, std::vector<const BundleObservation*>> markers;  // by body and marker
-  for (const BundleObservation& seen : bundle.observations) markers[{seen.body, seen.marker}].push_back(&seen);
+  std::map<std::pair<int, int>, std::vector<const bundle::BundleObservation*>> markers;  // by body and marker
+  for (const bundle::BundleObservation& seen : bundle.observations) markers[{seen.body, seen.marker}].push_back(&seen);
   std::map<int, std::map<int, Vector<3>>> places;  // by body, marker
   HeldOutReport report;
   Sum sum;
@@ -168,12 +168,12 @@ HeldOutReport judge_held_out(const Bundle& bundle, const std::vector<cv::Size>& 
     std::vector<SightLine> lines;
     std::vector<const Camera*> seeing;
     std::vector<Vector<2>> pixels;
-    for (const BundleObservation* one : seen) {
+    for (const bundle::BundleObservation* one : seen) {
       const Camera& camera = cameras[static_cast<std::size_t>(one->camera)];
       const Vector<2> pixel = one->pixel - one->velocity * bundle.cameras[static_cast<std::size_t>(one->camera)].offset_s;
       const auto ray = camera.ray(pixel);
       if (!ray) continue;
-      lines.push_back({*ray, 1 / focal_of(camera.lens()).x()});
+      lines.push_back({*ray, 1 / geometry::focal_of(camera.lens()).x()});
       seeing.push_back(&camera);
       pixels.push_back(pixel);
     }
@@ -211,4 +211,4 @@ HeldOutReport judge_held_out(const Bundle& bundle, const std::vector<cv::Size>& 
   return report;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

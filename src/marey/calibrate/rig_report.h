@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "marey/calibrate/bundle.h"
+#include "marey/calibrate/bundle/bundle.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 /// How well one camera, or all of them, explain what was seen. Errors are 2-D distances.
 struct FitQuality {
@@ -20,7 +21,7 @@ struct CameraReport {
   FitQuality fit;
   double coverage = 0;        ///< share of the picture, in 10 × 8 parts, in which something was seen
   double world_error_mm = 0;  ///< mean distance of its rays from what they saw; in thousandths of the unit without a scale
-  CameraDeviation deviation = {};
+  bundle::CameraDeviation deviation = {};
 };
 
 /// How sure a marker's place is, by one look of all cameras that see it: a grid over where the wand was.
@@ -50,14 +51,14 @@ struct RigReport {
 };
 
 /// Of a bundle and its fit; `names` and `sizes` by camera.
-RigReport report_on(const Bundle& bundle, const BundleResult& fit, const std::vector<std::string>& names,
+RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fit, const std::vector<std::string>& names,
                     const std::vector<cv::Size>& sizes);
 
 /// Places every marker of `bundle`'s observations anew, as a free point, by the bundle's cameras, and compares.
-HeldOutReport judge_held_out(const Bundle& bundle, const std::vector<cv::Size>& sizes);
+HeldOutReport judge_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes);
 
 /// Sets grade and meaning: the worst of the noise (for a picture of 1280 columns; `columns` of the widest one), the wand's length
 /// on held-out frames (relative to `wand_m`, where there is one), the least covered camera and the share of outliers decides.
 void grade(RigReport& report, int columns, double wand_m);
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 using Ray = Vector<3>;
@@ -294,4 +294,4 @@ std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOpt
   return views;
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -14,14 +14,15 @@
 #include <span>
 #include <vector>
 
-#include "marey/calibrate/wand_marks.h"
+#include "marey/calibrate/wand/wand_marks.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
 
-namespace marey {
+namespace marey::calibrate {
 
 /// One instant of a wand as two cameras see it: bearings of length 1, marker by marker.
 struct WandPair {
-  std::array<Vector<3>, WandShape::most> a, b;
+  std::array<Vector<3>, wand::WandShape::most> a, b;
 };
 
 struct TwoViewOptions {
@@ -46,4 +47,4 @@ struct TwoViews {
 /// where no essential matrix is determined, `plane` and `share` alone are told.
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options);
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -5,14 +5,14 @@
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
-namespace marey {
+namespace marey::calibrate {
 namespace {
 
 Vector<3> centre_of(const Rigid3& camera_from_world) {
   return camera_from_world.inverse().translation;
 }
 
-double distance(const Bundle& bundle, std::size_t a, std::size_t b) {
+double distance(const bundle::Bundle& bundle, std::size_t a, std::size_t b) {
   return (centre_of(bundle.cameras[a].camera_from_world) - centre_of(bundle.cameras[b].camera_from_world)).norm();
 }
 
@@ -29,7 +29,7 @@ Matrix<3> nearest_rotation(const Matrix<3>& m) {
 }
 
 /// Onto the poses that were given: rotations averaged, centres matched; scale by the centres' spread where it is not known.
-bool onto_given_poses(Bundle& bundle, const Rig& rig, bool scale_known) {
+bool onto_given_poses(bundle::Bundle& bundle, const Rig& rig, bool scale_known) {
   Matrix<3> turn = Matrix<3>::Zero();
   Vector<3> given = Vector<3>::Zero(), found = Vector<3>::Zero();
   const auto n = static_cast<double>(rig.cameras.size());
@@ -52,12 +52,12 @@ bool onto_given_poses(Bundle& bundle, const Rig& rig, bool scale_known) {
 }
 
 /// Upright as the cameras stand: most are held so that down in the picture is down.
-void stand_upright(Bundle& bundle) {
+void stand_upright(bundle::Bundle& bundle) {
   Vector<3> up = Vector<3>::Zero(), middle = Vector<3>::Zero();
-  for (const BundleCamera& camera : bundle.cameras) up -= camera.camera_from_world.rotation.row(1).transpose();
+  for (const bundle::BundleCamera& camera : bundle.cameras) up -= camera.camera_from_world.rotation.row(1).transpose();
   up = up.norm() > 1e-3 ? up.normalized() : Vector<3>(Vector<3>::UnitZ());
-  for (const BundleObservation& seen : bundle.observations) {
-    middle += marker_position(bundle, seen) / static_cast<double>(bundle.observations.size());
+  for (const bundle::BundleObservation& seen : bundle.observations) {
+    middle += bundle::marker_position(bundle, seen) / static_cast<double>(bundle.observations.size());
   }
   const Vector<3> right = bundle.cameras.front().camera_from_world.rotation.row(0).transpose();
   const Vector<3> x = (right - right.dot(up) * up).norm() > 1e-3 ? (right - right.dot(up) * up).normalized() : up.unitOrthogonal();
@@ -68,16 +68,16 @@ void stand_upright(Bundle& bundle) {
 
 }  // namespace
 
-void move(Bundle& bundle, const Rigid3& moved_from_world, double scale) {
+void move(bundle::Bundle& bundle, const Rigid3& moved_from_world, double scale) {
   const auto moved = [&](const Vector<3>& p) { return Vector<3>(scale * (moved_from_world * p)); };
-  for (BundleCamera& camera : bundle.cameras) {
+  for (bundle::BundleCamera& camera : bundle.cameras) {
     const Matrix<3> rotation = camera.camera_from_world.rotation * moved_from_world.rotation.transpose();
     camera.camera_from_world = {rotation, -rotation * moved(centre_of(camera.camera_from_world))};
   }
-  for (Body& body : bundle.bodies) {
+  for (bundle::Body& body : bundle.bodies) {
     if (auto* point = std::get_if<Vector<3>>(&body)) {
       *point = moved(*point);
-    } else if (auto* wand = std::get_if<WandPose>(&body)) {
+    } else if (auto* wand = std::get_if<bundle::WandPose>(&body)) {
       *wand = {moved(wand->origin), moved_from_world.rotation * wand->direction};
     } else {
       auto& board = std::get<Rigid3>(body);
@@ -86,7 +86,8 @@ void move(Bundle& bundle, const Rigid3& moved_from_world, double scale) {
   }
 }
 
-void put_into_world(Bundle& bundle, const WandInput& input, const WandOptions& options, std::vector<std::string>& notes) {
+void put_into_world(bundle::Bundle& bundle, const wand::WandInput& input, const wand::WandOptions& options,
+                    std::vector<std::string>& notes) {
   bool scale_known = input.wand.markers() > 1;
   if (!scale_known && options.distance) {
     const double found =
@@ -109,4 +110,4 @@ void put_into_world(Bundle& bundle, const WandInput& input, const WandOptions& o
       "the world stands as the cameras do, its origin in the middle of what they saw: `marey calibrate ground` sets both");
 }
 
-}  // namespace marey
+}  // namespace marey::calibrate

@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "marey/geometry/box.h"
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
 namespace marey {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
-#include "marey/geometry/vector.h"
 
 namespace marey {
 

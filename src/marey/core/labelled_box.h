@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "marey/geometry/box.h"
+#include "marey/core/geometry.h"
 
 namespace marey {
 

@@ -3,9 +3,8 @@
 #include <optional>
 
 #include "marey/core/appearance.h"
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
-#include "marey/geometry/box.h"
-#include "marey/geometry/vector.h"
 
 namespace marey {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
 namespace marey {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "marey/core/appearance.h"
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
 namespace marey {
 

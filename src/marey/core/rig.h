@@ -6,6 +6,7 @@
 
 #include <opencv2/core/types.hpp>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 #include "marey/geometry/ground_view.h"
 
@@ -20,7 +21,7 @@ struct RigCamera {
   std::optional<double> rate_hz;               ///< in place of what the source's header says
   std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing where nobody said
   std::optional<cv::Size> size;                ///< px
-  std::optional<Lens> lens;                    ///< valid for `size`
+  std::optional<geometry::Lens> lens;          ///< valid for `size`
   std::optional<Rigid3> camera_from_world;     ///< m
   std::optional<Matrix<3>> ground_from_image;  ///< px to m, for a camera known only by its ground
   std::optional<double> rms_px;                ///< 2-D reprojection error of its calibration

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 #include "marey/core/rig.h"
 #include "marey/core/time.h"
-#include "marey/geometry/vector.h"
 
 namespace marey {
 

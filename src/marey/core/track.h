@@ -5,10 +5,9 @@
 #include <string>
 
 #include "marey/core/appearance.h"
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 #include "marey/core/outline.h"
-#include "marey/geometry/box.h"
-#include "marey/geometry/vector.h"
 
 namespace marey {
 

@@ -8,7 +8,7 @@
 
 #include "marey/core/lab.h"
 
-namespace marey {
+namespace marey::detect {
 namespace {
 
 constexpr double first_row = 0.2, last_row = 0.5;          // of the box, from the top
@@ -124,4 +124,4 @@ std::optional<Appearance> upper_body(const Picture& picture, const Foreground& f
                     .deviation = std::sqrt(variance / independent + coded_to * coded_to) + (detection.group ? shared_doubt : 0)};
 }
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -16,7 +16,7 @@
 #include "marey/core/foreground.h"
 #include "marey/core/picture.h"
 
-namespace marey {
+namespace marey::detect {
 
 /// The colour of the upper body of whom detections[which] shows. Where others share the region, what lies in the box of somebody
 /// who stands nearer is not looked at, and the rest is believed less. Nothing where the picture is grey, no foreground is told, the
@@ -24,4 +24,4 @@ namespace marey {
 std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-namespace marey {
+namespace marey::detect {
 namespace {
 
 const cv::Scalar grass(60, 140, 70), shirt(200, 60, 40), shorts(240, 240, 240), skin(120, 150, 200);
@@ -109,4 +109,4 @@ TEST(UpperBody, BoxesBeyondThePictureAreNoTrouble) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::detect

@@ -7,7 +7,7 @@
 #include "marey/core/foreground.h"
 #include "marey/core/frame.h"
 
-namespace marey {
+namespace marey::detect {
 
 struct Detections {
   std::vector<Detection> detections;
@@ -27,4 +27,4 @@ class Detector {
   virtual Detections detect(const Frame& frame, std::span<const Expected> expected) = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-namespace marey {
+namespace marey::detect {
 
 namespace {
 
@@ -58,4 +58,4 @@ void join_neighbours(std::span<const PixelRun> runs, int reach, Forest& forest) 
   }
 }
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -8,7 +8,7 @@
 
 #include "marey/detect/silhouette.h"
 
-namespace marey {
+namespace marey::detect {
 
 /// Union-find over 0 … size − 1. A set's root is its smallest member.
 class Forest {
@@ -42,4 +42,4 @@ void append_runs(const std::uint8_t* pixels, int row, int width, std::vector<Pix
 /// corners too. `runs` are in order.
 void join_neighbours(std::span<const PixelRun> runs, int reach, Forest& forest);
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -17,7 +17,7 @@
 
 #include "marey/detect/runs.h"
 
-namespace marey {
+namespace marey::detect {
 namespace {
 
 std::vector<PixelRun> runs_of(const cv::Mat& mask) {
@@ -199,4 +199,4 @@ std::vector<Vector<2>> outline_of(std::span<const PixelRun> runs) {
   return outline;
 }
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -6,10 +6,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/geometry/box.h"
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::detect {
 
 /// Neighbouring pixels of one row: columns `begin` up to, not including, `end`.
 struct PixelRun {
@@ -49,4 +48,4 @@ std::vector<PixelRun> largest_part(std::span<const PixelRun> runs);
 /// Without holes, its area by the shoelace formula is the number of its pixels.
 std::vector<Vector<2>> outline_of(std::span<const PixelRun> runs);
 
-}  // namespace marey
+}  // namespace marey::detect

@@ -11,7 +11,7 @@
 
 #include "marey/detect/runs.h"
 
-namespace marey {
+namespace marey::detect {
 namespace {
 
 cv::Mat random_mask(std::mt19937& random, int width, int height, double density) {
@@ -161,4 +161,4 @@ TEST(LargestPart, IsTheLargestRegionOfTheSamePixels) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::detect

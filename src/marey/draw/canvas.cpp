@@ -8,7 +8,7 @@
 
 #include "marey/core/lab.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 // Positions within a pixel are given to OpenCV in sixteenths.
@@ -184,4 +184,4 @@ Picture Canvas::take() {
   return {std::move(luma_), std::move(cb_), std::move(cr_), Picture::Range::limited};
 }
 
-}  // namespace marey
+}  // namespace marey::draw

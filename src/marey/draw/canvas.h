@@ -8,7 +8,7 @@
 #include "marey/core/appearance.h"
 #include "marey/core/picture.h"
 
-namespace marey {
+namespace marey::draw {
 
 struct Colour {
   unsigned char red = 0, green = 0, blue = 0;
@@ -52,4 +52,4 @@ class Canvas {
   cv::Mat luma_, cb_, cr_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -9,7 +9,7 @@
 
 #include "marey/draw/svg_text.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr double kHeight = 520, kLeft = 110, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
@@ -175,4 +175,4 @@ std::string to_svg(const LineChart& chart) {
   return std::move(svg).finish();
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace marey {
+namespace marey::draw {
 
 /// One bar, with the interval it is known to.
 struct Bar {
@@ -39,4 +39,4 @@ struct LineChart {
 std::string to_svg(const BarChart& chart);
 std::string to_svg(const LineChart& chart);
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& word) {
@@ -42,4 +42,4 @@ TEST(Chart, AnEmptyChartIsStillAPicture) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

@@ -8,7 +8,7 @@
 
 #include "marey/draw/svg_text.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr int kColumns = 10, kRows = 8;
@@ -77,4 +77,4 @@ std::string to_svg(const CoveragePlot& plot) {
   return svg + "</svg>\n";
 }
 
-}  // namespace marey
+}  // namespace marey::draw

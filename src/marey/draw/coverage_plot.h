@@ -5,9 +5,9 @@
 
 #include <opencv2/core/types.hpp>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// Where in a camera's picture something was measured, and by how much it was off.
 struct CoveragePlot {
@@ -25,4 +25,4 @@ struct CoveragePlot {
 /// title says by how much.
 std::string to_svg(const CoveragePlot& plot);
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 TEST(CoveragePlot, ShowsMarksErrorsAndEmptyFields) {
@@ -19,4 +19,4 @@ TEST(CoveragePlot, ShowsMarksErrorsAndEmptyFields) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace marey {
+namespace marey::draw {
 
 void FadingTrails::add(int number, Timestamp now, cv::Point2f place, const Colour& colour) {
   Trail& trail = trails_[number];
@@ -29,4 +29,4 @@ void FadingTrails::draw(Canvas& canvas, Timestamp now, double opacity, double wi
   }
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -6,7 +6,7 @@
 #include "marey/core/time.h"
 #include "marey/draw/canvas.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// Where things were, as lines that fade with age.
 class FadingTrails {
@@ -34,4 +34,4 @@ class FadingTrails {
   std::map<int, Trail> trails_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

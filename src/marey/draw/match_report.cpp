@@ -11,7 +11,7 @@
 #include "marey/draw/canvas.h"
 #include "marey/draw/svg_text.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr double kMargin = 3;         // m round the pitch
@@ -91,7 +91,7 @@ class Page {
   void define_lines() {
     constexpr double step = 0.1;  // m
     add(R"(<svg style="position: absolute; width: 0; height: 0"><defs><g id="lines">)");
-    for (const PitchLine& line : pitch_lines(report_.pitch, step)) {
+    for (const geometry::PitchLine& line : geometry::pitch_lines(report_.pitch, step)) {
       text_ += R"(<polyline fill="none" stroke="#d8e6da" stroke-width="0.15" points=")";
       for (const Vector<2>& point : line.points) {
         const Vector<2> place = point + report_.corner;
@@ -197,4 +197,4 @@ std::string to_html(const MatchReport& report) {
   return Page(report).write();
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/pitch.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// One page that a browser shows without anything else: who ran how far and how fast, where everybody was. Steps do not know each
 /// other, so that the caller says what stands in the table, and how the ways went.
@@ -31,7 +31,7 @@ struct MatchReport {
   };
 
   std::string title;
-  PitchSize pitch;
+  geometry::PitchSize pitch;
   Vector<2> corner = Vector<2>::Zero();  ///< m: the pitch's, in the frame of the ways
   std::vector<std::string> columns;      ///< of the table of people, after name and team
   std::vector<Person> people;
@@ -40,4 +40,4 @@ struct MatchReport {
 
 std::string to_html(const MatchReport& report);
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -6,9 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/free_by.h"
-#include "marey/core/part_name.h"
+#include "marey/core/temporary_name.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -16,14 +16,14 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 namespace fs = std::filesystem;
 
-using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
-using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
-using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 struct CloseFormat {
   void operator()(AVFormatContext* format) const {
     avio_closep(&format->pb);
@@ -119,7 +119,7 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
   parts_->path = path;
-  parts_->part = part_name(path);
+  parts_->part = temporary_name(path);
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   try {
@@ -172,4 +172,4 @@ void MovieWriter::finish() {
   p.finished = true;
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -9,7 +9,7 @@
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// Writes a film that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. It is written beside its name and gets
 /// its name in `finish`: the file is there whole or not at all.
@@ -40,4 +40,4 @@ class MovieWriter {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -10,7 +10,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 Picture shade(cv::Size size, int level) {
@@ -74,4 +74,4 @@ TEST(MovieWriter, APlaceThatCannotBeWrittenIsRefused) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

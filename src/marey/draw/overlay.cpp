@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/draw/canvas.h"
 #include "marey/geometry/bspline.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 cv::Point2f to_point(const Vector<2>& v) {
@@ -44,7 +45,7 @@ void draw_lines(Canvas& canvas, const Outline& outline, double unit) {
 }
 
 void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, double unit) {
-  const std::vector<Vector<2>> corners = ClosedSpline(outline.order, outline.control_points).polygon();
+  const std::vector<Vector<2>> corners = geometry::ClosedSpline(outline.order, outline.control_points).polygon();
   const bool seen = outline.state != Outline::State::held;
   std::vector<Canvas::Stroke> curve;
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -90,4 +91,4 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Tra
   return canvas.take();
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -10,7 +10,7 @@
 #include "marey/draw/canvas.h"
 #include "marey/draw/fading_trails.h"
 
-namespace marey {
+namespace marey::draw {
 
 struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
@@ -36,4 +36,4 @@ class Overlay {
   FadingTrails trails_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -6,7 +6,7 @@
 
 #include "marey/draw/canvas.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 Picture grey(int width, int height) {
@@ -103,4 +103,4 @@ TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

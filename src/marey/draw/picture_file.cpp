@@ -6,20 +6,20 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/free_by.h"
-#include "marey/core/part_name.h"
+#include "marey/core/temporary_name.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 }
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
-using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
-using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
-using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 
 constexpr int kJpegQuality = 2;  // FFmpeg's scale: 2 is the best that is worth its bytes
 
@@ -73,7 +73,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   if (avcodec_open2(codec.get(), encoder, nullptr) < 0 || avcodec_send_frame(codec.get(), frame.get()) < 0 ||
       avcodec_send_frame(codec.get(), nullptr) < 0 || avcodec_receive_packet(codec.get(), packet.get()) < 0)
     throw Error("{}: a picture of {} x {} pixels cannot be encoded", path, codec->width, codec->height);
-  const std::string part = part_name(path);
+  const std::string part = temporary_name(path);
   std::ofstream out(part, std::ios::binary);
   out.write(reinterpret_cast<const char*>(packet->data), packet->size);
   out.close();
@@ -85,4 +85,4 @@ void write_picture(const std::string& path, const Picture& picture) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -9,7 +9,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 TEST(PictureFile, ReadsBackAsItWasWritten) {
@@ -33,4 +33,4 @@ TEST(PictureFile, NowhereToWriteIsSaid) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

@@ -10,7 +10,7 @@
 #include "marey/draw/canvas.h"
 #include "marey/draw/svg_text.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr Colour kModel{230, 40, 40}, kPaint{250, 220, 40}, kFits{60, 220, 90}, kMisfit{255, 90, 0};
@@ -33,12 +33,12 @@ const char* shade_of(double metres) {
 
 }  // namespace
 
-Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<PitchLine>& lines,
+Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks) {
   Canvas canvas(picture);
   const double unit = std::max(1.0, picture.size().width / 1500.0);
   std::vector<Canvas::Stroke> strokes;
-  for (const PitchLine& line : lines) {
+  for (const geometry::PitchLine& line : lines) {
     std::optional<Vector<2>> last;
     for (const Vector<2>& place : line.points) {
       auto here = camera.project({place.x(), place.y(), 0});
@@ -62,7 +62,7 @@ Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vect
   return canvas.take();
 }
 
-std::string pitch_map_svg(const std::string& title, const PitchSize& size,
+std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size,
                           const std::function<std::optional<double>(const Vector<2>&)>& metres) {
   constexpr double cell = 1, scale = 8, margin = 24, top = 40, bottom = 50;
   std::string text;
@@ -83,7 +83,7 @@ std::string pitch_map_svg(const std::string& title, const PitchSize& size,
           worth ? shade_of(*worth) : "#dddddd");
     }
   }
-  for (const PitchLine& line : pitch_lines(size, 0.1)) {
+  for (const geometry::PitchLine& line : geometry::pitch_lines(size, 0.1)) {
     text += R"(<polyline fill="none" stroke="black" stroke-width="0.15" points=")";
     for (const Vector<2>& place : line.points) fmt::format_to(std::back_inserter(text), "{:.2f},{:.2f} ", place.x(), place.y());
     text += "\"/>\n";
@@ -102,4 +102,4 @@ std::string pitch_map_svg(const std::string& title, const PitchSize& size,
   return text;
 }
 
-}  // namespace marey
+}  // namespace marey::draw

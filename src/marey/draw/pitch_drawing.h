@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/picture.h"
 #include "marey/geometry/ground_view.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// A click on the pitch, in a picture.
 struct DrawnClick {
@@ -20,12 +21,12 @@ struct DrawnClick {
 
 /// The pitch's lines (`lines` in the world, m) as the camera sees them laid over its picture, the paint that was found, and the
 /// clicks: those that do not fit with their names. For a look whether a calibration is right.
-Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<PitchLine>& lines,
+Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks);
 
 /// A map of the pitch, SVG, coloured by `metres(x, y)`: how far a pixel's error reaches on the ground. Nothing is drawn where it
 /// gives nothing. Coordinates are the pitch's own, x to the right, y down.
-std::string pitch_map_svg(const std::string& title, const PitchSize& size,
+std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size,
                           const std::function<std::optional<double>(const Vector<2>&)>& metres);
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr Colour kGrass{52, 110, 58}, kStripe{57, 118, 63}, kPaint{235, 240, 235}, kInk{15, 15, 15};
@@ -43,10 +43,10 @@ void PitchView::draw_ground() {
   const double unit = std::max(1.0, size.width / 1280.0);
   std::vector<Canvas::Stroke> strokes;
   if (options_.pitch) {
-    const PitchSize& pitch = *options_.pitch;
+    const geometry::PitchSize& pitch = *options_.pitch;
     for (double x = 0; x + kStripeWidth <= pitch.length + 1e-9; x += 2 * kStripeWidth)
       canvas.fill({pixel({x, 0}), pixel({x + kStripeWidth, pitch.width})}, kStripe);
-    for (const PitchLine& line : pitch_lines(pitch, 0.1)) {
+    for (const geometry::PitchLine& line : geometry::pitch_lines(pitch, 0.1)) {
       for (std::size_t i = 1; i < line.points.size(); ++i) strokes.push_back({pixel(line.points[i - 1]), pixel(line.points[i])});
     }
     canvas.strokes(strokes, kPaint, 1.5 * unit);
@@ -74,4 +74,4 @@ Picture PitchView::draw(Timestamp now, std::span<const Mark> marks) {
   return canvas.take();
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -4,17 +4,18 @@
 #include <span>
 #include <string>
 
+#include "marey/core/geometry.h"
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/fading_trails.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey {
+namespace marey::draw {
 
 struct PitchViewOptions {
-  std::optional<PitchSize> pitch = {};  ///< nothing: a grid of 5 m is drawn in place of the lines
-  Vector<2> low = {-3, -3};             ///< m; the part of the ground that is shown
+  std::optional<geometry::PitchSize> pitch = {};  ///< nothing: a grid of 5 m is drawn in place of the lines
+  Vector<2> low = {-3, -3};                       ///< m; the part of the ground that is shown
   Vector<2> high = {108, 71};
   bool y_down = true;                        ///< of the picture; else y grows upwards
   int width = 1280;                          ///< px; the height follows
@@ -50,4 +51,4 @@ class PitchView {
   FadingTrails trails_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 PitchViewOptions options_with(bool y_down) {
   PitchViewOptions options;
-  options.pitch = PitchSize{};
+  options.pitch = geometry::PitchSize{};
   options.y_down = y_down;
   return options;
 }
@@ -54,4 +54,4 @@ TEST(PitchView, NobodyIsDrawnOutsideThePicture) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

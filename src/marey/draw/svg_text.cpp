@@ -1,6 +1,6 @@
 #include "marey/draw/svg_text.h"
 
-namespace marey {
+namespace marey::draw {
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -22,4 +22,4 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -2,9 +2,9 @@
 
 #include <string>
 
-namespace marey {
+namespace marey::draw {
 
 /// Text as XML holds it.
 std::string escaped(const std::string& text);
 
-}  // namespace marey
+}  // namespace marey::draw

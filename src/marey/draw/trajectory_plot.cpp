@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/geometry.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/svg_text.h"
-#include "marey/geometry/box.h"
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 constexpr double kShortest = 0.5;     // px; a step
@@ -134,4 +134,4 @@ std::string TrajectoryPlot::to_svg(const std::string& title) const {
   return std::move(page).finish();
 }
 
-}  // namespace marey
+}  // namespace marey::draw

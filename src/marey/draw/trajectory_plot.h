@@ -11,7 +11,7 @@
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 
-namespace marey {
+namespace marey::draw {
 
 /// The ways that targets went, in the coordinates of the image: a line each with its number where it begins, broken where nothing
 /// is known of it. Memory grows with the ways' length, not with time: steps of less than half a pixel are passed over.
@@ -34,4 +34,4 @@ class TrajectoryPlot {
   std::map<TrackId, Way> ways_;
 };
 
-}  // namespace marey
+}  // namespace marey::draw

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::draw {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -58,4 +58,4 @@ TEST(TrajectoryPlot, OfNobodyIsAPictureToo) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::draw

@@ -7,21 +7,21 @@
 #include "marey/evaluate/evaluation.h"
 #include "marey/evaluate/frame_walk.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// Counts CLEAR-MOT events frame by frame.
 class ClearCounter {
  public:
   /// What lies farther than `most_distance` is no match.
   ClearCounter(int objects, int tracks, double most_distance)
-      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, LinearAssigner::nobody) {}
+      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, assign::LinearAssigner::nobody) {}
 
   void add(const FramePairs& frame);
   ClearScores scores() const;
 
   /// What became of one object.
   struct Object {
-    int track = LinearAssigner::nobody;  ///< its last match
+    int track = assign::LinearAssigner::nobody;  ///< its last match
     std::int64_t frames = 0;
     std::int64_t found = 0;
     std::int64_t switches = 0;
@@ -45,9 +45,9 @@ class ClearCounter {
   std::vector<int> column_of_row_;
   std::vector<char> column_matched_;
   std::vector<double> costs_;
-  LinearAssigner assigner_;
+  assign::LinearAssigner assigner_;
   ClearScores counts_;
   double total_distance_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -5,7 +5,7 @@
 
 #include "marey/evaluate/judge.h"
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 [[maybe_unused]] bool by_frame(const LabelledBox& a, const LabelledBox& b) {
@@ -39,4 +39,4 @@ Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const Labelled
   return judge(truth, tracks, 1 - least_overlap, closeness, [](const auto&, const ClearCounter&) {}).scores;
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -6,7 +6,7 @@
 
 #include "marey/core/labelled_box.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// CLEAR-MOT (Bernardin & Stiefelhagen 2008), as py-motmetrics counts. Each frame keeps the last match of an object while it
 /// still overlaps enough, and matches the rest for the most pairs and the least total distance 1 − IoU.
@@ -58,4 +58,4 @@ struct Evaluation {
 /// crowd.
 Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap = 0.5);
 
-}  // namespace marey
+}  // namespace marey::evaluate

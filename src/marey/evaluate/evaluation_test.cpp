@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 LabelledBox at(int frame, int id, double left) {
@@ -85,4 +85,4 @@ TEST(Evaluation, FramesThatDoNotMeet) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace marey {
+namespace marey::evaluate {
 
 /// One thing of one frame, under an id that stands once a frame.
 template <typename T>
@@ -118,4 +118,4 @@ class FrameWalk : public FramePairs {
   std::size_t next_track_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::evaluate

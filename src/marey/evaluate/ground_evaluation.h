@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/evaluate/evaluation.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// Where someone was at one instant.
 struct PersonPlace {
@@ -48,4 +48,4 @@ struct GroundEvaluation {
 /// Both are ordered by frame, and an id stands once a frame. Cost as of `evaluate`.
 GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<const PersonPlace> tracks, double farthest);
 
-}  // namespace marey
+}  // namespace marey::evaluate

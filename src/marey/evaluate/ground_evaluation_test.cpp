@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 PersonPlace at(int frame, int id, double x, double y = 0) {
@@ -68,4 +68,4 @@ TEST(GroundEvaluation, NothingToJudge) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -8,7 +8,7 @@
 #include "marey/evaluate/frame_walk.h"
 #include "marey/evaluate/pair_table.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// Counts HOTA in two passes: `see` every frame, `align` once, `match` every frame.
 class HotaCounter {
@@ -25,8 +25,8 @@ class HotaCounter {
   PairTable& pairs_;
   std::vector<double> object_frames_, track_frames_;  // in how many frames each is
   std::vector<double> row_sums_, column_sums_, costs_;
-  LinearAssigner assigner_;
+  assign::LinearAssigner assigner_;
   std::array<double, hota_levels + 1> overlap_at_level_{};
 };
 
-}  // namespace marey
+}  // namespace marey::evaluate

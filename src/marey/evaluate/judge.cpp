@@ -5,7 +5,7 @@
 
 #include "marey/assign/gated_assignment.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 void count_found(const FramePairs& frame, double most_distance, PairTable& pairs) {
   for (std::size_t row = 0; row < frame.objects().size(); ++row) {
@@ -21,20 +21,20 @@ void judge_identities(const PairTable& pairs, Judged& judged) {
   const Evaluation& sizes = judged.scores;
   // Few rows are cheaper than few columns.
   const bool flip = sizes.objects > sizes.tracks;
-  std::vector<GatedPair> gated;
+  std::vector<assign::GatedPair> gated;
   for (const IdPair& pair : pairs.pairs()) {
     if (pair.found == 0) continue;
     const auto gain = static_cast<double>(pair.found);
-    gated.push_back(flip ? GatedPair{pair.track, pair.object, gain} : GatedPair{pair.object, pair.track, gain});
+    gated.push_back(flip ? assign::GatedPair{pair.track, pair.object, gain} : assign::GatedPair{pair.object, pair.track, gain});
   }
-  GatedAssigner assigner;
+  assign::GatedAssigner assigner;
   const auto rows = static_cast<int>(std::min(sizes.objects, sizes.tracks));
   const auto columns = static_cast<int>(std::max(sizes.objects, sizes.tracks));
   const auto column_of_row = assigner.assign(rows, columns, gated);
-  judged.track_of_object.assign(static_cast<std::size_t>(sizes.objects), LinearAssigner::nobody);
+  judged.track_of_object.assign(static_cast<std::size_t>(sizes.objects), assign::LinearAssigner::nobody);
   judged.agreeing.assign(static_cast<std::size_t>(sizes.objects), 0);
   IdentityScores scores;
-  for (const GatedPair& pair : gated) {
+  for (const assign::GatedPair& pair : gated) {
     if (column_of_row[pair.row] != pair.column) continue;
     const auto object = static_cast<std::size_t>(flip ? pair.column : pair.row);
     judged.track_of_object[object] = flip ? pair.row : pair.column;
@@ -51,4 +51,4 @@ void judge_identities(const PairTable& pairs, Judged& judged) {
   judged.scores.identity = scores;
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

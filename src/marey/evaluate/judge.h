@@ -9,7 +9,7 @@
 #include "marey/evaluate/hota.h"
 #include "marey/evaluate/pair_table.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// The scores, and what became of each object.
 struct Judged {
@@ -59,4 +59,4 @@ Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double m
   return judged;
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

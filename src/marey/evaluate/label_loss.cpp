@@ -3,7 +3,7 @@
 #include <cassert>
 #include <map>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 const NamedPlace* nearest_within(const std::vector<NamedPlace>& tracks, const Vector<2>& place, double reach) {
@@ -49,4 +49,4 @@ std::vector<LabelFate> judge_labels(std::span<const std::vector<NamedPlace>> tru
   return result;
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

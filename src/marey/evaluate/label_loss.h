@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// Where something is in one frame, under a name.
 struct NamedPlace {
@@ -31,4 +31,4 @@ struct LabelFate {
 std::vector<LabelFate> judge_labels(std::span<const std::vector<NamedPlace>> truth, std::span<const std::vector<NamedPlace>> tracks,
                                     double reach);
 
-}  // namespace marey
+}  // namespace marey::evaluate

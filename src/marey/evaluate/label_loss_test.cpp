@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 using Frames = std::vector<std::vector<NamedPlace>>;
@@ -55,4 +55,4 @@ TEST(LabelLoss, AMarkerThatWasNeverNamedIsLost) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 /// The columns, as fractions, at which a row of the lattice crosses the polygon, from the left. Between the first and the second
@@ -59,4 +59,4 @@ OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask&
   return result;
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -4,9 +4,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::evaluate {
 
 /// A true silhouette on a lattice of `samples` × `samples` points per pixel. Lattice column i lies at x = (i + ½) / samples − ½ px.
 struct SilhouetteMask {
@@ -29,4 +29,4 @@ struct OutlineOverlap {
 /// point. With `picture`, only what lies in a picture of that size counts. Cost: the lattice points of both boxes.
 OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* picture = nullptr);
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::evaluate {
 namespace {
 
 /// The obvious way: is each point of a large lattice inside?
@@ -79,4 +79,4 @@ TEST(OutlineOverlap, NothingOverlapsNothing) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marey {
+namespace marey::evaluate {
 
 IdPair& PairTable::at(int object, int track) {
   std::vector<Slot>& slots = by_object_[object];
@@ -13,4 +13,4 @@ IdPair& PairTable::at(int object, int track) {
   return pairs_.back();
 }
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace marey {
+namespace marey::evaluate {
 
 /// The overlaps that HOTA asks a match to have: 0.05, 0.10, ..., 0.95.
 inline constexpr int hota_levels = 19;
@@ -40,4 +40,4 @@ class PairTable {
   std::vector<IdPair> pairs_;                 // in the order of their first meeting
 };
 
-}  // namespace marey
+}  // namespace marey::evaluate

@@ -8,9 +8,9 @@
 // Cost: 4 D multiplications a step.
 #pragma once
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class AlphaBeta;
@@ -78,4 +78,4 @@ class AlphaBeta {
   double last_step_ = 0;         // s, between the last two corrections; 0 before the second
 };
 
-}  // namespace marey
+}  // namespace marey::filter

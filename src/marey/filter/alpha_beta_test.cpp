@@ -4,7 +4,7 @@
 
 #include "marey/filter/filter_invariants.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 static_assert(Filter<AlphaBeta<2>> && Filter<AlphaBeta<3>>);
@@ -54,4 +54,4 @@ TEST(AlphaBeta, ReportsTheVarianceItHas) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

@@ -8,7 +8,7 @@
 
 #include "marey/filter/alpha_beta.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class AlphaBetaVariable;
@@ -70,4 +70,4 @@ class AlphaBetaVariable {
   bool speed_known_ = false;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 /// Different targets get different streams from one seed: the first measurement is hashed into it.
@@ -130,4 +130,4 @@ double Condensation<D>::search_radius() const {
 template class Condensation<2>;
 template class Condensation<3>;
 
-}  // namespace marey
+}  // namespace marey::filter

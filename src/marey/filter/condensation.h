@@ -18,7 +18,7 @@
 #include "marey/filter/gaussian.h"
 #include "marey/filter/random_stream.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class Condensation;
@@ -110,4 +110,4 @@ class Condensation {
   double since_correction_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

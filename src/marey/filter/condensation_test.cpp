@@ -4,7 +4,7 @@
 
 #include "marey/filter/filter_invariants.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 static_assert(Filter<Condensation<2>> && Filter<Condensation<3>>);
@@ -155,4 +155,4 @@ TEST(RandomStream, IsUniformAndNormal) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

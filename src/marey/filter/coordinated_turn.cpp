@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 /// A = sin θ/θ, B = (1 − cos θ)/θ², C = (θ − sin θ)/θ³, and each one's derivative to θ, divided by θ.
@@ -136,4 +136,4 @@ typename CoordinatedTurn<D>::Square CoordinatedTurn<D>::start_covariance(const M
 template struct CoordinatedTurn<2>;
 template struct CoordinatedTurn<3>;
 
-}  // namespace marey
+}  // namespace marey::filter

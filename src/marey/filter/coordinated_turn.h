@@ -12,9 +12,9 @@
 // Source: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 11.7; the
 // fading rate and the turn in space are ours.
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 /// Lengths in px where the filter runs in the image, in m on the ground and in space.
 struct TurnNoise {
@@ -41,4 +41,4 @@ struct CoordinatedTurn {
   static Square start_covariance(const Matrix<D>& R, double initial_speed, const TurnNoise& noise);
 };
 
-}  // namespace marey
+}  // namespace marey::filter

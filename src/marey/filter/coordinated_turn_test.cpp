@@ -6,7 +6,7 @@
 #include "marey/filter/filter_invariants.h"
 #include "marey/filter/unscented_kalman.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 static_assert(Filter<ExtendedKalman<2>> && Filter<ExtendedKalman<3>>);
@@ -248,4 +248,4 @@ TEST(UnscentedKalman, TheRootGivesItsSquareBackEvenWhereItIsSingular) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

@@ -10,7 +10,7 @@
 #include "marey/filter/coordinated_turn.h"
 #include "marey/filter/gaussian.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class ExtendedKalman;
@@ -66,4 +66,4 @@ class ExtendedKalman {
   typename Motion::Square P_;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -13,9 +13,9 @@
 #include <array>
 #include <cmath>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class Extrapolation;
@@ -114,4 +114,4 @@ class Extrapolation {
   double ahead_ = 0;  // s since the latest
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -2,9 +2,9 @@
 
 #include <concepts>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 /// One target's state over time. A model of Filter is a value type for one dimension D:
 ///
@@ -38,4 +38,4 @@ concept Filter = requires(F filter, const F constant, const typename F::Options 
   requires std::same_as<typename F::Options::template Model<F::dimension>, F>;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

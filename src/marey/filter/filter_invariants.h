@@ -11,7 +11,7 @@
 
 #include "marey/filter/filter.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <typename F>
 class FilterInvariants : public testing::Test {
@@ -177,4 +177,4 @@ REGISTER_TYPED_TEST_SUITE_P(FilterInvariants, BeginsAtItsFirstMeasurementAtRest,
                             WaitingDoesNotMakeItSurer, ASteadyWalkIsFollowedWithoutBias, TheSearchAreaIsCentredOnThePrediction,
                             NothingBecomesNaN);
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -6,7 +6,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 /// Two filters of one type differ in a switch among their options.
@@ -54,4 +54,4 @@ std::string_view name_of(const FilterOptions& options) {
   return std::find_if(filters.begin(), filters.end(), [&](const NamedFilter& f) { return same_filter(f.options, options); })->name;
 }
 
-}  // namespace marey
+}  // namespace marey::filter

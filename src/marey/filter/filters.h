@@ -17,7 +17,7 @@
 #include "marey/filter/kalman_paper.h"
 #include "marey/filter/unscented_kalman.h"
 
-namespace marey {
+namespace marey::filter {
 
 /// The register of filters: which one, with its parameters. To add a filter, write it as a model of Filter and name its options
 /// here; every place that must know of it then fails to compile until it does.
@@ -57,4 +57,4 @@ FilterOptions filter_named(std::string_view name);
 /// The name of the filter that `options` are for.
 std::string_view name_of(const FilterOptions& options);
 
-}  // namespace marey
+}  // namespace marey::filter

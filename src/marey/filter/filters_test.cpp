@@ -5,7 +5,7 @@
 #include "marey/core/error.h"
 #include "marey/filter/filter_invariants.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 using Variables = testing::Types<AlphaBetaVariable<2>, AlphaBetaVariable<3>>;
@@ -194,4 +194,4 @@ TEST(Extrapolation, TwoMeasurementsAtOneInstantCountOnce) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 constexpr std::size_t kFewest = 10;
@@ -176,4 +176,4 @@ FilterOptions with_noise(const FilterOptions& options, const NoiseFit& fit) {
 template std::optional<NoiseFit> fit_noise<2>(std::span<const MeasuredPath<2>>);
 template std::optional<NoiseFit> fit_noise<3>(std::span<const MeasuredPath<3>>);
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -15,7 +15,7 @@
 
 #include "marey/filter/filters.h"
 
-namespace marey {
+namespace marey::filter {
 
 /// One target's measured positions in the order of time.
 template <int D>
@@ -40,4 +40,4 @@ std::optional<NoiseFit> fit_noise(std::span<const MeasuredPath<D>> paths);
 /// `options` with the noise that was found; a filter without noise parameters is returned as it is.
 FilterOptions with_noise(const FilterOptions& options, const NoiseFit& fit);
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 /// Paths of the model itself: white acceleration of density q², measured with noise of sigma r.
@@ -106,4 +106,4 @@ TEST(FitNoise, EveryFilterTakesItOrStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

@@ -6,9 +6,9 @@
 
 #include <Eigen/LU>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 /// How many standard deviations of covariance S a residual is long: Mahalanobis's distance.
 template <int D>
@@ -34,4 +34,4 @@ void correct_position(Vector<N>& x, Matrix<N>& P, const Vector<D>& z, const Matr
   P = (0.5 * (P + P.transpose())).eval();
 }
 
-}  // namespace marey
+}  // namespace marey::filter

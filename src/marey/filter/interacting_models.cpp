@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 using kinematics::State;
@@ -215,4 +215,4 @@ template double turn_rate<3>(const Vector<3>&, const Matrix<3>&, const Vector<3>
 template class InteractingModels<2>;
 template class InteractingModels<3>;
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -12,7 +12,7 @@
 //   swerve  the velocity jumps by a share of the speed within this very step: the corner of a zigzag, a hit, a ball's bounce.
 //           Lasts one step, and comes `swerve_rate` times a second however long a step is.
 //
-// All share one state, position, velocity and acceleration, so mixing needs no translation. Cruise and swerve know no
+// All share one state, position, velocity and acceleration, so mixing needs no translation. UnoccludedMotion and swerve know no
 // acceleration: theirs is one that begins now, of mean 0 and the variance of pull's, so that a target that starts to accelerate
 // is met with an open mind, not with the certainty that its acceleration is 0. Sizes follow the speed: a thing that moves fast
 // through the image, being near or quick, also swerves by more pixels. Of cruise, pull and turn, a target still is in the one it
@@ -29,7 +29,7 @@
 #include "marey/filter/gaussian.h"
 #include "marey/filter/kinematics.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class InteractingModels;
@@ -119,4 +119,4 @@ class InteractingModels {
 template <int D>
 double turn_rate(const Vector<D>& velocity, const Matrix<D>& covariance, const Vector<D>& acceleration, double limit);
 
-}  // namespace marey
+}  // namespace marey::filter

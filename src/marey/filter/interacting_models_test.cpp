@@ -4,7 +4,7 @@
 
 #include "marey/filter/filter_invariants.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 static_assert(Filter<InteractingModels<2>> && Filter<InteractingModels<3>>);
@@ -243,4 +243,4 @@ TEST(TurnRate, IsZeroAtRestAndHeldBackWhereTheVelocityIsUncertain) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

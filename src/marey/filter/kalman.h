@@ -11,9 +11,9 @@
 
 #include <Eigen/LU>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class Kalman;
@@ -93,4 +93,4 @@ class Kalman {
   double gate_sigmas_;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

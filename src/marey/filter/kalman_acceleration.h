@@ -10,7 +10,7 @@
 #include "marey/filter/gaussian.h"
 #include "marey/filter/kinematics.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class KalmanAcceleration;
@@ -61,4 +61,4 @@ class KalmanAcceleration {
   kinematics::State<D, 3> state_;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -13,7 +13,7 @@
 
 #include "marey/filter/gaussian.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class KalmanPaper;
@@ -90,4 +90,4 @@ class KalmanPaper {
   Matrix<D> R_;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -4,7 +4,7 @@
 
 #include "marey/filter/filter_invariants.h"
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 static_assert(Filter<Kalman<2>> && Filter<Kalman<3>>);
@@ -114,4 +114,4 @@ TEST(Kalman, InnovationsAreAsWideAsItSays) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

@@ -1,6 +1,6 @@
 #include "marey/filter/kinematics.h"
 
-namespace marey::kinematics {
+namespace marey::filter::kinematics {
 namespace {
 
 // Below this product of rate and time, closed forms lose digits by cancellation and Taylor series are used instead.
@@ -123,4 +123,4 @@ Model<3> turn(double dt, double rate, double density) {
   return model;
 }
 
-}  // namespace marey::kinematics
+}  // namespace marey::filter::kinematics

@@ -18,9 +18,9 @@
 
 #include <Eigen/LU>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey::kinematics {
+namespace marey::filter::kinematics {
 
 /// x(t + dt) = (F ⊗ I) x(t) + noise of covariance Q ⊗ I. Orders the state as position, velocity, acceleration.
 template <int Order>
@@ -154,4 +154,4 @@ Model<3> constant_acceleration(double dt, double density);
 /// noise of spectral density `density` (unit²/s⁵) drives the acceleration, as in `constant_acceleration`.
 Model<3> turn(double dt, double rate, double density);
 
-}  // namespace marey::kinematics
+}  // namespace marey::filter::kinematics

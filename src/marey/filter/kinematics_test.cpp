@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::filter {
 namespace {
 
 using kinematics::Model;
@@ -155,4 +155,4 @@ TEST(Kinematics, ASlowTurnIsConstantAcceleration) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::filter

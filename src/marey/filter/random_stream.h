@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-namespace marey {
+namespace marey::filter {
 
 class RandomStream {
  public:
@@ -37,4 +37,4 @@ class RandomStream {
   std::uint64_t counter_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

@@ -13,7 +13,7 @@
 #include "marey/filter/coordinated_turn.h"
 #include "marey/filter/gaussian.h"
 
-namespace marey {
+namespace marey::filter {
 
 template <int D>
 class UnscentedKalman;
@@ -97,4 +97,4 @@ class UnscentedKalman {
   typename Motion::Square P_;
 };
 
-}  // namespace marey
+}  // namespace marey::filter

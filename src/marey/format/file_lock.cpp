@@ -10,7 +10,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 /// Whether the name still is that of the open file, and not of one that came after it.
@@ -46,4 +46,4 @@ bool has_lock_file(const std::string& path) {
   return access((path + "-lock").c_str(), F_OK) == 0;
 }
 
-}  // namespace marey
+}  // namespace marey::format

@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::format {
 
 MappedFile::MappedFile(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -38,4 +38,4 @@ MappedFile::~MappedFile() {
   if (data_ != nullptr) munmap(data_, size_);
 }
 
-}  // namespace marey
+}  // namespace marey::format

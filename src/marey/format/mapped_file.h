@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace marey {
+namespace marey::format {
 
 /// A file's bytes as memory, without reading it: pages come when they are touched, and go when memory is short.
 class MappedFile {
@@ -24,4 +24,4 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::format

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/self_cal_folder.h"
+#include "marey/format/rig/self_cal_folder.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 constexpr double kFarthest = 1e7;  // px
@@ -142,7 +142,7 @@ void in_order(SeenFrame& frame) {
 }
 
 /// Which of the rig's cameras each of the folder's is: by name where all names agree, else in order.
-std::vector<CameraId> cameras_of(const SelfCalFolder& folder, const std::string& path, const Rig& rig) {
+std::vector<CameraId> cameras_of(const rig::SelfCalFolder& folder, const std::string& path, const Rig& rig) {
   std::map<std::string, int> by_name;
   for (int i = 0; i < std::ssize(rig.cameras); ++i) by_name[rig.cameras[static_cast<std::size_t>(i)].name] = i;
   const bool named =
@@ -158,12 +158,12 @@ std::vector<CameraId> cameras_of(const SelfCalFolder& folder, const std::string&
 }
 
 std::vector<SeenFrame> frames_of_folder(const std::string& path, const Rig& rig) {
-  const SelfCalFolder folder(path);
+  const rig::SelfCalFolder folder(path);
   const std::vector<CameraId> cameras = cameras_of(folder, path, rig);
   if (!folder.has_points())
     throw Error("{}: there are no observations in this folder: neither points.dat nor camN.points4cal.dat", path);
   std::vector<SeenFrame> frames;
-  for (const SelfCalFolder::Point& point : folder.points()) {
+  for (const rig::SelfCalFolder::Point& point : folder.points()) {
     if (frames.empty() || frames.back().frame != point.frame) frames.push_back({point.frame, {}});
     frames.back().points.push_back({cameras[static_cast<std::size_t>(point.camera)], point.pixel, ""});
   }
@@ -261,7 +261,7 @@ std::vector<SeenFrame> read_observations(const std::string& path, const Rig& rig
 Rig rig_of_observations(const std::string& path) {
   Rig rig;
   if (std::filesystem::is_directory(path)) {
-    const SelfCalFolder folder(path);
+    const rig::SelfCalFolder folder(path);
     for (int i = 0; i < folder.cameras(); ++i) {
       RigCamera camera;
       camera.name = folder.names()[static_cast<std::size_t>(i)];
@@ -297,4 +297,4 @@ void ObservationWriter::write(const SeenFrame& frame) {
   file_.write(lines_);
 }
 
-}  // namespace marey
+}  // namespace marey::format

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 #include "marey/core/rig.h"
 #include "marey/format/whole_file.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::format {
 
 /// A blob that another program found.
 struct SeenPoint {
@@ -76,4 +76,4 @@ class ObservationWriter {
   std::string lines_;
 };
 
-}  // namespace marey
+}  // namespace marey::format

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/format/self_cal_folder.h"
+#include "marey/format/rig/self_cal_folder.h"
 
 #include "support/data.h"
 #include "support/files.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 Rig two_cameras() {
@@ -101,7 +101,7 @@ TEST(SelfCalFolder, HoldsObservationsSizesAndLenses) {
   ASSERT_EQ(rig.cameras.size(), 3u);
   EXPECT_EQ(rig.cameras[2].size, cv::Size(320, 240));
   EXPECT_FALSE(rig.cameras[0].lens);
-  EXPECT_EQ(std::get<BrownLens>(*rig.cameras[1].lens).distortion[3], 0.001);
+  EXPECT_EQ(std::get<geometry::BrownLens>(*rig.cameras[1].lens).distortion[3], 0.001);
   const auto frames = read_observations(folder.path(), rig);
   ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(frames[1].points.size(), 2u);
@@ -167,4 +167,4 @@ TEST(SelfCalFolder, ReadsTheSetsOfLights) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::format

@@ -11,7 +11,7 @@
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
@@ -138,4 +138,4 @@ PitchClicks read_pitch_clicks(const std::string& path) {
   return parse_pitch_clicks(read_file(path), path);
 }
 
-}  // namespace marey
+}  // namespace marey::format

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::format {
 
 /// What somebody clicked in one picture of a pitch. Pixels: a pixel's integer coordinate is its centre.
 struct PitchClicks {
@@ -35,4 +35,4 @@ PitchClicks read_pitch_clicks(const std::string& path);
 /// The same from text; `name` is what messages call it.
 PitchClicks parse_pitch_clicks(std::string_view text, const std::string& name);
 
-}  // namespace marey
+}  // namespace marey::format

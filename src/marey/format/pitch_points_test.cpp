@@ -6,7 +6,7 @@
 
 #include "support/data.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 TEST(PitchPoints, CsvWithAndWithoutAHeader) {
@@ -60,4 +60,4 @@ TEST(PitchPoints, ARealExport) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::format

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 struct CloseFile {
@@ -34,4 +34,4 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
-}  // namespace marey
+}  // namespace marey::format

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -100,4 +100,4 @@ std::string shown(std::string_view text) {
   return result + (text.size() > 24 ? "...\"" : "\"");
 }
 
-}  // namespace marey
+}  // namespace marey::format

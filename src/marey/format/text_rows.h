@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marey {
+namespace marey::format {
 
 /// The lines of a text, with either line ending; a byte order mark is passed over. Nothing is copied.
 class TextLines {
@@ -53,4 +53,4 @@ std::optional<std::int64_t> whole_number_of(std::string_view field);
 /// A piece of a file that is fit for a one-line message, in quotes.
 std::string shown(std::string_view text);
 
-}  // namespace marey
+}  // namespace marey::format

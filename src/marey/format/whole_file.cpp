@@ -5,9 +5,9 @@
 #include <system_error>
 
 #include "marey/core/error.h"
-#include "marey/core/part_name.h"
+#include "marey/core/temporary_name.h"
 
-namespace marey {
+namespace marey::format {
 
 namespace fs = std::filesystem;
 
@@ -19,7 +19,7 @@ WholeFile::WholeFile(const std::string& path) : path_(path) {
   // Where the name is a link, the file behind it is what is replaced.
   if (!special) {
     target_ = fs::is_regular_file(status) ? fs::canonical(path, error).string() : path;
-    part_ = part_name(target_);
+    part_ = temporary_name(target_);
   }
   file_.reset(std::fopen(special ? path.c_str() : part_.c_str(), "wb"));
   if (file_ == nullptr) fail(errno);
@@ -57,4 +57,4 @@ void WholeFile::fail(int error) const {
   throw Error("{}: cannot be written ({})", path_, std::generic_category().message(error));
 }
 
-}  // namespace marey
+}  // namespace marey::format

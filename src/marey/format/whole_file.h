@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace marey {
+namespace marey::format {
 
 /// A text file that appears whole or not at all: it is written beside its name (core/part_name.h) and gets its name in
 /// `finish`. What is no file, such as a pipe or /dev/stdout, is written as it comes.
@@ -35,4 +35,4 @@ class WholeFile {
   std::unique_ptr<std::FILE, CloseFile> file_;
 };
 
-}  // namespace marey
+}  // namespace marey::format

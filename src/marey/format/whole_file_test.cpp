@@ -8,7 +8,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 int entries(const test::TemporaryFolder& folder) {
@@ -75,4 +75,4 @@ TEST(WholeFile, AFullPlaceIsSaidAndADeviceIsNeverReplaced) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::format

@@ -4,7 +4,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::format {
 namespace {
 
 struct StringWriter : pugi::xml_writer {
@@ -33,4 +33,4 @@ void add_text(pugi::xml_node& parent, const char* element, const std::string& te
   parent.append_child(element).text().set(text.c_str());
 }
 
-}  // namespace marey
+}  // namespace marey::format

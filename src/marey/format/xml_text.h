@@ -5,7 +5,7 @@
 
 #include <pugixml.hpp>
 
-namespace marey {
+namespace marey::format {
 
 /// A text as XML. Throws Error, with the file's name and what is wrong where, for what is none.
 pugi::xml_document parse_xml(std::string_view text, const std::string& name);
@@ -16,4 +16,4 @@ std::string to_text(const pugi::xml_document& document);
 /// Adds an element that holds a text.
 void add_text(pugi::xml_node& parent, const char* element, const std::string& text);
 
-}  // namespace marey
+}  // namespace marey::format

@@ -4,7 +4,7 @@
 
 #include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// An upright rectangle of pixels. A pixel's integer coordinate is its centre, the top-left pixel of an image is (0, 0), y
 /// points down. `left` and `top` name the first column and row covered, so the box spans [left − ½, left − ½ + width) in
@@ -53,4 +53,4 @@ inline double iou(const Box& a, const Box& b) {
   return shared > 0 && all > 0 ? shared / all : 0.0;
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

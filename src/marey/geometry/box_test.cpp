@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 TEST(Box, CentreAndFootFollowThePixelConvention) {
@@ -23,4 +23,4 @@ TEST(Box, OverlapOfKnownRectangles) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

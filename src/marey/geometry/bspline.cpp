@@ -16,7 +16,7 @@
 #include <numbers>
 #include <utility>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 constexpr int kMaxOrder = SplineWeights::max_order;
@@ -310,4 +310,4 @@ std::optional<Vector<2>> polygon_centroid(std::span<const Vector<2>> polygon) {
   return polygon[0] + sum / (6 * area);
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -9,7 +9,7 @@
 #include "marey/geometry/box.h"
 #include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// The basis functions of the uniform B-spline of one order that are not zero at one place of a closed curve.
 struct SplineWeights {
@@ -83,4 +83,4 @@ double polygon_area(std::span<const Vector<2>> polygon);
 /// Centre of the area; nothing where there is none.
 std::optional<Vector<2>> polygon_centroid(std::span<const Vector<2>> polygon);
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -12,7 +12,7 @@
 
 #include "marey/geometry/bspline.h"
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 constexpr int kPerSpan = 4;       // samples of the polygon
@@ -155,4 +155,4 @@ std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const
   return ClosedSpline(options.order, std::move(points));
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

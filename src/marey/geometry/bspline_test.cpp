@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 class Dice {
@@ -206,4 +206,4 @@ TEST(FitSpline, RandomPolygonsNeverGiveWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

@@ -5,7 +5,7 @@
 
 #include <ceres/jet.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 /// Distorted radius of a ray at `x` (tangent of its angle to the axis; the angle itself for a fisheye), tangential terms left out.
@@ -167,4 +167,4 @@ std::optional<Ray> Camera::ray(const Vector<2>& pixel) const {
   return Ray{centre_, camera_from_world_.rotation.transpose() * *ahead};
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

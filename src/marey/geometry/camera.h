@@ -7,7 +7,7 @@
 #include "marey/geometry/lens.h"
 #include "marey/geometry/rigid.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// A half-line in the world, m. `direction` has length 1.
 struct Ray {
@@ -56,4 +56,4 @@ class Camera {
   double widest_ = 0;  // tangent of the angle to the axis (fisheye: the angle, rad) up to which the lens model is one-to-one
 };
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 const BrownLens kBrown{{900, 910}, {639.5, 359.5}, {-0.30, 0.12, 0.001, -0.0005, -0.02, 0, 0, 0}};
@@ -168,4 +168,4 @@ TEST(Rigid, InverseAndProductAreThoseOfMotions) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

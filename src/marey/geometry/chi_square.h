@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace marey {
+namespace marey::geometry {
 
 /// Probability that a chi-square variable with `degrees` ≥ 1 degrees of freedom exceeds x ≥ 0. Abramowitz & Stegun 26.4.8.
 inline double chi_square_tail(int degrees, double x) {
@@ -26,4 +26,4 @@ inline double chi_square_quantile(int degrees, double p) {
   return high;
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 TEST(ChiSquare, QuantilesOfTheTables) {
@@ -14,4 +14,4 @@ TEST(ChiSquare, QuantilesOfTheTables) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 std::optional<Vector<2>> ground_seen(const Camera& camera, const Vector<2>& pixel) {
@@ -57,4 +57,4 @@ std::optional<Vector<2>> GroundView::pixel(const Vector<2>& ground) const {
   return at.hnormalized();
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -5,7 +5,7 @@
 
 #include "marey/geometry/camera.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// How a view meets the ground, the plane z = 0 of the world: a whole camera, or a bare homography where nothing more is known.
 class GroundView {
@@ -38,4 +38,4 @@ class GroundView {
   std::variant<Camera, Homography> view_;
 };
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 /// 6 m above the ground, 10 m before the touchline, looking across the pitch and 15° down.
@@ -67,4 +67,4 @@ TEST(GroundView, ACameraBelowItsZAxisSeesTheGroundToo) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

@@ -1,6 +1,6 @@
 #include "marey/geometry/lens.h"
 
-namespace marey {
+namespace marey::geometry {
 
 std::string_view name_of(const Lens& lens) {
   return std::visit([](const auto& model) { return std::string_view(model.name); }, lens);
@@ -24,4 +24,4 @@ Lens scaled(const Lens& lens, double factor) {
       lens);
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -16,7 +16,7 @@
 
 #include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// Every model: pixel = principal + focal · distort(point), per axis. `focal` and `principal` are in px; the coefficients have no
 /// unit.
@@ -94,4 +94,4 @@ const Vector<2>& principal_of(const Lens& lens);
 /// principal point moves by half a pixel more).
 Lens scaled(const Lens& lens, double factor);
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 constexpr double kPenaltyDepth = 16.5, kPenaltyHalfWidth = 20.16;
@@ -101,4 +101,4 @@ double distance_to_line(const PitchSize& size, const Vector<2>& place) {
   return nearest;
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

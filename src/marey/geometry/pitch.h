@@ -5,7 +5,7 @@
 
 #include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// The white lines of a football pitch by the Laws of the Game, in m. x runs along the touchlines, y along the goal lines, both
 /// from one corner; which side of the pitch y = 0 is, is the user's affair. Length and width are the pitch's own, the rest is
@@ -30,4 +30,4 @@ std::vector<PitchLine> pitch_lines(const PitchSize& size, double step);
 /// m from a place on the ground to the middle of the nearest line.
 double distance_to_line(const PitchSize& size, const Vector<2>& place);
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::geometry {
 namespace {
 
 TEST(Pitch, EverySampleLiesOnALine) {
@@ -49,4 +49,4 @@ TEST(Pitch, TheLawsMeasures) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::geometry

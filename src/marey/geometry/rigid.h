@@ -4,7 +4,7 @@
 
 #include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::geometry {
 
 /// A rigid motion of space, named `target_from_source`: target = rotation · source + translation. Lengths in m.
 struct Rigid3 {
@@ -29,4 +29,4 @@ inline Vector<3> angle_axis_of(const Matrix<3>& rotation) {
   return angle_axis.angle() * angle_axis.axis();
 }
 
-}  // namespace marey
+}  // namespace marey::geometry

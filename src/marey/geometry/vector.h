@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace marey {
+namespace marey::geometry {
 
 /// A point or a direction in D dimensions; the unit (px or m) is the holder's.
 template <int D>
@@ -12,4 +12,4 @@ using Vector = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Matrix = Eigen::Matrix<double, D, D>;
 
-}  // namespace marey
+}  // namespace marey::geometry

@@ -8,13 +8,13 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/marker_video.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/source/open_source.h"
 #include "marey/source/region_source.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kDefaultRate = 100;  // Hz
@@ -26,7 +26,7 @@ double since(std::chrono::steady_clock::time_point begin) {
 
 class VideoFeed final : public BlobFeed {
  public:
-  VideoFeed(std::unique_ptr<Source> source, CameraId camera, double offset_s, const MarkerOptions& markers)
+  VideoFeed(std::unique_ptr<Source> source, CameraId camera, double offset_s, const detect::markers::MarkerOptions& markers)
       : source_(read_ahead(std::move(source), 4)), camera_(camera), offset_s_(offset_s), detector_(markers) {
     rate_hz_ = source_->info().rate_hz.value_or(25);
   }
@@ -51,7 +51,8 @@ class VideoFeed final : public BlobFeed {
 
   std::vector<std::string> warnings() const override {
     auto all = source_->warnings();
-    for (const std::string& warning : marey::warnings(detector_.counts())) all.push_back(source_->info().name + ": " + warning);
+    for (const std::string& warning : marey::detect::markers::warnings(detector_.counts()))
+      all.push_back(source_->info().name + ": " + warning);
     return all;
   }
 
@@ -68,7 +69,7 @@ class VideoFeed final : public BlobFeed {
   double offset_s_;
   double rate_hz_;
   std::optional<double> first_;
-  MarkerDetector detector_;
+  detect::markers::MarkerDetector detector_;
 };
 
 /// The file of observations, dealt out to the cameras' feeds.
@@ -77,7 +78,7 @@ class ObservationDeal {
   ObservationDeal(const std::string& path, const Rig& rig) : reader_(path, rig), waiting_(rig.cameras.size()) {}
 
   /// Cameras ask side by side, each for its own.
-  std::optional<SeenFrame> next(std::size_t camera) {
+  std::optional<format::SeenFrame> next(std::size_t camera) {
     const std::lock_guard lock(dealing_);
     while (waiting_[camera].empty()) {
       const auto frame = reader_.next();
@@ -87,15 +88,15 @@ class ObservationDeal {
         waiting_[c].push_back({frame->frame, {part.begin(), part.end()}});
       }
     }
-    SeenFrame first = std::move(waiting_[camera].front());
+    format::SeenFrame first = std::move(waiting_[camera].front());
     waiting_[camera].pop_front();
     return first;
   }
 
  private:
   std::mutex dealing_;
-  ObservationReader reader_;
-  std::vector<std::deque<SeenFrame>> waiting_;
+  format::ObservationReader reader_;
+  std::vector<std::deque<format::SeenFrame>> waiting_;
 };
 
 class ObservationFeed final : public BlobFeed {
@@ -109,7 +110,7 @@ class ObservationFeed final : public BlobFeed {
     if (!seen) return std::nullopt;
     SeenBlobs result;
     result.time = timestamp_from_seconds(static_cast<double>(seen->frame) / rate_hz_ + offset_s_);
-    for (const SeenPoint& point : seen->points) {
+    for (const format::SeenPoint& point : seen->points) {
       Observation<2> blob;
       blob.value = point.pixel;
       blob.covariance.setZero();
@@ -144,7 +145,8 @@ class NoFeed final : public BlobFeed {
 
 }  // namespace
 
-std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const MarkerOptions& markers, std::optional<double> rate_hz) {
+std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const detect::markers::MarkerOptions& markers,
+                                                   std::optional<double> rate_hz) {
   std::vector<std::unique_ptr<BlobFeed>> feeds;
   int number = 0, found = 0;
   for (RigCamera& camera : rig.cameras) {
@@ -153,9 +155,9 @@ std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const MarkerOptions
       feeds.push_back(std::make_unique<NoFeed>());
       continue;
     }
-    auto source = open_source(camera.source, camera.rate_hz ? camera.rate_hz : rate_hz);
-    if (camera.region) source = crop(std::move(source), region_within(camera, source->info().size));
-    fit_to_size(camera, source->info().size);
+    auto source = source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : rate_hz);
+    if (camera.region) source = source::crop(std::move(source), region_within(camera, source->info().size));
+    format::rig::fit_to_size(camera, source->info().size);
     feeds.push_back(std::make_unique<VideoFeed>(std::move(source), id, camera.offset_s.value_or(0), markers));
     ++found;
   }
@@ -173,4 +175,4 @@ std::vector<std::unique_ptr<BlobFeed>> open_observations(const std::string& path
   return feeds;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,9 +8,9 @@
 #include "marey/core/observation.h"
 #include "marey/core/rig.h"
 #include "marey/core/time.h"
-#include "marey/detect/marker_detector.h"
+#include "marey/detect/markers/marker_detector.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// What one camera saw in one of its frames.
 struct SeenBlobs {
@@ -31,9 +31,10 @@ class BlobFeed {
 /// Opens every camera's source and looks for markers in it. Cameras without a source give nothing. Calibrations that are for
 /// another resolution of the same shape are scaled in `rig`. Throws Error where a source cannot be opened or its shape does not
 /// fit.
-std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const MarkerOptions& markers, std::optional<double> rate_hz);
+std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const detect::markers::MarkerOptions& markers,
+                                                   std::optional<double> rate_hz);
 
 /// What another program saw, from a file or folder that format/observations.h reads. `rate_hz` counts where the rig does not say.
 std::vector<std::unique_ptr<BlobFeed>> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
 
-}  // namespace marey
+}  // namespace marey::pipeline

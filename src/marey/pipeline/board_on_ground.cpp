@@ -4,34 +4,34 @@
 
 #include <Eigen/SVD>
 
-#include "marey/calibrate/board_detector.h"
-#include "marey/calibrate/board_pose.h"
+#include "marey/calibrate/board/board_detector.h"
+#include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
 #include "marey/source/open_source.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr int kMostPictures = 50;     // of a source that are searched for the board
 constexpr double kDisagree_m = 0.05;  // between cameras
 
-std::optional<Rigid3> camera_from_board(const RigCamera& camera, const Board& board) {
-  const auto source = open_source(camera.source, camera.rate_hz);
-  const BoardDetector detector(board);
+std::optional<Rigid3> camera_from_board(const RigCamera& camera, const calibrate::board::Board& board) {
+  const auto source = source::open_source(camera.source, camera.rate_hz);
+  const calibrate::board::BoardDetector detector(board);
   for (int i = 0; i < kMostPictures; ++i) {
     const auto frame = source->next();
     if (!frame) break;
     const Picture picture = camera.region ? Picture(frame->picture.luma()(*camera.region)) : frame->picture;
     const auto view = detector.detect(picture);
     if (!view) continue;
-    if (const auto pose = board_pose(board, *view, *camera.lens)) return pose;
+    if (const auto pose = calibrate::board::board_pose(board, *view, *camera.lens)) return pose;
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-GroundFound board_on_ground(const Rig& rig, const Board& board) {
+calibrate::GroundFound board_on_ground(const Rig& rig, const calibrate::board::Board& board) {
   // A board's z runs away from who looks at it: into the floor.
   const Rigid3 board_from_ground{Vector<3>(1, -1, -1).asDiagonal(), Vector<3>::Zero()};
   std::vector<Rigid3> found;
@@ -49,7 +49,7 @@ GroundFound board_on_ground(const Rig& rig, const Board& board) {
     origin += one.translation / static_cast<double>(found.size());
   }
   const Eigen::JacobiSVD<Matrix<3>> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  GroundFound ground;
+  calibrate::GroundFound ground;
   ground.ground_from_world = Rigid3{svd.matrixU() * svd.matrixV().transpose(), origin}.inverse();
   double square = 0;
   for (const Rigid3& one : found) square += (one.translation - origin).squaredNorm();
@@ -63,4 +63,4 @@ GroundFound board_on_ground(const Rig& rig, const Board& board) {
   return ground;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

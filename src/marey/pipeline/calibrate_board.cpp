@@ -7,16 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "marey/calibrate/choose_views.h"
+#include "marey/calibrate/board/choose_views.h"
 #include "marey/calibrate/lens_calibration.h"
 #include "marey/core/error.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/find_boards.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/source/open_source.h"
 #include "marey/source/picture_files.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr std::size_t kViewsOfLens = 60;
@@ -24,7 +24,7 @@ constexpr std::size_t kViewsOfLens = 60;
 bool is_pictures(const std::string& source) {
   std::error_code error;
   if (std::filesystem::is_directory(source, error)) return true;
-  return is_picture_name(source) || (!std::filesystem::exists(source, error) && is_picture_pattern(source));
+  return source::is_picture_name(source) || (!std::filesystem::exists(source, error) && is_picture_pattern(source));
 }
 
 /// Whether the sources are pictures, each of an instant of its own, and no films.
@@ -42,21 +42,22 @@ bool are_stills(const Rig& rig) {
   return kinds.contains(true);
 }
 
-Lens lens_by_board(const RigCamera& camera, const Board& board, const BoardSightings& seen) {
-  std::vector<ViewCandidate> candidates;
+geometry::Lens lens_by_board(const RigCamera& camera, const calibrate::board::Board& board, const BoardSightings& seen) {
+  std::vector<calibrate::board::ViewCandidate> candidates;
   for (const BoardSighting& sighting : seen.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
-  std::vector<LensView> views;
-  for (const std::size_t i : choose_views(candidates, seen.size, kViewsOfLens))
+  std::vector<calibrate::LensView> views;
+  for (const std::size_t i : calibrate::board::choose_views(candidates, seen.size, kViewsOfLens))
     views.push_back({fmt::format("frame {}", seen.sightings[i].frame), seen.sightings[i].view});
   try {
-    return calibrate_lens(board, seen.size, views).lens;
+    return calibrate::calibrate_lens(board, seen.size, views).lens;
   } catch (const Error& error) {
     throw Error("camera \"{}\" has no lens in the rig, and these pictures do not tell it: {}", camera.name, error.what());
   }
 }
 
-BoardRigCamera look(RigCamera& camera, const BoardDetector& detector, const BoardRunOptions& options) {
-  const auto source = read_ahead(open_source(camera.source, camera.rate_hz));
+calibrate::board::BoardRigCamera look(RigCamera& camera, const calibrate::board::BoardDetector& detector,
+                                      const BoardRunOptions& options) {
+  const auto source = read_ahead(source::open_source(camera.source, camera.rate_hz));
   FindBoardsOptions how;
   how.region = camera.region;
   if (options.progress) {
@@ -65,11 +66,11 @@ BoardRigCamera look(RigCamera& camera, const BoardDetector& detector, const Boar
   const BoardSightings seen = find_boards(*source, detector, how);
   if (seen.sightings.empty()) {
     throw Error("camera \"{}\": the board {} is in none of its {} pictures; are its kind, its numbers and its colours as given?",
-                camera.name, to_string(detector.board()), seen.frames);
+                camera.name, calibrate::board::to_string(detector.board()), seen.frames);
   }
-  fit_to_size(camera, seen.size);
+  format::rig::fit_to_size(camera, seen.size);
   if (!camera.lens) camera.lens = lens_by_board(camera, detector.board(), seen);
-  BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s.value_or(0), {}};
+  calibrate::board::BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s.value_or(0), {}};
   for (const BoardSighting& sighting : seen.sightings)
     input.views.push_back({sighting.frame, seconds(sighting.time), sighting.view});
   return input;
@@ -82,7 +83,7 @@ Rigid3 first_pose() {
   return camera_from_world;
 }
 
-void enter(Rig& rig, const BoardRig& found) {
+void enter(Rig& rig, const calibrate::board::BoardRig& found) {
   const Rigid3 first_from_world = rig.cameras[0].camera_from_world.value_or(first_pose());
   const double first_offset = rig.cameras[0].offset_s.value_or(0);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
@@ -98,22 +99,22 @@ void enter(Rig& rig, const BoardRig& found) {
 
 }  // namespace
 
-BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRunOptions& options) {
+BoardRun calibrate_board_from(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options) {
   if (rig.cameras.size() < 2) throw Error("a rig is calibrated from two cameras at least, and this one has {}", rig.cameras.size());
-  using Timing = BoardRigOptions::Timing;
-  BoardRigOptions how;
+  using Timing = calibrate::board::BoardRigOptions::Timing;
+  calibrate::board::BoardRigOptions how;
   how.timing = are_stills(rig) ? Timing::stills : options.synced ? Timing::synced : Timing::films;
   how.refine_lenses = options.refine;
   how.rolling_shutter = options.rolling_shutter;
   how.most_offset_s = options.most_offset_s;
   BoardRun run{rig, {}};
-  const BoardDetector detector(board);
-  std::vector<BoardRigCamera> cameras;
+  const calibrate::board::BoardDetector detector(board);
+  std::vector<calibrate::board::BoardRigCamera> cameras;
   for (RigCamera& camera : run.rig.cameras) cameras.push_back(look(camera, detector, options));
-  for (BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s.value_or(0);
-  run.found = calibrate_board_rig(board, cameras, how);
+  for (calibrate::board::BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s.value_or(0);
+  run.found = calibrate::board::calibrate_board_rig(board, cameras, how);
   enter(run.rig, run.found);
   return run;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

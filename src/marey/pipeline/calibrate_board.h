@@ -3,10 +3,10 @@
 #include <functional>
 #include <string>
 
-#include "marey/calibrate/board_rig.h"
+#include "marey/calibrate/board/board_rig.h"
 #include "marey/core/rig.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct BoardRunOptions {
   bool synced = false;           ///< films of cameras in step: their offsets are held as the rig has them
@@ -18,14 +18,14 @@ struct BoardRunOptions {
 };
 
 struct BoardRun {
-  Rig rig;         ///< as given, with sizes, lenses, poses and offsets as found
-  BoardRig found;  ///< for the rig's cameras, in their order
+  Rig rig;                           ///< as given, with sizes, lenses, poses and offsets as found
+  calibrate::board::BoardRig found;  ///< for the rig's cameras, in their order
 };
 
 /// Places the rig's cameras by a board that all their sources show: films, or pictures whose n-th belong together. A camera without
 /// a lens gets one from the same pictures first. The world is the one in which the first camera has its pose in the rig; where it
 /// has none, the first camera stands at the origin and looks along y, z up. Throws Error where a source cannot be read or
 /// calibrate_board_rig refuses.
-BoardRun calibrate_board_from(const Rig& rig, const Board& board, const BoardRunOptions& options);
+BoardRun calibrate_board_from(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -5,23 +5,23 @@
 #include "marey/calibrate/lens_calibration.h"
 #include "marey/pipeline/find_boards.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct LensRunOptions {
-  LensOptions lens;
+  calibrate::LensOptions lens;
   std::size_t most_views = 60;  ///< pictures that the solution rests on
   std::optional<cv::Rect> region;
   std::function<void(std::int64_t, std::optional<std::int64_t>)> progress;
 };
 
 struct LensRun {
-  LensCalibration calibration;
+  calibrate::LensCalibration calibration;
   std::int64_t frames = 0;  ///< looked at
   int sightings = 0;        ///< frames that show the board
 };
 
 /// Calibrates the lens that took `input`: a video, a folder of pictures or a pattern. Throws Error where the board is nowhere to be
 /// seen, or where calibrate_lens does.
-LensRun calibrate_lens_from(const std::string& input, const Board& board, const LensRunOptions& options);
+LensRun calibrate_lens_from(const std::string& input, const calibrate::board::Board& board, const LensRunOptions& options);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -12,11 +12,11 @@
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/format/whole_file.h"
 #include "marey/source/open_source.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 // The empty ground is the median of this many pictures, spread over this long a beginning: who moves is in few of them.
@@ -61,14 +61,14 @@ cv::Mat empty_ground(Source& source, const std::optional<cv::Rect>& region) {
   return median;
 }
 
-PitchView view_of(RigCamera& camera, const std::string& clicks_path, std::vector<std::string>& warnings) {
-  PitchView view;
+calibrate::pitch::PitchView view_of(RigCamera& camera, const std::string& clicks_path, std::vector<std::string>& warnings) {
+  calibrate::pitch::PitchView view;
   view.name = camera.name;
-  const PitchClicks clicks = read_pitch_clicks(clicks_path);
-  for (const PitchClicks::Point& click : clicks.points) view.points.push_back({click.ground, click.pixel, click.name});
-  for (const PitchClicks::Line& line : clicks.lines) view.lines.push_back({line.from, line.to, line.pixels});
+  const format::PitchClicks clicks = format::read_pitch_clicks(clicks_path);
+  for (const format::PitchClicks::Point& click : clicks.points) view.points.push_back({click.ground, click.pixel, click.name});
+  for (const format::PitchClicks::Line& line : clicks.lines) view.lines.push_back({line.from, line.to, line.pixels});
   if (!camera.source.empty()) {
-    const auto source = open_source(camera.source, camera.rate_hz);
+    const auto source = source::open_source(camera.source, camera.rate_hz);
     view.empty_ground = empty_ground(*source, camera.region);
     view.size = view.empty_ground.size();
     camera.size = view.size;
@@ -80,7 +80,7 @@ PitchView view_of(RigCamera& camera, const std::string& clicks_path, std::vector
     throw Error("camera \"{}\": its size is not known; give its source, or size = [width, height] in px", camera.name);
   }
   const cv::Rect frame({}, view.size);
-  for (const PitchPoint& point : view.points) {
+  for (const calibrate::pitch::PitchPoint& point : view.points) {
     if (!frame.contains(cv::Point(cvRound(point.pixel.x()), cvRound(point.pixel.y()))))
       throw Error(
           "{}: the click on {} at ({:.0f}, {:.0f}) is outside camera \"{}\"'s picture of {} x {} px; is it another camera's file?",
@@ -119,32 +119,32 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
   const auto to_world = [&](const Vector<2>& pitch) -> Vector<2> {
     return (world_from_ground * (pitch + run.calibration.corner).homogeneous()).hnormalized();
   };
-  auto lines = pitch_lines(options.pitch.size, 0.25);
-  for (PitchLine& line : lines) {
+  auto lines = geometry::pitch_lines(options.pitch.size, 0.25);
+  for (geometry::PitchLine& line : lines) {
     for (Vector<2>& place : line.points) place = to_world(place);
   }
   for (std::size_t i = 0; i < run.views.size(); ++i) {
-    const PitchView& view = run.views[i];
-    const PitchViewResult& found = run.calibration.views[i];
+    const calibrate::pitch::PitchView& view = run.views[i];
+    const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     if (!view.empty_ground.empty()) {
       std::vector<Vector<2>> paint;
-      for (const LineSighting& seen : found.lines) paint.push_back(seen.pixel);
-      std::vector<DrawnClick> clicks;
+      for (const calibrate::pitch::LineSighting& seen : found.lines) paint.push_back(seen.pixel);
+      std::vector<draw::DrawnClick> clicks;
       for (std::size_t k = 0; k < view.points.size(); ++k)
         clicks.push_back({view.points[k].pixel, found.inlier[k] != 0, view.points[k].name});
-      write_picture(joined(options.pictures, view.name + ".jpg"),
-                    draw_pitch(Picture(view.empty_ground), found.camera, lines, paint, clicks));
+      draw::write_picture(joined(options.pictures, view.name + ".jpg"),
+                          draw::draw_pitch(Picture(view.empty_ground), found.camera, lines, paint, clicks));
     }
     const GroundView ground(found.camera);
-    WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
-    map.write(pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
-                            [&](const Vector<2>& pitch) -> std::optional<double> {
-                              const auto pixel = ground.pixel(to_world(pitch));
-                              if (!pixel || !found.camera.in_picture(*pixel)) return std::nullopt;
-                              const auto place = ground.place(*pixel);
-                              if (!place) return std::nullopt;
-                              return place->by_pixel.operatorNorm();
-                            }));
+    format::WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
+    map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
+                                  [&](const Vector<2>& pitch) -> std::optional<double> {
+                                    const auto pixel = ground.pixel(to_world(pitch));
+                                    if (!pixel || !found.camera.in_picture(*pixel)) return std::nullopt;
+                                    const auto place = ground.place(*pixel);
+                                    if (!place) return std::nullopt;
+                                    return place->by_pixel.operatorNorm();
+                                  }));
     map.finish();
   }
 }
@@ -178,7 +178,7 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
   PitchRun run;
   run.rig = rig;
   if (clicks.empty()) throw Error("give the clicked points of at least one camera: --points CAM=FILE");
-  for (const auto& [name, path] : clicks) camera_named(run.rig, name);
+  for (const auto& [name, path] : clicks) format::rig::camera_named(run.rig, name);
   for (RigCamera& camera : run.rig.cameras) {
     const auto given = clicks.find(camera.name);
     if (given == clicks.end()) continue;
@@ -186,12 +186,12 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
     run.views.push_back(view_of(camera, given->second, run.warnings));
     run.cameras.push_back(camera.name);
   }
-  run.calibration = calibrate_pitch(run.views, options.pitch);
+  run.calibration = calibrate::pitch::calibrate_pitch(run.views, options.pitch);
   run.rig.ground_from_world = run.calibration.ground_from_world;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
-    const PitchViewResult& found = run.calibration.views[i];
-    RigCamera& camera = camera_named(run.rig, run.cameras[i]);
+    const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
+    RigCamera& camera = format::rig::camera_named(run.rig, run.cameras[i]);
     compare_lens(camera, found.camera, run.warnings);
     camera.size = found.camera.size();
     camera.lens = found.camera.lens();
@@ -215,4 +215,4 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
   return run;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -5,23 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "marey/calibrate/pitch.h"
+#include "marey/calibrate/pitch/pitch.h"
 #include "marey/core/rig.h"
 #include "marey/pipeline/ground_offsets.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct PitchRun {
-  Rig rig;                            ///< what was given, with lenses, poses and `ground_from_world` found
-  std::vector<std::string> cameras;   ///< those calibrated, in the rig's order
-  std::vector<PitchView> views;       ///< one for each: what it was calibrated from
-  PitchCalibration calibration;       ///< one view for each
-  std::vector<std::string> warnings;  ///< one sentence each
-  RigOffsets offsets;                 ///< empty where the rig says all of them, or too few cameras see people
+  Rig rig;                                         ///< what was given, with lenses, poses and `ground_from_world` found
+  std::vector<std::string> cameras;                ///< those calibrated, in the rig's order
+  std::vector<calibrate::pitch::PitchView> views;  ///< one for each: what it was calibrated from
+  calibrate::pitch::PitchCalibration calibration;  ///< one view for each
+  std::vector<std::string> warnings;               ///< one sentence each
+  RigOffsets offsets;                              ///< empty where the rig says all of them, or too few cameras see people
 };
 
 struct PitchRunOptions {
-  PitchCalibrationOptions pitch;
+  calibrate::pitch::PitchCalibrationOptions pitch;
   bool synced = false;   ///< the cameras run on one clock: those without an offset have 0
   std::string pictures;  ///< a folder for overlays and the accuracy maps; empty for none
   std::function<void(const std::string& what, int done, int all)> progress = [](const std::string&, int, int) {};
@@ -33,4 +33,4 @@ struct PitchRunOptions {
 /// where a file cannot be read, a camera is not in the rig, or the clicks do not decide.
 PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -6,28 +6,28 @@
 #include <gtest/gtest.h>
 
 #include "marey/calibrate/ground.h"
-#include "marey/calibrate/wand.h"
+#include "marey/calibrate/wand/wand.h"
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
 #include "marey/pipeline/camera_blobs.h"
-#include "marey/simulate/room.h"
+#include "marey/simulate/room/room.h"
 
 #include "support/data.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
-RoomOptions waved(int cameras, std::int64_t frames) {
-  RoomOptions room;
-  room.motion = RoomMotion::wand;
+simulate::room::RoomOptions waved(int cameras, std::int64_t frames) {
+  simulate::room::RoomOptions room;
+  room.motion = simulate::room::RoomMotion::wand;
   room.cameras = cameras;
   room.frames = frames;
   return room;
 }
 
 /// What the cameras of a room saw, their lenses given or not, their poses and offsets never.
-WandInput input_of(const RoomScene& scene, bool lenses = true) {
-  WandInput input;
+calibrate::wand::WandInput input_of(const simulate::room::RoomScene& scene, bool lenses = true) {
+  calibrate::wand::WandInput input;
   input.rig = scene.rig();
   input.wand.distances = scene.options().wand;
   for (RigCamera& camera : input.rig.cameras) {
@@ -37,10 +37,10 @@ WandInput input_of(const RoomScene& scene, bool lenses = true) {
   }
   input.seen.resize(input.rig.cameras.size());
   for (std::int64_t i = 0; i < scene.options().frames; ++i) {
-    const RoomFrame frame = scene.frame(i);
+    const simulate::room::RoomFrame frame = scene.frame(i);
     for (std::size_t c = 0; c < frame.seen.size(); ++c) {
-      BlobFrame blobs{frame.time_s, {}};
-      for (const RoomBlob& blob : frame.seen[c]) blobs.blobs.push_back(blob.pixel);
+      calibrate::wand::BlobFrame blobs{frame.time_s, {}};
+      for (const simulate::room::RoomBlob& blob : frame.seen[c]) blobs.blobs.push_back(blob.pixel);
       input.seen[c].push_back(std::move(blobs));
     }
   }
@@ -71,9 +71,9 @@ Off compare(const Rig& found, const Rig& truth, bool free_scale = false) {
 }
 
 /// The message with which it is refused; empty where it is not.
-std::string refusal(const WandInput& input, const WandOptions& options = {}) {
+std::string refusal(const calibrate::wand::WandInput& input, const calibrate::wand::WandOptions& options = {}) {
   try {
-    calibrate_wand(input, options);
+    calibrate::wand::calibrate_wand(input, options);
     return "";
   } catch (const Error& error) {
     return error.what();
@@ -81,8 +81,8 @@ std::string refusal(const WandInput& input, const WandOptions& options = {}) {
 }
 
 TEST(CalibrateWand, FindsEightCameras) {
-  const RoomScene scene(waved(8, 600));
-  const WandResult result = calibrate_wand(input_of(scene));
+  const simulate::room::RoomScene scene(waved(8, 600));
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input_of(scene));
   const Off off = compare(result.rig, scene.rig());
   EXPECT_LT(off.centre_mm, 0.3);
   EXPECT_LT(std::abs(off.scale_percent), 0.02);
@@ -93,49 +93,50 @@ TEST(CalibrateWand, FindsEightCameras) {
 }
 
 TEST(CalibrateWand, EstimatesLensesThatAreNotKnown) {
-  const RoomScene scene(waved(5, 800));
-  const WandResult result = calibrate_wand(input_of(scene, false));
+  const simulate::room::RoomScene scene(waved(5, 800));
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input_of(scene, false));
   EXPECT_LT(compare(result.rig, scene.rig()).centre_mm, 2);
   for (std::size_t c = 0; c < 5; ++c) {
-    EXPECT_NEAR(focal_of(*result.rig.cameras[c].lens).x() / focal_of(*scene.rig().cameras[c].lens).x(), 1, 2e-3);
+    EXPECT_NEAR(geometry::focal_of(*result.rig.cameras[c].lens).x() / geometry::focal_of(*scene.rig().cameras[c].lens).x(), 1,
+                2e-3);
   }
 }
 
 TEST(CalibrateWand, SeesThroughGhostsAndGaps) {
-  RoomOptions room = waved(6, 500);
+  simulate::room::RoomOptions room = waved(6, 500);
   room.ghosts = 0.3;
   room.dropped = 0.2;
-  const RoomScene scene(room);
-  const WandResult result = calibrate_wand(input_of(scene));
+  const simulate::room::RoomScene scene(room);
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input_of(scene));
   EXPECT_LT(compare(result.rig, scene.rig()).centre_mm, 0.5);
   EXPECT_NEAR(result.report.noise_px, 0.1, 0.01);
 }
 
 TEST(CalibrateWand, TellsTheEndsOfAWandOfTwoMarkersApart) {
-  RoomOptions room = waved(5, 500);
+  simulate::room::RoomOptions room = waved(5, 500);
   room.wand = {0, 0.4};
-  const RoomScene scene(room);
-  EXPECT_LT(compare(calibrate_wand(input_of(scene)).rig, scene.rig()).centre_mm, 0.6);
+  const simulate::room::RoomScene scene(room);
+  EXPECT_LT(compare(calibrate::wand::calibrate_wand(input_of(scene)).rig, scene.rig()).centre_mm, 0.6);
 }
 
 TEST(CalibrateWand, ASingleLightGivesTheShapeAndADistanceTheScale) {
-  RoomOptions room = waved(5, 500);
+  simulate::room::RoomOptions room = waved(5, 500);
   room.wand = {0};
-  const RoomScene scene(room);
-  WandOptions options;
+  const simulate::room::RoomScene scene(room);
+  calibrate::wand::WandOptions options;
   const Eigen::Matrix3Xd truth = centres_of(scene.rig());
-  options.distance = KnownDistance{"cam1", "cam3", (truth.col(0) - truth.col(2)).norm()};
-  const WandResult result = calibrate_wand(input_of(scene), options);
+  options.distance = calibrate::wand::KnownDistance{"cam1", "cam3", (truth.col(0) - truth.col(2)).norm()};
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input_of(scene), options);
   const Eigen::Matrix3Xd found = centres_of(result.rig);
   EXPECT_NEAR((found.col(0) - found.col(2)).norm(), options.distance->metres, 1e-9);
   EXPECT_LT(compare(result.rig, scene.rig()).centre_mm, 2);
 }
 
 TEST(CalibrateWand, FindsWhenCamerasWereStarted) {
-  RoomOptions room = waved(4, 900);
+  simulate::room::RoomOptions room = waved(4, 900);
   room.offset_s = 0.3;
-  const RoomScene scene(room);
-  const WandResult result = calibrate_wand(input_of(scene));
+  const simulate::room::RoomScene scene(room);
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input_of(scene));
   for (std::size_t c = 0; c < 4; ++c) {
     const double truth = *scene.rig().cameras[c].offset_s - *scene.rig().cameras[0].offset_s;
     EXPECT_NEAR(*result.rig.cameras[c].offset_s, truth, 0.05 / 120) << "a twentieth of a frame";
@@ -144,30 +145,30 @@ TEST(CalibrateWand, FindsWhenCamerasWereStarted) {
 }
 
 TEST(CalibrateWand, IsTheSameTwice) {
-  const RoomScene scene(waved(3, 200));
-  const WandInput input = input_of(scene);
-  const WandResult a = calibrate_wand(input), b = calibrate_wand(input);
+  const simulate::room::RoomScene scene(waved(3, 200));
+  const calibrate::wand::WandInput input = input_of(scene);
+  const calibrate::wand::WandResult a = calibrate::wand::calibrate_wand(input), b = calibrate::wand::calibrate_wand(input);
   EXPECT_EQ(centres_of(a.rig), centres_of(b.rig));
 }
 
 TEST(CalibrateWand, RefusesAWandOfOtherProportions) {
-  WandInput input = input_of(RoomScene(waved(3, 200)));
+  calibrate::wand::WandInput input = input_of(simulate::room::RoomScene(waved(3, 200)));
   input.wand.distances = {0, 0.10, 0.30};
   EXPECT_NE(refusal(input).find("--wand"), std::string::npos) << refusal(input);
 }
 
 TEST(CalibrateWand, RefusesAWandThatChanges) {
-  const RoomScene scene(waved(4, 400));
-  RoomOptions longer = waved(4, 400);
+  const simulate::room::RoomScene scene(waved(4, 400));
+  simulate::room::RoomOptions longer = waved(4, 400);
   longer.wand = {0, 0.14, 0.35};
-  WandInput input = input_of(scene);
-  const WandInput other = input_of(RoomScene(longer));
+  calibrate::wand::WandInput input = input_of(scene);
+  const calibrate::wand::WandInput other = input_of(simulate::room::RoomScene(longer));
   for (std::size_t c = 0; c < 4; ++c) std::copy(other.seen[c].begin() + 200, other.seen[c].end(), input.seen[c].begin() + 200);
   EXPECT_NE(refusal(input).find("another wand"), std::string::npos) << refusal(input);
 }
 
 TEST(CalibrateWand, RefusesTwoCamerasInOnePlace) {
-  WandInput input = input_of(RoomScene(waved(4, 200)));
+  calibrate::wand::WandInput input = input_of(simulate::room::RoomScene(waved(4, 200)));
   input.seen[2] = input.seen[1];
   input.rig.cameras[2].lens = input.rig.cameras[1].lens;
   EXPECT_NE(refusal(input).find("one place"), std::string::npos) << refusal(input);
@@ -177,7 +178,7 @@ TEST(CalibrateWand, RefusesTwoCamerasInOnePlace) {
 }
 
 TEST(CalibrateWand, RefusesCamerasWithoutACommonView) {
-  WandInput input = input_of(RoomScene(waved(4, 200)));
+  calibrate::wand::WandInput input = input_of(simulate::room::RoomScene(waved(4, 200)));
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < 200; ++i) {
       if ((i < 100) == (c < 2)) input.seen[c][i].blobs.clear();
@@ -187,20 +188,20 @@ TEST(CalibrateWand, RefusesCamerasWithoutACommonView) {
 }
 
 TEST(CalibrateWand, RefusesTooFewPoses) {
-  EXPECT_NE(refusal(input_of(RoomScene(waved(3, 12)))).find("needed"), std::string::npos);
+  EXPECT_NE(refusal(input_of(simulate::room::RoomScene(waved(3, 12)))).find("needed"), std::string::npos);
 }
 
 TEST(CalibrateWand, RefusesAPlane) {
   // A wand that lies flat on its table, pushed round.
-  const RoomScene scene(waved(4, 10));
-  WandInput input = input_of(scene);
+  const simulate::room::RoomScene scene(waved(4, 10));
+  calibrate::wand::WandInput input = input_of(scene);
   for (std::size_t c = 0; c < 4; ++c) {
     input.seen[c].clear();
     const Camera camera = *scene.rig().cameras[c].camera();
     for (int i = 0; i < 200; ++i) {
       const double turn = 0.05 * i;
       const Vector<3> at(0.8 * std::sin(0.031 * i), 0.8 * std::cos(0.023 * i), 0.7);
-      BlobFrame frame{i / 120.0, {}};
+      calibrate::wand::BlobFrame frame{i / 120.0, {}};
       for (const double s : input.wand.distances) {
         const auto pixel = camera.project(at + s * Vector<3>(std::cos(turn), std::sin(turn), 0));
         if (pixel) frame.blobs.push_back(*pixel);
@@ -212,55 +213,55 @@ TEST(CalibrateWand, RefusesAPlane) {
 }
 
 TEST(CalibrateWand, RefusesWhatIsNotThere) {
-  WandInput input = input_of(RoomScene(waved(3, 100)));
-  EXPECT_NE(refusal(input, {.distance = KnownDistance{"cam1", "nobody", 1}}).find("nobody"), std::string::npos);
+  calibrate::wand::WandInput input = input_of(simulate::room::RoomScene(waved(3, 100)));
+  EXPECT_NE(refusal(input, {.distance = calibrate::wand::KnownDistance{"cam1", "nobody", 1}}).find("nobody"), std::string::npos);
   input.rig.cameras[1].size.reset();
   EXPECT_NE(refusal(input).find("size"), std::string::npos);
-  input = input_of(RoomScene(waved(3, 100)), false);
-  EXPECT_NE(refusal(input, {.lens = LensUse::fixed}).find("lens"), std::string::npos);
+  input = input_of(simulate::room::RoomScene(waved(3, 100)), false);
+  EXPECT_NE(refusal(input, {.lens = calibrate::wand::LensUse::fixed}).find("lens"), std::string::npos);
 }
 
 TEST(CalibrateWand, DoesBetterThanMultiCamSelfCal) {
   const std::string folder = test::data("led_rig_4");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
-  WandInput input;
-  input.rig = rig_of_observations(folder);
+  calibrate::wand::WandInput input;
+  input.rig = format::rig_of_observations(folder);
   input.seen = read_blobs(folder, input.rig).seen;
-  const WandResult result = calibrate_wand(input, {.find_offsets = false});
+  const calibrate::wand::WandResult result = calibrate::wand::calibrate_wand(input, {.find_offsets = false});
   EXPECT_LT(result.report.all.mean_px, 0.20) << "its own log: 0.30 px over 303 observations";
   EXPECT_GE(result.report.all.inliers, 1500);
 }
 
 TEST(CalibrateGround, FindsTheLFrame) {
-  RoomOptions room;
-  room.motion = RoomMotion::ground;
+  simulate::room::RoomOptions room;
+  room.motion = simulate::room::RoomMotion::ground;
   room.cameras = 6;
   room.frames = 30;
   room.ghosts = 0.2;
-  const RoomScene scene(room);
-  const WandInput seen = input_of(scene);
+  const simulate::room::RoomScene scene(room);
+  const calibrate::wand::WandInput seen = input_of(scene);
   std::vector<std::vector<Vector<2>>> still;
-  for (const auto& frames : seen.seen) still.push_back(still_blobs(frames));
-  const Rigid3 elsewhere{rotation_from({0.4, -1.1, 0.3}), {0.5, 1, -2}};
-  Rig rig = moved_to_ground(scene.rig(), elsewhere, 0.25);
+  for (const auto& frames : seen.seen) still.push_back(calibrate::still_blobs(frames));
+  const Rigid3 elsewhere{geometry::rotation_from({0.4, -1.1, 0.3}), {0.5, 1, -2}};
+  Rig rig = calibrate::moved_to_ground(scene.rig(), elsewhere, 0.25);
   for (const double scale : {1.0, 4.0}) {
-    if (scale == 1.0) rig = moved_to_ground(scene.rig(), elsewhere, 1);
-    if (scale == 4.0) rig = moved_to_ground(scene.rig(), elsewhere, 0.25);
-    const GroundFound found = find_ground(rig, still, room.ground_frame, scale != 1.0);
+    if (scale == 1.0) rig = calibrate::moved_to_ground(scene.rig(), elsewhere, 1);
+    if (scale == 4.0) rig = calibrate::moved_to_ground(scene.rig(), elsewhere, 0.25);
+    const calibrate::GroundFound found = calibrate::find_ground(rig, still, room.ground_frame, scale != 1.0);
     EXPECT_NEAR(found.scale, scale, 0.003 * scale);
-    const Rig back = moved_to_ground(rig, found.ground_from_world, found.scale);
+    const Rig back = calibrate::moved_to_ground(rig, found.ground_from_world, found.scale);
     EXPECT_LT((centres_of(back) - centres_of(scene.rig())).colwise().norm().maxCoeff(), 5e-3);
   }
 }
 
 TEST(CalibrateGround, RefusesFramesThatTellNothing) {
-  const RoomScene scene(waved(3, 10));
+  const simulate::room::RoomScene scene(waved(3, 10));
   const std::vector<std::vector<Vector<2>>> nothing(3);
   const std::vector<Vector<3>> line = {{0, 0, 0}, {0.2, 0, 0}, {0.5, 0, 0}}, square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  EXPECT_THROW(find_ground(scene.rig(), nothing, line, false), Error);
-  EXPECT_THROW(find_ground(scene.rig(), nothing, square, false), Error);
-  EXPECT_THROW(find_ground(scene.rig(), nothing, scene.options().ground_frame, false), Error);
+  EXPECT_THROW(calibrate::find_ground(scene.rig(), nothing, line, false), Error);
+  EXPECT_THROW(calibrate::find_ground(scene.rig(), nothing, square, false), Error);
+  EXPECT_THROW(calibrate::find_ground(scene.rig(), nothing, scene.options().ground_frame, false), Error);
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

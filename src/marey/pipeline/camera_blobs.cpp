@@ -9,13 +9,13 @@
 #include "marey/format/observations.h"
 #include "marey/pipeline/blob_feed.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
-std::vector<BlobFrame> all_of(BlobFeed& feed, double offset_s, const std::function<void()>& frame_done) {
-  std::vector<BlobFrame> frames;
+std::vector<calibrate::wand::BlobFrame> all_of(BlobFeed& feed, double offset_s, const std::function<void()>& frame_done) {
+  std::vector<calibrate::wand::BlobFrame> frames;
   while (const auto seen = feed.next()) {
-    BlobFrame& blobs = frames.emplace_back(BlobFrame{seconds(seen->time) - offset_s, {}});
+    calibrate::wand::BlobFrame& blobs = frames.emplace_back(calibrate::wand::BlobFrame{seconds(seen->time) - offset_s, {}});
     for (const Observation<2>& blob : seen->blobs) blobs.blobs.push_back(blob.value);
     frame_done();
   }
@@ -32,8 +32,8 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig) {
     if (!any_rate) any_rate = camera.rate_hz;
   }
   blobs.timed = any_rate.has_value();
-  for (const SeenFrame& frame : read_observations(observations, rig)) {
-    for (const SeenPoint& point : frame.points) {
+  for (const format::SeenFrame& frame : format::read_observations(observations, rig)) {
+    for (const format::SeenPoint& point : frame.points) {
       const auto c = static_cast<std::size_t>(point.camera);
       const double time = static_cast<double>(frame.frame) / rig.cameras[c].rate_hz.value_or(any_rate.value_or(1));
       auto& frames = blobs.seen[c];
@@ -44,7 +44,7 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig) {
   return blobs;
 }
 
-CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgress& progress) {
+CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const BlobProgress& progress) {
   for (const RigCamera& camera : rig.cameras) {
     if (camera.source.empty())
       throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
@@ -68,4 +68,4 @@ CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgres
   return blobs;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "marey/calibrate/wand_marks.h"
+#include "marey/calibrate/wand/wand_marks.h"
 #include "marey/core/rig.h"
-#include "marey/detect/marker_detector.h"
+#include "marey/detect/markers/marker_detector.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// What all cameras of a rig saw, by camera and frame, each by its own clock.
 struct CameraBlobs {
-  std::vector<std::vector<BlobFrame>> seen;
+  std::vector<std::vector<calibrate::wand::BlobFrame>> seen;
   bool timed = true;  ///< false: the rate is not known, frame numbers stand for seconds and cameras run in step
   std::vector<std::string> warnings;
 };
@@ -26,6 +26,6 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 
 /// Finds markers in the cameras' sources, cameras in parallel. Sets the sizes that the rig lacks. Throws Error where a source
 /// cannot be read, or its picture does not have the camera's size.
-CameraBlobs find_blobs(Rig& rig, const MarkerOptions& options, const BlobProgress& progress);
+CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const BlobProgress& progress);
 
-}  // namespace marey
+}  // namespace marey::pipeline

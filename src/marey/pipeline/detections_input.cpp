@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/mot.h"
+#include "marey/format/tracks/mot.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kUsualRate = 25;
@@ -68,7 +68,7 @@ constexpr double kPlaceNoise = 0.05;  // of a detector's boxes, in their heights
 class BoxFeed {
  public:
   explicit BoxFeed(std::vector<LabelledBox> boxes) : own_(std::move(boxes)), piece_(own_) {}
-  explicit BoxFeed(MotReader reader) : reader_(std::move(reader)) {}
+  explicit BoxFeed(format::tracks::MotReader reader) : reader_(std::move(reader)) {}
   BoxFeed(BoxFeed&& other) noexcept = default;
   BoxFeed& operator=(BoxFeed&& other) noexcept = default;
 
@@ -87,16 +87,16 @@ class BoxFeed {
 
  private:
   std::vector<LabelledBox> own_;
-  std::optional<MotReader> reader_;
+  std::optional<format::tracks::MotReader> reader_;
   std::span<const LabelledBox> piece_;  // what is left of it
 };
 
-class KnownDetections final : public Detector {
+class KnownDetections final : public detect::Detector {
  public:
   explicit KnownDetections(BoxFeed boxes) : boxes_(std::move(boxes)) {}
 
-  Detections detect(const Frame& frame, std::span<const Expected> /*expected*/) override {
-    Detections result;
+  detect::Detections detect(const Frame& frame, std::span<const Expected> /*expected*/) override {
+    detect::Detections result;
     for (const LabelledBox* seen = boxes_.front(); seen != nullptr && seen->frame <= frame.index; seen = boxes_.front()) {
       if (seen->frame == frame.index) result.detections.push_back(detection_of(*seen));  // else nobody asked for that frame
       boxes_.pop();
@@ -136,7 +136,7 @@ struct Survey {
 
 Survey survey(const std::string& path) {
   Survey found;
-  MotReader reader(path);
+  format::tracks::MotReader reader(path);
   while (const auto piece = reader.next()) {
     for (const LabelledBox& box : *piece) found.add(box);
   }
@@ -144,7 +144,7 @@ Survey survey(const std::string& path) {
   return found;
 }
 
-Survey survey(const MotTable& table) {
+Survey survey(const format::tracks::MotTable& table) {
   Survey found;
   for (const LabelledBox& box : table.boxes) found.add(box);
   found.warnings = table.warnings;
@@ -160,13 +160,13 @@ bool is_plain_file(const std::string& path) {
 }  // namespace
 
 DetectionsInput open_detections(const std::string& path, std::optional<double> rate_hz) {
-  MotTable table;
+  format::tracks::MotTable table;
   Survey known;
   const bool twice = is_plain_file(path);
   if (twice) known = survey(path);
   const bool piecewise = twice && known.in_order && known.probabilities && known.confident;
   if (!piecewise) {
-    table = read_mot(path, MotKind::detections);
+    table = format::tracks::read_mot(path, format::tracks::MotKind::detections);
     known = survey(table);
   }
   if (known.frames == 0) throw Error("{}: holds no detections; lines are frame,-1,left,top,width,height,score", path);
@@ -183,8 +183,8 @@ DetectionsInput open_detections(const std::string& path, std::optional<double> r
         fmt::format("{}: no score reaches {}, from which a track begins; they were ranked instead", path, kConfident));
   }
   auto frames = std::make_unique<EmptyFrames>(path, rate_hz.value_or(kUsualRate), known.frames, std::move(known.warnings));
-  BoxFeed feed = piecewise ? BoxFeed(MotReader(path)) : BoxFeed(std::move(table.boxes));
+  BoxFeed feed = piecewise ? BoxFeed(format::tracks::MotReader(path)) : BoxFeed(std::move(table.boxes));
   return {std::move(frames), std::make_unique<KnownDetections>(std::move(feed))};
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -7,12 +7,12 @@
 #include "marey/core/source.h"
 #include "marey/detect/detector.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// What another program detected, in the place of a camera and a detector.
 struct DetectionsInput {
-  std::unique_ptr<Source> source;      ///< frames without pictures, from the first to the last that has a detection
-  std::unique_ptr<Detector> detector;  ///< answers each of them with the file's detections
+  std::unique_ptr<Source> source;              ///< frames without pictures, from the first to the last that has a detection
+  std::unique_ptr<detect::Detector> detector;  ///< answers each of them with the file's detections
 };
 
 /// Reads MOT text: `frame,-1,left,top,width,height,score,…`, `rate_hz` frames a second (25 where nothing is given, with a
@@ -20,4 +20,4 @@ struct DetectionsInput {
 /// continue a track, the others begin one too. Throws Error where the file cannot be read or a line is malformed.
 DetectionsInput open_detections(const std::string& path, std::optional<double> rate_hz);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -5,10 +5,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include "marey/calibrate/sharpness.h"
+#include "marey/calibrate/board/sharpness.h"
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr std::size_t kAtOnce = 16;  // frames
@@ -19,7 +19,7 @@ Picture cut_out(const Picture& whole, const std::optional<cv::Rect>& region) {
 
 }  // namespace
 
-BoardSightings find_boards(Source& source, const BoardDetector& detector, const FindBoardsOptions& options) {
+BoardSightings find_boards(Source& source, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options) {
   const SourceInfo& info = source.info();
   BoardSightings found;
   found.size = options.region ? options.region->size() : info.size;
@@ -33,7 +33,8 @@ BoardSightings find_boards(Source& source, const BoardDetector& detector, const 
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       const Picture picture = cut_out(batch[i].picture, options.region);
       auto view = detector.detect(picture);
-      if (view) seen[i] = BoardSighting{batch[i].index, batch[i].time, sharpness_of(picture, *view), std::move(*view)};
+      if (view)
+        seen[i] = BoardSighting{batch[i].index, batch[i].time, calibrate::board::sharpness_of(picture, *view), std::move(*view)};
     });
     for (auto& sighting : seen) {
       if (sighting) found.sightings.push_back(std::move(*sighting));
@@ -53,4 +54,4 @@ BoardSightings find_boards(Source& source, const BoardDetector& detector, const 
   return found;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

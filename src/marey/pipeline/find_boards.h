@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "marey/calibrate/board_detector.h"
+#include "marey/calibrate/board/board_detector.h"
 #include "marey/core/source.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// A board in one frame of a camera.
 struct BoardSighting {
   std::int64_t frame = 0;
   Timestamp time{};  ///< by the camera's own clock
   double sharpness = 0;
-  BoardView view;
+  calibrate::board::BoardView view;
 };
 
 /// All that one camera saw of a board.
@@ -34,6 +34,6 @@ struct FindBoardsOptions {
 };
 
 /// Looks for the board in the source's frames, several at once. Throws Error where the region is not within the picture.
-BoardSightings find_boards(Source& source, const BoardDetector& detector, const FindBoardsOptions& options = {});
+BoardSightings find_boards(Source& source, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

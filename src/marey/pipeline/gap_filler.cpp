@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace marey {
+namespace marey::pipeline {
 
 TakeFrame* GapFiller::frame_at(std::int64_t number) {
   const std::int64_t back = added_ - number;  // 1: the last one
@@ -71,4 +71,4 @@ std::optional<TakeFrame> GapFiller::next() {
   return frame;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -6,9 +6,10 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::pipeline {
 
-GroundArea::GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<PitchSize>& pitch, double margin)
+GroundArea::GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch,
+                       double margin)
     : pitch_(pitch), margin_(margin) {
   if (!ground_from_world) return;
   const Matrix<3>& H = *ground_from_world;
@@ -37,4 +38,4 @@ bool GroundArea::holds(const Vector<2>& world, double slack) const {
   return at.x() >= -around && at.y() >= -around && at.x() <= pitch_->length + around && at.y() <= pitch_->width + around;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

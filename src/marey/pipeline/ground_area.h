@@ -2,10 +2,11 @@
 
 #include <optional>
 
+#include "marey/core/geometry.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// The part of the ground whose people count: a pitch with a margin round it, in the user's frame. Without a pitch all of it.
 class GroundArea {
@@ -13,7 +14,7 @@ class GroundArea {
   GroundArea() = default;
 
   /// The pitch's corner is the origin of the user's frame, which is the world through `ground_from_world`. `margin` in m.
-  GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<PitchSize>& pitch, double margin);
+  GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch, double margin);
 
   /// The user's coordinates of a place in the world, and a velocity's.
   Vector<2> ground(const Vector<2>& world) const;
@@ -25,13 +26,13 @@ class GroundArea {
 
   /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
   bool mirrored() const { return ground_from_world_.topLeftCorner<2, 2>().determinant() < 0; }
-  const std::optional<PitchSize>& pitch() const { return pitch_; }
+  const std::optional<geometry::PitchSize>& pitch() const { return pitch_; }
   double margin() const { return margin_; }
 
  private:
   Matrix<3> ground_from_world_ = Matrix<3>::Identity(), world_from_ground_ = Matrix<3>::Identity();
-  std::optional<PitchSize> pitch_;
+  std::optional<geometry::PitchSize> pitch_;
   double margin_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -10,12 +10,12 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
-#include "marey/detect/person_size_map.h"
-#include "marey/format/rig_sources.h"
+#include "marey/detect/people/person_size_map.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kHalf = 0.505;    // of a frame
@@ -26,14 +26,14 @@ constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of t
 constexpr std::size_t kMostCameras = 64;
 
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
-PersonSizeMap sizes_over(const Camera& camera, const GroundArea& area, const cv::Rect& part) {
+detect::people::PersonSizeMap sizes_over(const Camera& camera, const GroundArea& area, const cv::Rect& part) {
   const GroundView view(camera);
-  return {part.size(), [&](double x, double y) -> std::optional<PersonSize> {
+  return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
             const auto place = view.place({x + part.x, y + part.y});
             if (!place || !area.holds(place->ground, kBeyondArea)) return std::nullopt;
-            const auto box = person_box(camera, place->ground);
+            const auto box = reconstruct::person_box(camera, place->ground);
             if (!box || box->height < kSmallest) return std::nullopt;
-            return PersonSize{box->height, box->width};
+            return detect::people::PersonSize{box->height, box->width};
           }};
 }
 
@@ -50,9 +50,9 @@ cv::Rect part_with_people(const Camera& camera, const GroundArea& area) {
     for (int x = -step; x <= size.width + step; x += step) {
       const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
       if (!place || !area.holds(place->ground, kBeyondArea)) continue;
-      const auto box = person_box(camera, place->ground);
+      const auto box = reconstruct::person_box(camera, place->ground);
       if (!box || box->height < kSmallest) continue;
-      all = all ? hull(*all, *box) : *box;
+      all = all ? geometry::hull(*all, *box) : *box;
     }
   }
   if (!all) return whole;
@@ -95,7 +95,7 @@ struct GroundCameras::Lane {
   }
 
   std::optional<Box> box_at(const GroundView& view, const Vector<2>& ground) const {
-    if (const Camera* camera = view.camera()) return person_box(*camera, ground);
+    if (const Camera* camera = view.camera()) return reconstruct::person_box(*camera, ground);
     const auto foot = view.pixel(ground);
     if (!foot) return std::nullopt;
     const auto size = eyes.people ? eyes.people->size_at(foot->x(), foot->y()) : learned.at(foot->x(), foot->y());
@@ -111,23 +111,23 @@ struct GroundCameras::Lane {
     for (const Track<2>& track : tracks) {
       const auto box = box_at(view, track.position);
       if (!box) continue;
-      const Box here = intersection(moved(*box, -corner), picture);
+      const Box here = geometry::intersection(moved(*box, -corner), picture);
       if (!here.empty()) expected.push_back({here});
     }
-    Detections found = eyes.detector->detect(*taken, expected);
+    detect::Detections found = eyes.detector->detect(*taken, expected);
     if (view.camera() == nullptr && eyes.people == nullptr) learn(found, view.size());
     place(found, view, area);
   }
 
-  void place(Detections& found, const GroundView& view, const GroundArea& area) {
+  void place(detect::Detections& found, const GroundView& view, const GroundArea& area) {
     std::vector<std::optional<Appearance>> wears;
     for (std::size_t i = 0; i < found.detections.size(); ++i) {
-      wears.push_back(upper_body(taken->picture, found.foreground, found.detections, i));
+      wears.push_back(detect::upper_body(taken->picture, found.foreground, found.detections, i));
     }
     for (Detection& detection : found.detections) detection.box = moved(detection.box, corner);
-    PlacePeopleOptions placing;
+    reconstruct::PlacePeopleOptions placing;
     if (eyes.people != nullptr) placing.toe = kToe;
-    const PlacedPeople placed = place_people(found.detections, view, id, placing);
+    const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view, id, placing);
     seen.clear();
     for (std::size_t i = 0; i < placed.seen.size(); ++i) {
       if (!area.holds(placed.seen[i].value, kBeyondArea)) continue;
@@ -138,7 +138,7 @@ struct GroundCameras::Lane {
     counts.detections += std::ssize(seen);
   }
 
-  void learn(const Detections& found, cv::Size size) {
+  void learn(const detect::Detections& found, cv::Size size) {
     for (const Detection& detection : found.detections) learned.see(detection.box, size);
     if (learned.wants_fit()) learned.fit();
   }
@@ -146,9 +146,9 @@ struct GroundCameras::Lane {
   std::string name;
   CameraId id;
   double offset_s;
-  PeopleEyes eyes;
-  cv::Point corner;         // of the part of the picture that is looked at
-  PersonSizeModel learned;  // where neither a camera nor a detector knows how tall people are
+  DetectionStage eyes;
+  cv::Point corner;                         // of the part of the picture that is looked at
+  detect::people::PersonSizeModel learned;  // where neither a camera nor a detector knows how tall people are
   std::optional<Frame> before, waiting, taken;
   std::vector<Expected> expected;
   std::vector<Observation<2>> seen;
@@ -180,22 +180,22 @@ cv::Size picture_size(const RigCamera& camera, const PeopleInput& input) {
 }
 
 /// Opens the camera's pictures or detections; `corner` becomes that of the part of the picture that is looked at.
-PeopleEyes open(RigCamera& camera, const GroundArea& area, const GroundCamerasOptions& options, cv::Point& corner) {
+DetectionStage open(RigCamera& camera, const GroundArea& area, const GroundCamerasOptions& options, cv::Point& corner) {
   PeopleInput input{camera.source, camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz, camera.region};
-  PeopleEyesOptions eyes = options.eyes;
+  DetectionStageOptions eyes = options.eyes;
   if (!camera.source.empty()) {
     input.detections.clear();
-    fit_to_size(camera, picture_size(camera, input));
+    format::rig::fit_to_size(camera, picture_size(camera, input));
     if (const auto whole = camera.camera()) {
       const cv::Rect part = part_with_people(*whole, area);
-      eyes.people.sizes = std::make_shared<PersonSizeMap>(sizes_over(*whole, area, part));
+      eyes.people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
       corner = part.tl();
       const cv::Point origin = camera.region ? camera.region->tl() : cv::Point();
       if (part.size() != whole->size()) input.region = part + origin;
     }
   }
   try {
-    return open_eyes(input, eyes);
+    return open_detection_stage(input, eyes);
   } catch (const Error& error) {
     throw Error("camera \"{}\": {}", camera.name, error.what());
   }
@@ -242,7 +242,7 @@ bool GroundCameras::next() {
   return true;
 }
 
-std::span<const GroundLook> GroundCameras::look(std::span<const Track<2>> expected) {
+std::span<const track::ground::CameraObservations> GroundCameras::look(std::span<const Track<2>> expected) {
   tbb::parallel_for(std::size_t{0}, lanes_.size(), [&](std::size_t i) {
     if (lanes_[i]->taken) lanes_[i]->look(views_[i], area_, expected);
   });
@@ -288,4 +288,4 @@ std::vector<std::string> GroundCameras::warnings() const {
   return all;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

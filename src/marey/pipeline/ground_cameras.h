@@ -17,10 +17,10 @@
 #include "marey/pipeline/people_eyes.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct GroundCamerasOptions {
-  PeopleEyesOptions eyes;
+  DetectionStageOptions eyes;
   std::optional<double> rate_hz;  ///< of cameras of which the rig does not say it
 };
 
@@ -44,7 +44,7 @@ class GroundCameras {
 
   /// Finds people in what `next` has read, where `expected` are (m, world), and places them. One look a camera that has a frame for
   /// this instant. Valid until the next call.
-  std::span<const GroundLook> look(std::span<const Track<2>> expected);
+  std::span<const track::ground::CameraObservations> look(std::span<const Track<2>> expected);
 
   /// The frame that camera `number` gave to this instant, by its own count.
   std::optional<std::int32_t> frame_of(std::size_t number) const;
@@ -72,9 +72,9 @@ class GroundCameras {
   GroundArea area_;
   std::vector<GroundView> views_;
   std::vector<std::unique_ptr<Lane>> lanes_;
-  std::vector<GroundLook> looks_;
+  std::vector<track::ground::CameraObservations> looks_;
   std::int32_t frame_ = -1;
   Timestamp time_{};
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

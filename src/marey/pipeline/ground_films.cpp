@@ -10,12 +10,12 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
 #include "marey/draw/pitch_view.h"
-#include "marey/format/mot.h"
+#include "marey/format/tracks/mot.h"
 #include "marey/format/whole_file.h"
 #include "marey/pipeline/people_eyes.h"
 #include "marey/pipeline/read_ahead.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kRound = 3;  // m round the pitch that the view from above shows, beyond the margin
@@ -44,7 +44,7 @@ std::optional<Box> box_in_view(const GroundShow& show, std::size_t number, const
   const auto box = show.cameras.box_at(number, show.area.world(sample.place));
   if (!box) return std::nullopt;
   const cv::Size size = show.cameras.views()[number].size();
-  const Box cut = intersection(*box, {0, 0, static_cast<double>(size.width), static_cast<double>(size.height)});
+  const Box cut = geometry::intersection(*box, {0, 0, static_cast<double>(size.width), static_cast<double>(size.height)});
   if (cut.empty()) return std::nullopt;
   return cut;
 }
@@ -77,8 +77,8 @@ std::optional<Track<2>> track_in_view(const GroundShow& show, std::size_t number
 }
 
 /// The part of the ground to be shown: the pitch, or else where people were.
-PitchViewOptions view_of(const GroundShow& show) {
-  PitchViewOptions options;
+draw::PitchViewOptions view_of(const GroundShow& show) {
+  draw::PitchViewOptions options;
   options.y_down = show.area.mirrored();
   if (const auto& pitch = show.area.pitch()) {
     options.pitch = pitch;
@@ -123,14 +123,14 @@ std::optional<Box> ViewLog::box(std::int32_t frame, std::int32_t person) const {
 }
 
 void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path) {
-  WholeFile file(path);
+  format::WholeFile file(path);
   Instant instant(show.recording);
   std::string text;
   for (const ViewLog::FramePair& frame : log.frames()) {
     for (const GroundRecording::Sample& sample : instant.at(frame.instant)) {
       const auto box = box_in_view(show, number, log, sample);
       if (!box) continue;
-      append_mot(text, {frame.own, show.recording.people[static_cast<std::size_t>(sample.person)].id, *box, 1});
+      format::tracks::append_mot(text, {frame.own, show.recording.people[static_cast<std::size_t>(sample.person)].id, *box, 1});
     }
     file.write(text);
     text.clear();
@@ -141,11 +141,11 @@ void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog&
 bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path) {
   const RigCamera& camera = show.cameras.rig().cameras[number];
   const auto source = read_ahead(open_pictures({.pictures = camera.source, .rate_hz = camera.rate_hz, .region = camera.region}));
-  MovieWriter movie(path, source->info().size, source->info().rate_hz);
-  OverlayOptions options{.trail_of_centres = true};
+  draw::MovieWriter movie(path, source->info().size, source->info().rate_hz);
+  draw::OverlayOptions options{.trail_of_centres = true};
   for (std::size_t person = 0; person < show.colours.size(); ++person)
     options.colours[TrackId{show.recording.people[person].id}] = show.colours[person];
-  Overlay overlay(options);
+  draw::Overlay overlay(options);
   Instant instant(show.recording);
   std::vector<Track<2>> tracks;
   bool stopped = false;
@@ -166,10 +166,10 @@ bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, c
 }
 
 bool film_ground(const GroundShow& show, std::span<const double> times, const std::string& path) {
-  PitchView view(view_of(show));
-  MovieWriter movie(path, view.size(), show.cameras.rate_hz());
+  draw::PitchView view(view_of(show));
+  draw::MovieWriter movie(path, view.size(), show.cameras.rate_hz());
   Instant instant(show.recording);
-  std::vector<PitchView::Mark> marks;
+  std::vector<draw::PitchView::Mark> marks;
   bool stopped = false;
   for (std::int32_t frame = 0; frame < std::ssize(times) && !stopped; ++frame) {
     marks.clear();
@@ -186,4 +186,4 @@ bool film_ground(const GroundShow& show, std::span<const double> times, const st
   return stopped;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

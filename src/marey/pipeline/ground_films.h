@@ -17,7 +17,7 @@
 #include "marey/pipeline/run.h"
 #include "marey/track/ground/ground_recorder.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Whose box was where in one camera's pictures; 24 bytes a person and frame.
 class ViewLog {
@@ -50,7 +50,7 @@ struct GroundShow {
   const GroundRecording& recording;
   const GroundArea& area;
   const GroundCameras& cameras;
-  std::vector<Colour> colours;  ///< of each person
+  std::vector<draw::Colour> colours;  ///< of each person
   const RunHooks& hooks;
 };
 
@@ -65,4 +65,4 @@ bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, c
 /// A film of the ground from above, a picture for each instant from the first to the last of `times` (s, by instant).
 bool film_ground(const GroundShow& show, std::span<const double> times, const std::string& path);
 
-}  // namespace marey
+}  // namespace marey::pipeline

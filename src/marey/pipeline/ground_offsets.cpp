@@ -8,7 +8,7 @@
 
 #include "marey/pipeline/ground_cameras.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kLogged_s = 20;
@@ -23,7 +23,7 @@ class Alone {
  public:
   Alone(const RigCamera& camera, const GroundArea& area, const RigOffsetsOptions& options)
       : cameras_(rig_of(camera), area, {options.eyes, options.rate_hz}),
-        tracker_(make_ground_tracker(options.tracker, cameras_.views())),
+        tracker_(track::ground::make_ground_tracker(options.tracker, cameras_.views())),
         seconds_(options.seconds) {}
 
   std::optional<std::int64_t> frames() const {
@@ -41,7 +41,7 @@ class Alone {
     return true;
   }
 
-  std::vector<GroundPath> paths() const { return log_.paths(0); }
+  std::vector<calibrate::pitch::GroundPath> paths() const { return log_.paths(0); }
 
  private:
   static Rig rig_of(const RigCamera& camera) {
@@ -52,14 +52,15 @@ class Alone {
   }
 
   GroundCameras cameras_;
-  std::unique_ptr<GroundTracker> tracker_;
+  std::unique_ptr<track::ground::GroundTracker> tracker_;
   double seconds_;
   GroundPathLog log_{{0.0}};
 };
 
 /// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
-std::vector<std::vector<GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras, const GroundArea& area,
-                                                  const RigOffsetsOptions& options, const RunHooks& hooks) {
+std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
+                                                                    const GroundArea& area, const RigOffsetsOptions& options,
+                                                                    const RunHooks& hooks) {
   std::vector<std::unique_ptr<Alone>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
                     [&](std::size_t i) { runs[i] = std::make_unique<Alone>(*cameras[i], area, options); });
@@ -71,20 +72,20 @@ std::vector<std::vector<GroundPath>> follow_alone(const std::vector<const RigCam
     });
     if (hooks.tell({TrackProgress::Step::clocks, done, total})) break;
   }
-  std::vector<std::vector<GroundPath>> paths;
+  std::vector<std::vector<calibrate::pitch::GroundPath>> paths;
   for (const auto& run : runs) paths.push_back(run->paths());
   return paths;
 }
 
-std::string_view reason(OffsetVerdict verdict) {
+std::string_view reason(calibrate::pitch::OffsetVerdict verdict) {
   switch (verdict) {
-    case OffsetVerdict::found:
+    case calibrate::pitch::OffsetVerdict::found:
       return "";
-    case OffsetVerdict::no_overlap:
+    case calibrate::pitch::OffsetVerdict::no_overlap:
       return "no person was seen on ground that it has in common with another camera";
-    case OffsetVerdict::nobody_moves:
+    case calibrate::pitch::OffsetVerdict::nobody_moves:
       return "too few people move on the ground that it has in common with others";
-    case OffsetVerdict::ambiguous:
+    case calibrate::pitch::OffsetVerdict::ambiguous:
       return "no offset explains how people move plainly better than others";
   }
   return "";
@@ -97,9 +98,10 @@ std::string after(double offset_s, double deviation_s, const std::string& first)
 
 }  // namespace
 
-void GroundPathLog::add(std::span<const GroundLook> looks, std::span<const GroundClaim> claims) {
-  for (const GroundClaim& claim : claims) {
-    const GroundLook& look = looks[static_cast<std::size_t>(claim.look)];
+void GroundPathLog::add(std::span<const track::ground::CameraObservations> looks,
+                        std::span<const track::ground::ObservationMatch> claims) {
+  for (const track::ground::ObservationMatch& claim : claims) {
+    const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.look)];
     const auto camera = static_cast<std::size_t>(number(look.camera));
     const double own = seconds(look.time) - offsets_[camera];
     if (own > kLogged_s) continue;
@@ -110,8 +112,8 @@ void GroundPathLog::add(std::span<const GroundLook> looks, std::span<const Groun
   }
 }
 
-std::vector<GroundPath> GroundPathLog::paths(std::size_t camera) const {
-  std::vector<GroundPath> result;
+std::vector<calibrate::pitch::GroundPath> GroundPathLog::paths(std::size_t camera) const {
+  std::vector<calibrate::pitch::GroundPath> result;
   for (const auto& [whose, path] : paths_) {
     if (whose.first == camera) result.push_back(path);
   }
@@ -136,16 +138,16 @@ RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOff
   }
   if (cameras.size() < 2) return result;
   const auto paths = follow_alone(cameras, area, options, hooks);
-  const auto found = find_ground_offsets(paths, assumed, options.search);
+  const auto found = calibrate::pitch::find_ground_offsets(paths, assumed, options.search);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const RigCamera& camera = *cameras[i];
     // Offsets are found to the first camera, whose own clock may have one.
     const double against_first = assumed[i] - assumed[0];
-    const bool moved = contradicts(found[i], against_first, options.search);
+    const bool moved = calibrate::pitch::contradicts(found[i], against_first, options.search);
     const double offset = camera.offset_s || !moved ? assumed[i] : assumed[0] + found[i].offset_s;
     result.cameras.push_back({camera.name, found[i], offset});
     if (i == 0) continue;
-    if (found[i].verdict == OffsetVerdict::found && !camera.offset_s) {
+    if (found[i].verdict == calibrate::pitch::OffsetVerdict::found && !camera.offset_s) {
       result.notes.push_back(fmt::format(
           "camera \"{}\" {}, as people move{}", camera.name, after(found[i].offset_s, found[i].deviation_s, cameras[0]->name),
           moved ? "" : fmt::format("; that is as good as offset_s = {:g}, which is kept", assumed[i])));
@@ -164,7 +166,7 @@ RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOff
 
 void enter_offsets(Rig& rig, const RigOffsets& offsets) {
   for (const RigOffsets::Camera& one : offsets.cameras) {
-    if (one.found.verdict != OffsetVerdict::found) continue;
+    if (one.found.verdict != calibrate::pitch::OffsetVerdict::found) continue;
     for (RigCamera& camera : rig.cameras) {
       if (camera.name == one.name && !camera.offset_s) camera.offset_s = one.offset_s;
     }
@@ -172,25 +174,25 @@ void enter_offsets(Rig& rig, const RigOffsets& offsets) {
 }
 
 std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLog& log) {
-  std::vector<std::vector<GroundPath>> paths;
+  std::vector<std::vector<calibrate::pitch::GroundPath>> paths;
   std::vector<double> assumed;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     paths.push_back(log.paths(c));
     assumed.push_back(rig.cameras[c].offset_s.value_or(0));
   }
   if (assumed.empty()) return {};
-  GroundOffsetOptions near;
+  calibrate::pitch::GroundOffsetOptions near;
   const auto [least, most] = std::minmax_element(assumed.begin(), assumed.end());
   near.most_offset_s = kWrongBy_s + (*most - *least);
-  const auto found = find_ground_offsets(paths, assumed, near);
+  const auto found = calibrate::pitch::find_ground_offsets(paths, assumed, near);
   std::vector<std::string> warnings;
   for (std::size_t c = 1; c < found.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
-    if (!camera.offset_s || !contradicts(found[c], assumed[c] - assumed[0])) continue;
+    if (!camera.offset_s || !calibrate::pitch::contradicts(found[c], assumed[c] - assumed[0])) continue;
     warnings.push_back(fmt::format("camera \"{}\": its offset_s is given as {:g}, but as people move it {}", camera.name,
                                    *camera.offset_s, after(found[c].offset_s, found[c].deviation_s, rig.cameras[0].name)));
   }
   return warnings;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "marey/calibrate/ground_offset.h"
+#include "marey/calibrate/pitch/ground_offset.h"
 #include "marey/core/rig.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/people_eyes.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Who was seen where by each camera, kept apart by camera: what offsets are found from. 56 bytes a person, camera and frame, of
 /// the first twenty seconds only.
@@ -25,29 +25,29 @@ class GroundPathLog {
   explicit GroundPathLog(std::vector<double> offsets) : offsets_(std::move(offsets)) {}
 
   /// The looks and claims of one instant.
-  void add(std::span<const GroundLook> looks, std::span<const GroundClaim> claims);
+  void add(std::span<const track::ground::CameraObservations> looks, std::span<const track::ground::ObservationMatch> claims);
 
   /// The ways that camera number `camera` saw, by its own clock.
-  std::vector<GroundPath> paths(std::size_t camera) const;
+  std::vector<calibrate::pitch::GroundPath> paths(std::size_t camera) const;
 
  private:
   std::vector<double> offsets_;
-  std::map<std::pair<std::size_t, TrackId>, GroundPath> paths_;
+  std::map<std::pair<std::size_t, TrackId>, calibrate::pitch::GroundPath> paths_;
 };
 
 struct RigOffsetsOptions {
-  PeopleEyesOptions eyes;
+  DetectionStageOptions eyes;
   std::optional<double> rate_hz;  ///< of cameras of which the rig does not say it
-  GroundTrackerOptions tracker;
+  track::ground::GroundTrackerOptions tracker;
   double seconds = 60;  ///< of each camera that are looked at
-  GroundOffsetOptions search;
+  calibrate::pitch::GroundOffsetOptions search;
 };
 
 /// What is known of when a rig's cameras were started.
 struct RigOffsets {
   struct Camera {
     std::string name;
-    GroundOffset found;   ///< to the first of these
+    calibrate::pitch::GroundOffset found;  ///< to the first of these
     double offset_s = 0;  ///< to go on with: as found where that is plainly better than what the rig says or else 0
   };
   std::vector<Camera> cameras;        ///< those that see the ground and have pictures or detections, in the rig's order
@@ -71,4 +71,4 @@ void enter_offsets(Rig& rig, const RigOffsets& offsets);
 /// farther would take longer than to follow everybody.
 std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLog& log);
 
-}  // namespace marey
+}  // namespace marey::pipeline

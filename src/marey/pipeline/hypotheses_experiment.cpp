@@ -11,34 +11,35 @@
 
 #include "marey/evaluate/ground_evaluation.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double same_place = 1;  // m
 
 struct Kind {
   const char* name;
-  std::optional<Encounter> encounter;
+  std::optional<simulate::Encounter> encounter;
 };
-constexpr std::array kinds{Kind{"cross", Encounter::cross}, Kind{"side by side", Encounter::alongside},
-                           Kind{"stop", Encounter::stop}, Kind{"any", std::nullopt}};
+constexpr std::array kinds{Kind{"cross", simulate::Encounter::cross}, Kind{"side by side", simulate::Encounter::alongside},
+                           Kind{"stop", simulate::Encounter::stop}, Kind{"any", std::nullopt}};
 
 struct Method {
   const char* name;
-  GroundAssociation association;
+  track::ground::GroundAssociation association;
   bool live;  ///< judged is what is said at once
 };
-constexpr std::array methods{Method{"gnn", GroundAssociation::gnn, false}, Method{"jpda", GroundAssociation::jpda, false},
-                             Method{"mht", GroundAssociation::mht, false}, Method{"mht, live", GroundAssociation::mht, true}};
+constexpr std::array methods{
+    Method{"gnn", track::ground::GroundAssociation::gnn, false}, Method{"jpda", track::ground::GroundAssociation::jpda, false},
+    Method{"mht", track::ground::GroundAssociation::mht, false}, Method{"mht, live", track::ground::GroundAssociation::mht, true}};
 
-void add(std::vector<PersonPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
+void add(std::vector<evaluate::PersonPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
   for (const Track<2>& track : tracks) {
     if (track.confirmed) places.push_back({frame, number(track.id), track.position, track.velocity});
   }
 }
 
-std::vector<PersonPlace> truth_of(const EncounterScene& scene) {
-  std::vector<PersonPlace> places;
+std::vector<evaluate::PersonPlace> truth_of(const simulate::EncounterScene& scene) {
+  std::vector<evaluate::PersonPlace> places;
   for (std::size_t frame = 0; frame < scene.truth.size(); ++frame) {
     for (std::size_t i = 0; i < scene.truth[frame].size(); ++i)
       places.push_back({static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), scene.truth[frame][i], Vector<2>::Zero()});
@@ -47,7 +48,7 @@ std::vector<PersonPlace> truth_of(const EncounterScene& scene) {
 }
 
 /// A camera high above that sees all of the ground, 10 px a metre.
-GroundView view_of(const EncounterOptions& options) {
+GroundView view_of(const simulate::EncounterOptions& options) {
   const double margin = 30;
   Matrix<3> ground_from_image;
   ground_from_image << 0.1, 0, -margin, 0, -0.1, options.side + margin, 0, 0, 1;
@@ -61,30 +62,30 @@ struct Outcome {
   std::int64_t steps = 0;
 };
 
-Outcome follow(const EncounterScene& scene, std::span<const PersonPlace> truth, const Method& method,
-               GroundTrackerOptions options) {
+Outcome follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Method& method,
+               track::ground::GroundTrackerOptions options) {
   options.associate = method.association;
-  const auto tracker = make_ground_tracker(options, {view_of(scene.options)});
-  std::vector<PersonPlace> said;
+  const auto tracker = track::ground::make_ground_tracker(options, {view_of(scene.options)});
+  std::vector<evaluate::PersonPlace> said;
   std::int32_t decided = 0;
   Outcome outcome;
   for (std::size_t frame = 0; frame < scene.seen.size(); ++frame) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / scene.options.rate_hz);
-    const GroundLook look{CameraId{0}, now, scene.seen[frame]};
+    const track::ground::CameraObservations look{CameraId{0}, now, scene.seen[frame]};
     const auto begin = std::chrono::steady_clock::now();
     const auto tracks = tracker->step(now, {&look, 1});
     outcome.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (method.live) {
       add(said, static_cast<std::int32_t>(frame), tracks);
     } else {
-      for (const GroundDecision& decision : tracker->decided()) add(said, decided++, decision.tracks);
+      for (const track::ground::GroundDecision& decision : tracker->decided()) add(said, decided++, decision.tracks);
     }
   }
   if (!method.live) {
-    for (const GroundDecision& decision : tracker->decide_all()) add(said, decided++, decision.tracks);
+    for (const track::ground::GroundDecision& decision : tracker->decide_all()) add(said, decided++, decision.tracks);
   }
   outcome.steps = static_cast<std::int64_t>(scene.seen.size());
-  const Evaluation judged = evaluate_ground(truth, said, same_place).scores;
+  const evaluate::Evaluation judged = evaluate::evaluate_ground(truth, said, same_place).scores;
   outcome.score = {judged.clear.switches, judged.true_boxes, judged.clear.misses, judged.clear.false_positives, 0};
   return outcome;
 }
@@ -103,10 +104,11 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
   const int all = options.scenes * static_cast<int>(kinds.size());
   tbb::parallel_for(0, all, [&](int index) {
     const std::size_t kind = static_cast<std::size_t>(index) % kinds.size();
-    EncounterOptions encounters = options.encounters;
+    simulate::EncounterOptions encounters = options.encounters;
     encounters.kind = kinds[kind].encounter;
-    const EncounterScene scene = simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kinds.size(), encounters);
-    const std::vector<PersonPlace> truth = truth_of(scene);
+    const simulate::EncounterScene scene =
+        simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kinds.size(), encounters);
+    const std::vector<evaluate::PersonPlace> truth = truth_of(scene);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const Outcome outcome = follow(scene, truth, methods[m], options.tracker);
       const std::lock_guard lock(mutex);
@@ -177,4 +179,4 @@ std::string to_text(const HypothesesExperiment& experiment) {
   return text;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -9,13 +9,13 @@
 #include "marey/simulate/encounters.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct HypothesesExperimentOptions {
   int scenes = 100;  ///< of each kind of meeting
   std::uint64_t seed = 1;
-  EncounterOptions encounters;
-  GroundTrackerOptions tracker;                     ///< for all methods; `associate` is not looked at
+  simulate::EncounterOptions encounters;
+  track::ground::GroundTrackerOptions tracker;      ///< for all methods; `associate` is not looked at
   std::function<void(int done, int all)> progress;  ///< scenes
 };
 
@@ -47,4 +47,4 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
 /// As text: a table of switches and one of times.
 std::string to_text(const HypothesesExperiment& experiment);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
@@ -147,4 +147,4 @@ std::vector<std::string> Instants::warnings() const {
   return all;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

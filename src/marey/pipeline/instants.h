@@ -15,7 +15,7 @@
 #include "marey/pipeline/blob_feed.h"
 #include "marey/pipeline/stage_times.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// All that is known of one instant.
 struct Instant {
@@ -64,4 +64,4 @@ class Instants {
   std::vector<int> partner_;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -10,7 +10,7 @@
 
 #include "marey/analyse/smooth_path.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kSlowest = 0.25;  // s between instants up to which a way between them is known
@@ -131,8 +131,8 @@ Pairing pair_instants(const Clock& truth, const Clock& tracks, std::vector<std::
   return pairing;
 }
 
-std::vector<PersonPlace> places_of(const GroundRecording& recording, const Numbers& numbers) {
-  std::vector<PersonPlace> places;
+std::vector<evaluate::PersonPlace> places_of(const GroundRecording& recording, const Numbers& numbers) {
+  std::vector<evaluate::PersonPlace> places;
   places.reserve(recording.samples.size());
   auto number = numbers.end();
   std::int32_t last = -1;
@@ -157,15 +157,15 @@ GroundRecording with_velocities(GroundRecording recording) {
   for (std::size_t i = 0; i < recording.samples.size(); ++i)
     samples_of[static_cast<std::size_t>(recording.samples[i].person)].push_back(i);
   for (const auto& mine : samples_of) {
-    std::vector<TimedPlace> measured;
+    std::vector<analyse::TimedPlace> measured;
     for (const std::size_t i : mine) {
       const auto& sample = recording.samples[i];
       if (measured.empty() || sample.time > measured.back().time) measured.push_back({sample.time, sample.place});
     }
-    const std::vector<Path> paths = smooth_paths(measured);
+    const std::vector<analyse::Path> paths = analyse::smooth_paths(measured);
     for (const std::size_t i : mine) {
       auto& sample = recording.samples[i];
-      for (const Path& path : paths) {
+      for (const analyse::Path& path : paths) {
         const double at = (sample.time - path.start_s) / path.step_s;
         if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
         const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
@@ -177,27 +177,28 @@ GroundRecording with_velocities(GroundRecording recording) {
 }
 
 struct SharedWay {
-  std::vector<TimedPlace> truth, track;
+  std::vector<analyse::TimedPlace> truth, track;
 };
 
-double length_of(const std::vector<TimedPlace>& way) {
+double length_of(const std::vector<analyse::TimedPlace>& way) {
   double length = 0;
-  for (const Path& path : smooth_paths(way)) {
+  for (const analyse::Path& path : analyse::smooth_paths(way)) {
     for (std::size_t i = 1; i < path.place.size(); ++i) length += (path.place[i] - path.place[i - 1]).norm();
   }
   return length;
 }
 
 /// The ways of people and of their tracks, over the instants that both have; `times` are those of the truth's frames.
-std::vector<WayLengths> way_lengths(const std::vector<PersonPlace>& truth, const std::vector<PersonPlace>& tracks,
-                                    const std::vector<PersonFate>& people, const std::map<std::int32_t, double>& times) {
+std::vector<PathLengths> way_lengths(const std::vector<evaluate::PersonPlace>& truth,
+                                     const std::vector<evaluate::PersonPlace>& tracks,
+                                     const std::vector<evaluate::PersonFate>& people, const std::map<std::int32_t, double>& times) {
   std::map<int, int> track_of;
-  for (const PersonFate& person : people) {
+  for (const evaluate::PersonFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;
   }
   std::map<int, SharedWay> ways;
   std::size_t begin = 0;  // of the tracks' places in this frame
-  for (const PersonPlace& place : truth) {
+  for (const evaluate::PersonPlace& place : truth) {
     while (begin < tracks.size() && tracks[begin].frame < place.frame) ++begin;
     const auto track = track_of.find(place.id);
     if (track == track_of.end()) continue;
@@ -209,7 +210,7 @@ std::vector<WayLengths> way_lengths(const std::vector<PersonPlace>& truth, const
     way.truth.push_back({time, place.place});
     way.track.push_back({time, tracks[theirs].place});
   }
-  std::vector<WayLengths> lengths;
+  std::vector<PathLengths> lengths;
   for (const auto& [id, way] : ways) lengths.push_back({id, length_of(way.truth), length_of(way.track)});
   return lengths;
 }
@@ -227,8 +228,9 @@ MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& 
   const auto prepared = [](const GroundRecording& recording, const Numbers& numbers) {
     return has_velocities(recording) ? places_of(recording, numbers) : places_of(with_velocities(recording), numbers);
   };
-  const std::vector<PersonPlace> true_places = prepared(truth, pairing.truth), track_places = prepared(tracks, pairing.tracks);
-  judgement.evaluation = evaluate_ground(true_places, track_places, farthest);
+  const std::vector<evaluate::PersonPlace> true_places = prepared(truth, pairing.truth),
+                                           track_places = prepared(tracks, pairing.tracks);
+  judgement.evaluation = evaluate::evaluate_ground(true_places, track_places, farthest);
   judgement.has_speed = moving(truth, true_clock) && moving(tracks, track_clock);
   const double period = std::max(true_clock.period, track_clock.period);
   if (period > 0 && period <= kSlowest) {
@@ -239,10 +241,10 @@ MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& 
     }
     judgement.ways = way_lengths(true_places, track_places, judgement.evaluation.people, times);
     double error = 0, length = 0;
-    for (const WayLengths& way : judgement.ways) error += std::abs(way.track_m - way.true_m), length += way.true_m;
+    for (const PathLengths& way : judgement.ways) error += std::abs(way.track_m - way.true_m), length += way.true_m;
     if (length > 0) judgement.distance_error = error / length;
   }
   return judgement;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

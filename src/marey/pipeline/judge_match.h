@@ -7,18 +7,18 @@
 #include "marey/core/ground_recording.h"
 #include "marey/evaluate/ground_evaluation.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// How far a person went by the truth and by the track that is theirs, over the instants that both have. Ways are smoothed alike.
-struct WayLengths {
+struct PathLengths {
   int id = 0;
   double true_m = 0, track_m = 0;
 };
 
 /// Tracks on the ground against the truth.
 struct MatchJudgement {
-  GroundEvaluation evaluation;
-  std::vector<WayLengths> ways;          ///< of the people with a track; none where the instants are too far apart to add up ways
+  evaluate::GroundEvaluation evaluation;
+  std::vector<PathLengths> ways;         ///< of the people with a track; none where the instants are too far apart to add up ways
   std::optional<double> distance_error;  ///< differences of the lengths by amount, over the true lengths: a share
   bool by_time = false;                  ///< instants were paired by time, not by frame number
   bool has_speed = false;                ///< whether the speeds of both sides are known
@@ -30,4 +30,4 @@ struct MatchJudgement {
 /// side without velocities gets them from its smoothed ways.
 MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& tracks, double farthest);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// Two people who run straight at 2 and 4 m/s for 10 s.
@@ -82,4 +82,4 @@ TEST(JudgeMatch, NobodyIsAnAnswerToo) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

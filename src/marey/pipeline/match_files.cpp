@@ -12,12 +12,12 @@
 
 #include "marey/core/error.h"
 #include "marey/draw/movie_writer.h"
-#include "marey/format/ground_file.h"
-#include "marey/format/mot.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/tracks/mot.h"
 #include "marey/format/whole_file.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,11 +28,13 @@ struct Match {
   const MatchFilesOptions& options;
   Rig rig;
   Matrix<3> world_from_pitch = Matrix<3>::Identity();
-  std::array<Figure, kMatchPeople> figures;
+  std::array<simulate::people::Figure, simulate::match::kMatchPeople> figures;
   std::int64_t frames = 0;
 
   explicit Match(const MatchFilesOptions& asked)
-      : options(asked), rig(match_cameras(asked.cameras, asked.seed)), figures(match_figures(asked.seed)) {
+      : options(asked),
+        rig(simulate::match::match_cameras(asked.cameras, asked.seed)),
+        figures(simulate::match::match_figures(asked.seed)) {
     if (!(asked.seconds > 0 && asked.seconds <= kLongest))
       throw Error("a match of {} s; more than 0 and {} at most are possible", asked.seconds, kLongest);
     frames = std::max<std::int64_t>(1, std::llround(asked.seconds * asked.cameras.rate_hz));
@@ -42,9 +44,10 @@ struct Match {
   /// s since the kick-off; no camera begins before it.
   double match_time(double rig_time) const { return std::max(0.0, rig_time + options.cameras.offset_s); }
 
-  std::array<Stance, kMatchPeople> stances(std::span<const MatchPerson, kMatchPeople> people) const {
-    std::array<Stance, kMatchPeople> all;
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = match_stance(people[i], world_from_pitch);
+  std::array<simulate::people::Stance, simulate::match::kMatchPeople> stances(
+      std::span<const simulate::match::MatchPerson, simulate::match::kMatchPeople> people) const {
+    std::array<simulate::people::Stance, simulate::match::kMatchPeople> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = simulate::match::match_stance(people[i], world_from_pitch);
     return all;
   }
 };
@@ -68,9 +71,9 @@ class CameraFiles {
     const double time = match_.match_time(own_time + eye_.offset_s.value_or(0));
     motion_.advance(time);
     const auto stances = match_.stances(motion_.people());
-    seen_ = look_at(camera_, match_.figures, stances);
+    seen_ = simulate::match::look_at(camera_, match_.figures, stances);
     text_.clear();
-    for (const SeenPerson& person : seen_) {
+    for (const simulate::match::SeenPerson& person : seen_) {
       fmt::format_to(std::back_inserter(text_), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.person + 1,
                      person.shown.left + 1, person.shown.top + 1, person.shown.width, person.shown.height, person.visible_share);
     }
@@ -80,7 +83,7 @@ class CameraFiles {
   }
 
   /// Whom it saw in the frame written last.
-  std::span<const SeenPerson> seen() const { return seen_; }
+  std::span<const simulate::match::SeenPerson> seen() const { return seen_; }
 
   void finish() {
     if (movie_) movie_->finish();
@@ -94,10 +97,10 @@ class CameraFiles {
     const auto seed = options.seed * 64 + static_cast<std::uint64_t>(index);
     film_.emplace(camera_, match_.world_from_pitch, options.cameras.pitch, options.film, seed);
     movie_.emplace((folder / (eye_.name + ".mp4")).string(), *eye_.size, eye_.rate_hz);
-    WholeFile clicks((folder / (eye_.name + "_clicks.csv")).string());
+    format::WholeFile clicks((folder / (eye_.name + "_clicks.csv")).string());
     clicks.write("x,y,u,v\n");
-    for (const MatchClick& click :
-         match_clicks(camera_, match_.world_from_pitch, options.cameras.pitch, options.click_noise, options.wrong_clicks, seed)) {
+    for (const simulate::match::MatchClick& click : simulate::match::match_clicks(
+             camera_, match_.world_from_pitch, options.cameras.pitch, options.click_noise, options.wrong_clicks, seed)) {
       clicks.write(fmt::format("{:g},{:g},{:.2f},{:.2f}\n", click.ground.x(), click.ground.y(), click.pixel.x(), click.pixel.y()));
     }
     clicks.finish();
@@ -105,8 +108,9 @@ class CameraFiles {
 
   void write_detections(std::int64_t frame) {
     text_.clear();
-    for (const LabelledBox& box : detect_match(seen_, camera_, match_.world_from_pitch, match_.options.cameras.pitch,
-                                               static_cast<std::int32_t>(frame), match_.options.detector, random_)) {
+    for (const LabelledBox& box :
+         simulate::match::detect_match(seen_, camera_, match_.world_from_pitch, match_.options.cameras.pitch,
+                                       static_cast<std::int32_t>(frame), match_.options.detector, random_)) {
       fmt::format_to(std::back_inserter(text_), "{},-1,{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},-1,-1,-1\n", box.frame + 1,
                      box.box.left + 1, box.box.top + 1, box.box.width, box.box.height, box.score);
     }
@@ -116,13 +120,13 @@ class CameraFiles {
   const Match& match_;
   const RigCamera& eye_;
   Camera camera_;
-  MatchMotion motion_;
-  Random random_;
-  WholeFile truth_;
-  std::optional<WholeFile> detections_;
-  std::optional<MatchFilm> film_;
-  std::optional<MovieWriter> movie_;
-  std::vector<SeenPerson> seen_;
+  simulate::match::MatchMotion motion_;
+  simulate::Random random_;
+  format::WholeFile truth_;
+  std::optional<format::WholeFile> detections_;
+  std::optional<simulate::match::MatchFilm> film_;
+  std::optional<draw::MovieWriter> movie_;
+  std::vector<simulate::match::SeenPerson> seen_;
   std::string text_;
 };
 
@@ -133,7 +137,8 @@ class GroundTruth {
         motion_(match.options.seed, match.options.cameras.pitch),
         writer_((folder / "truth.csv").string(), names(match.rig)) {
     for (const RigCamera& eye : match.rig.cameras) cameras_.push_back(*eye.camera());
-    for (int i = 0; i < kMatchPeople; ++i) people_.push_back({i + 1, match_label(i), std::string(match_team(i))});
+    for (int i = 0; i < simulate::match::kMatchPeople; ++i)
+      people_.push_back({i + 1, simulate::match::match_label(i), std::string(simulate::match::match_team(i))});
   }
 
   /// `films` have written the same frame: cameras that were started with the first one have looked already.
@@ -141,17 +146,19 @@ class GroundTruth {
     const double time = static_cast<double>(frame) / match_.options.cameras.rate_hz;
     motion_.advance(match_.match_time(time));
     const auto stances = match_.stances(motion_.people());
-    std::array<CameraMask, kMatchPeople> seen_by{};
+    std::array<CameraMask, simulate::match::kMatchPeople> seen_by{};
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      std::vector<SeenPerson> own;
+      std::vector<simulate::match::SeenPerson> own;
       const bool in_step = match_.rig.cameras[i].offset_s.value_or(0) == 0;
-      if (!in_step) own = look_at(cameras_[i], match_.figures, stances);
-      for (const SeenPerson& person : in_step ? films[i]->seen() : std::span<const SeenPerson>(own)) {
-        if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
+      if (!in_step) own = simulate::match::look_at(cameras_[i], match_.figures, stances);
+      for (const simulate::match::SeenPerson& person :
+           in_step ? films[i]->seen() : std::span<const simulate::match::SeenPerson>(own)) {
+        if (person.visible_share >= simulate::match::kHiddenShare)
+          seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
       }
     }
     for (std::size_t i = 0; i < people_.size(); ++i) {
-      const MatchPerson& person = motion_.people()[i];
+      const simulate::match::MatchPerson& person = motion_.people()[i];
       GroundRecording::Sample sample;
       sample.frame = static_cast<std::int32_t>(frame);
       sample.time = time;
@@ -172,16 +179,16 @@ class GroundTruth {
   }
 
   const Match& match_;
-  MatchMotion motion_;
+  simulate::match::MatchMotion motion_;
   std::vector<Camera> cameras_;
   std::vector<GroundRecording::Person> people_;
-  GroundWriter writer_;
+  format::match::GroundWriter writer_;
 };
 
 void write_rigs(const Match& match, const fs::path& folder) {
   const auto write = [&](const Rig& rig, const char* name) {
-    WholeFile file((folder / name).string());
-    file.write(rig_text(rig));
+    format::WholeFile file((folder / name).string());
+    file.write(format::rig::rig_text(rig));
     file.finish();
   };
   const MatchFilesOptions& options = match.options;
@@ -233,4 +240,4 @@ void write_match(const MatchFilesOptions& options, const std::string& folder,
   write_rigs(match, place);
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -4,20 +4,20 @@
 #include <functional>
 #include <string>
 
-#include "marey/simulate/match_cameras.h"
-#include "marey/simulate/match_film.h"
-#include "marey/simulate/match_view.h"
+#include "marey/simulate/match/match_cameras.h"
+#include "marey/simulate/match/match_film.h"
+#include "marey/simulate/match/match_view.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct MatchFilesOptions {
-  MatchCamerasOptions cameras;
-  MatchDetectorOptions detector;
+  simulate::match::MatchCamerasOptions cameras;
+  simulate::match::MatchDetectorOptions detector;
   std::uint64_t seed = 1;
   double seconds = 60;  ///< positive
   bool boxes = true;    ///< what a detector says of each camera
   bool films = false;   ///< what each camera films, and clicks on its picture
-  MatchFilmOptions film;
+  simulate::match::MatchFilmOptions film;
   double click_noise = 1;     ///< px, standard deviation in each axis
   int wrong_clicks = 0;       ///< of each camera
   bool hide_offsets = false;  ///< rig.toml says nothing of when cameras were started; true_rig.toml does
@@ -39,4 +39,4 @@ struct MatchFilesOptions {
 void write_match(const MatchFilesOptions& options, const std::string& folder,
                  const std::function<void(std::int64_t done, std::int64_t all)>& progress = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -11,7 +11,7 @@
 #include "marey/format/text_rows.h"
 #include "marey/format/whole_file.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// "2-4" for the zone between two borders, "over 7" for the last.
@@ -20,21 +20,21 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
   return fmt::format("{:g}-{:g}", zone == 0 ? 0.0 : borders[zone - 1], borders[zone]);
 }
 
-std::string name_of(const PersonMeasure& person) {
+std::string name_of(const analyse::PersonMeasure& person) {
   return person.label.empty() ? std::to_string(person.id) : person.label;
 }
 
 /// Teams that are called by the colour of their shirts are drawn in it.
 std::optional<Appearance> shirt_of(const std::string& team) {
   try {
-    return colour_named(team);
+    return analyse::colour_named(team);
   } catch (const Error&) {
     return std::nullopt;
   }
 }
 
-MatchReport::Person page_of(const PersonMeasure& person) {
-  MatchReport::Person page;
+draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
+  draw::MatchReport::Person page;
   page.name = name_of(person);
   page.team = person.team;
   page.wears = shirt_of(person.team);
@@ -42,7 +42,7 @@ MatchReport::Person page_of(const PersonMeasure& person) {
                 fmt::format("{:.1f}", person.top_mps),    std::to_string(person.sprints),
                 std::to_string(person.accelerations),     std::to_string(person.decelerations)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
-  for (const Path& path : person.paths) {
+  for (const analyse::Path& path : person.paths) {
     page.ways.push_back(path.place);
     auto& speeds = page.speeds.emplace_back();
     for (std::size_t i = 0; i < path.velocity.size(); ++i)
@@ -55,18 +55,18 @@ MatchReport::Person page_of(const PersonMeasure& person) {
 
 }  // namespace
 
-std::string measurement_csv(const Measurement& measured, const MeasureOptions& options) {
+std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options) {
   std::string text = "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y";
   for (const char* unit : {"s", "m"}) {
     for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
       text += fmt::format(",{}_at_{}_mps", unit, zone_name(options.zones, zone));
   }
   text += '\n';
-  for (const PersonMeasure& person : measured.people) {
+  for (const analyse::PersonMeasure& person : measured.people) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{:.3f},{},{:.2f},{},{},{:.2f},{:.2f}", person.id,
-                   quoted_field(person.label), quoted_field(person.team), person.distance_m, person.mean_mps, person.top_mps,
-                   person.sprints, person.seconds, person.accelerations, person.decelerations, person.average_place.x(),
-                   person.average_place.y());
+                   format::quoted_field(person.label), format::quoted_field(person.team), person.distance_m, person.mean_mps,
+                   person.top_mps, person.sprints, person.seconds, person.accelerations, person.decelerations,
+                   person.average_place.x(), person.average_place.y());
     for (const auto* zones : {&person.zone_s, &person.zone_m}) {
       for (const double value : *zones) fmt::format_to(std::back_inserter(text), ",{:.2f}", value);
     }
@@ -75,31 +75,32 @@ std::string measurement_csv(const Measurement& measured, const MeasureOptions& o
   return text;
 }
 
-void write_report(const Measurement& measured, const MeasureOptions& options, const std::string& title, const std::string& folder) {
+void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options, const std::string& title,
+                  const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error("{}: this folder cannot be made ({})", folder, error.message());
-  MatchReport report;
+  draw::MatchReport report;
   report.title = title;
   report.pitch = options.pitch;
   report.columns = {"distance, m", "mean, m/s", "top, m/s", "sprints", "accelerations", "decelerations"};
   for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
     report.columns.push_back(fmt::format("m at {} m/s", zone_name(options.zones, zone)));
-  for (const PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
+  for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
   if (!measured.teams.empty()) {
-    MatchReport::Table& table = report.tables.emplace_back();
+    draw::MatchReport::Table& table = report.tables.emplace_back();
     table.title = "Teams";
     table.head = {"team", "people", "distance, m", "length, m", "width, m", "hull, m²", "middle x, m", "middle y, m"};
-    for (const TeamMeasure& team : measured.teams) {
+    for (const analyse::TeamMeasure& team : measured.teams) {
       table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
                             fmt::format("{:.1f}", team.length_m), fmt::format("{:.1f}", team.width_m),
                             fmt::format("{:.0f}", team.hull_m2), fmt::format("{:.1f}", team.average_place.x()),
                             fmt::format("{:.1f}", team.average_place.y())});
     }
   }
-  WholeFile file((std::filesystem::path(folder) / "report.html").string());
-  file.write(to_html(report));
+  format::WholeFile file((std::filesystem::path(folder) / "report.html").string());
+  file.write(draw::to_html(report));
   file.finish();
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

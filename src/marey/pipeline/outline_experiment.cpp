@@ -17,7 +17,7 @@
 #include "marey/evaluate/outline_overlap.h"
 #include "marey/pipeline/outline_methods.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kSeen = 0.5;          // share of a person that must be visible for him to count
@@ -80,7 +80,7 @@ class Bends {
   std::array<Vector<2>, 2> path_{Vector<2>::Zero(), Vector<2>::Zero()};
 };
 
-bool lies_within(const Silhouette& silhouette, cv::Size picture) {
+bool lies_within(const simulate::people::Silhouette& silhouette, cv::Size picture) {
   return (silhouette.pixels() & cv::Rect({0, 0}, picture)) == silhouette.pixels();
 }
 
@@ -89,11 +89,11 @@ class Judge {
  public:
   Judge(cv::Size picture, double reach) : picture_(picture), reach_(reach) {}
 
-  void see(int frame, std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
+  void see(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes) {
     auto& true_places = truth_.emplace_back();
     auto& places = named_.emplace_back();
     for (const FollowedShape& shape : shapes) places.push_back({shape.name, shape.centre});
-    for (const TrueFigure& person : truth) {
+    for (const simulate::people::TrueFigure& person : truth) {
       if (person.visible_share < kSeen) continue;
       ++seen_[person.id];
       const Vector<2> centre = person.whole.centre();
@@ -107,7 +107,7 @@ class Judge {
 
   Tally finish() {
     std::map<std::string, bool> lost;
-    for (const LabelFate& fate : judge_labels(truth_, named_, reach_)) lost[fate.marker] = fate.lost();
+    for (const evaluate::LabelFate& fate : evaluate::judge_labels(truth_, named_, reach_)) lost[fate.marker] = fate.lost();
     for (const auto& [id, frames] : seen_) {
       if (frames < kLeastFrames) continue;
       ++tally_.people;
@@ -135,12 +135,13 @@ class Judge {
     return name;
   }
 
-  void score(int frame, const TrueFigure& person, const Vector<2>& centre, Target& target, std::span<const FollowedShape> shapes) {
+  void score(int frame, const simulate::people::TrueFigure& person, const Vector<2>& centre, Target& target,
+             std::span<const FollowedShape> shapes) {
     ++tally_.frames;
     const auto own = std::find_if(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == target.name; });
     if (own == shapes.end()) return;
-    const SilhouetteMask mask{person.whole.mask, person.whole.lattice.tl(), person.whole.samples};
-    const double share = overlap(own->polygon, mask, &picture_).iou();
+    const evaluate::SilhouetteMask mask{person.whole.mask, person.whole.lattice.tl(), person.whole.samples};
+    const double share = evaluate::overlap(own->polygon, mask, &picture_).iou();
     tally_.iou += share;
     if (share <= 0) return;
     ++tally_.followed;
@@ -154,14 +155,14 @@ class Judge {
   double reach_;
   std::map<int, int> seen_;
   std::map<int, Target> targets_;
-  std::vector<std::vector<NamedPlace>> truth_, named_;
+  std::vector<std::vector<evaluate::NamedPlace>> truth_, named_;
   Tally tally_;
 };
 
 std::vector<OutlineCase> cases(int videos) {
   const int few = std::max(1, videos / 10);
-  using S = PeopleSituation;
-  const auto steady = LightChange::steady;
+  using S = simulate::people::PeopleSituation;
+  const auto steady = simulate::people::LightChange::steady;
   return {{"apart, 25 px", S::apart, 25, steady, few, 0, {}},
           {"apart, 60 px", S::apart, 60, steady, few, 0, {}},
           {"partly hidden, 25 px", S::crossing, 25, steady, videos, 0, {}},
@@ -170,11 +171,11 @@ std::vector<OutlineCase> cases(int videos) {
           {"behind a board, 60 px", S::post, 60, steady, videos, 0, {}},
           {"abrupt changes, 60 px", S::abrupt, 60, steady, few, 0, {}},
           {"border, 60 px", S::border, 60, steady, few, 0, {}},
-          {"gradual light, 60 px", S::apart, 60, LightChange::gradual, few, 0, {}},
-          {"sudden light, 60 px", S::apart, 60, LightChange::sudden, few, 0, {}}};
+          {"gradual light, 60 px", S::apart, 60, simulate::people::LightChange::gradual, few, 0, {}},
+          {"sudden light, 60 px", S::apart, 60, simulate::people::LightChange::sudden, few, 0, {}}};
 }
 
-Frame frame_of(const PeopleFilm& film, int index, const Picture& picture) {
+Frame frame_of(const simulate::people::PeopleFilm& film, int index, const Picture& picture) {
   Frame frame;
   frame.index = index;
   frame.time = timestamp_from_seconds(index / film.options().rate_hz);
@@ -189,14 +190,14 @@ struct FilmResult {
 };
 
 FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExperimentOptions& options) {
-  PeopleFilmOptions scene;
+  simulate::people::PeopleFilmOptions scene;
   scene.height_px = what.height_px;
   scene.light = what.light;
-  const PeopleFilm film(what.situation, seed, scene);
+  const simulate::people::PeopleFilm film(what.situation, seed, scene);
   std::array<std::unique_ptr<OutlineMethod>, kMethods.size()> methods{
       silhouette_method(), box_method(), published_method(options.published), marey_method(options.outlines)};
   std::vector<Frame> samples;
-  for (int i = 0; i < PeopleFilm::kEarlier; ++i) samples.push_back(frame_of(film, i, film.render_earlier(i)));
+  for (int i = 0; i < simulate::people::PeopleFilm::kEarlier; ++i) samples.push_back(frame_of(film, i, film.render_earlier(i)));
   for (const auto& method : methods) method->prime(samples);
   samples.clear();
 
@@ -204,12 +205,12 @@ FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExpe
   std::map<int, Bends> true_paths;
   FilmResult result;
   for (int i = 0; i < film.frames(); ++i) {
-    const RenderedFrame rendered = film.render(i);
+    const simulate::people::RenderedFrame rendered = film.render(i);
     const Frame frame = frame_of(film, i, rendered.picture);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       judges[m].see(i, rendered.people, methods[m]->step(frame, methods.front()->detections(), rendered.people));
     }
-    for (const TrueFigure& person : rendered.people) {
+    for (const simulate::people::TrueFigure& person : rendered.people) {
       if (lies_within(person.whole, scene.size)) true_paths[person.id].add(i, person.whole.centre(), result.truth);
     }
   }
@@ -275,4 +276,4 @@ std::string to_text(const OutlineExperiment& experiment) {
   return text;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "marey/simulate/people_film.h"
+#include "marey/simulate/people/people_film.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/contour/published_outline.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// What one way of following outlines made of one case. A person counts while at least half of him can be seen, from the frame in
 /// which the method first has an outline on him; an outline that is missing then overlaps nothing.
@@ -28,9 +28,9 @@ struct OutlineScore {
 /// Clips of one kind.
 struct OutlineCase {
   std::string name;
-  PeopleSituation situation{};
+  simulate::people::PeopleSituation situation{};
   double height_px = 60;
-  LightChange light = LightChange::steady;
+  simulate::people::LightChange light = simulate::people::LightChange::steady;
   int videos = 1;
   int people = 0;
   std::optional<double> true_jitter;  ///< px, as in OutlineScore, of the true silhouettes' centres
@@ -50,8 +50,8 @@ struct OutlineExperimentOptions {
   int videos = 50;  ///< of two people who cross or are hidden; of the other cases, with six people each, a tenth
   std::uint64_t seed = 1;
   std::string only;  ///< names of cases that hold this text; empty for all
-  OutlineOptions outlines;
-  PublishedOptions published;
+  track::contour::OutlineOptions outlines;
+  track::contour::PublishedOptions published;
   std::function<void(int done, int all)> progress;  ///< videos
 };
 
@@ -68,4 +68,4 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
 /// A table a case.
 std::string to_text(const OutlineExperiment& experiment);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "marey/core/error.h"
-#include "marey/detect/people.h"
+#include "marey/core/geometry.h"
+#include "marey/detect/people/people.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/box_filter.h"
 #include "marey/track/tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// Time of this thread alone, whatever else the machine does.
@@ -56,23 +57,24 @@ std::vector<Vector<2>> corners(const Box& box) {
 /// Marey's detector and tracker, with or without OutlineFollower.
 class TrackedMethod final : public OutlineMethod {
  public:
-  explicit TrackedMethod(const std::optional<OutlineOptions>& options) : detector_(make_background()) {
-    TrackerOptions tracker;
+  explicit TrackedMethod(const std::optional<track::contour::OutlineOptions>& options)
+      : detector_(detect::background::make_background()) {
+    track::TrackerOptions tracker;
     tracker.steady_camera = true;
     tracker.reclaim = true;  // nothing is joined afterwards
-    tracker_ = make_tracker<2>(tracker);
+    tracker_ = track::make_tracker<2>(tracker);
     if (options) outlines_.emplace(*options);
   }
 
   void prime(std::span<const Frame> samples) override { detector_.prime(samples); }
 
   std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> /*detections*/,
-                                  std::span<const TrueFigure> /*truth*/) override {
+                                  std::span<const simulate::people::TrueFigure> /*truth*/) override {
     std::vector<Expected> expected;
     for (const Track<2>& track : tracker_->expected(frame.time)) {
       if (track.box) expected.push_back({*track.box});
     }
-    Detections seen = detector_.detect(frame, expected);
+    detect::Detections seen = detector_.detect(frame, expected);
     std::vector<Observation<2>> observations = observations_of(seen.detections);
     if (outlines_) {
       const Stopwatch watch(seconds_);
@@ -100,25 +102,25 @@ class TrackedMethod final : public OutlineMethod {
     if (track.outline) {
       ++targets_;
       const Outline& outline = *track.outline;
-      return FollowedShape{name, outline.centre, ClosedSpline(outline.order, outline.control_points).polygon()};
+      return FollowedShape{name, outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon()};
     }
     const bool detected = track.observation && *track.observation < std::ssize(detections_);
     if (detected && !detections_[static_cast<std::size_t>(*track.observation)].outline.empty()) {
       const auto& polygon = detections_[static_cast<std::size_t>(*track.observation)].outline;
-      return FollowedShape{name, polygon_centroid(polygon).value_or(track.position), polygon};
+      return FollowedShape{name, geometry::polygon_centroid(polygon).value_or(track.position), polygon};
     }
     if (!track.box) return std::nullopt;
     return FollowedShape{name, track.box->centre(), corners(*track.box)};
   }
 
-  PeopleDetector detector_;
-  std::unique_ptr<Tracker<2>> tracker_;
-  std::optional<OutlineFollower> outlines_;
+  detect::people::PeopleDetector detector_;
+  std::unique_ptr<track::Tracker<2>> tracker_;
+  std::optional<track::contour::OutlineFollower> outlines_;
   std::vector<Detection> detections_;
 };
 
 /// The detection on a person who can be seen wholly, where there is one.
-const Detection* detection_of(const TrueFigure& person, std::span<const Detection> detections) {
+const Detection* detection_of(const simulate::people::TrueFigure& person, std::span<const Detection> detections) {
   if (person.visible_share < 0.9) return nullptr;
   const Box box = person.visible.box();
   for (const Detection& detection : detections) {
@@ -128,18 +130,18 @@ const Detection* detection_of(const TrueFigure& person, std::span<const Detectio
 }
 
 /// One filter a person, begun with the first two detections in a row that are on him.
-template <typename Filter>
+template <typename filter::Filter>
 class LoneFilters : public OutlineMethod {
  public:
   std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
-                                  std::span<const TrueFigure> truth) override {
+                                  std::span<const simulate::people::TrueFigure> truth) override {
     {
       const Stopwatch watch(seconds_);
       for (auto& [id, filter] : filters_) advance(filter, frame, detections);
     }
     targets_ += std::ssize(filters_);
     std::map<int, Detection> seen;
-    for (const TrueFigure& person : truth) {
+    for (const simulate::people::TrueFigure& person : truth) {
       if (filters_.contains(person.id)) continue;
       const Detection* now = detection_of(person, detections);
       if (now == nullptr) continue;
@@ -158,9 +160,9 @@ class LoneFilters : public OutlineMethod {
   }
 
  protected:
-  virtual void advance(Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
-  virtual Filter make(const Detection& before, const Detection& now) const = 0;
-  virtual FollowedShape shape_of(const Filter& filter) const = 0;
+  virtual void advance(filter::Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
+  virtual filter::Filter make(const Detection& before, const Detection& now) const = 0;
+  virtual FollowedShape shape_of(const filter::Filter& filter) const = 0;
 
  private:
   void begin(int id, const Detection& before, const Detection& now) {
@@ -171,33 +173,33 @@ class LoneFilters : public OutlineMethod {
     }
   }
 
-  std::map<int, Filter> filters_;
+  std::map<int, filter::Filter> filters_;
   std::map<int, Detection> before_;
 };
 
-class PublishedMethod final : public LoneFilters<PublishedOutline> {
+class PublishedMethod final : public LoneFilters<track::contour::PublishedOutline> {
  public:
-  explicit PublishedMethod(const PublishedOptions& options) : options_(options) {}
+  explicit PublishedMethod(const track::contour::PublishedOptions& options) : options_(options) {}
 
  private:
-  void advance(PublishedOutline& filter, const Frame& frame, std::span<const Detection> /*detections*/) override {
+  void advance(track::contour::PublishedOutline& filter, const Frame& frame, std::span<const Detection> /*detections*/) override {
     filter.step(frame);
   }
-  PublishedOutline make(const Detection& before, const Detection& now) const override {
+  track::contour::PublishedOutline make(const Detection& before, const Detection& now) const override {
     return {options_, before.outline, now.outline};
   }
-  FollowedShape shape_of(const PublishedOutline& filter) const override {
+  FollowedShape shape_of(const track::contour::PublishedOutline& filter) const override {
     const Outline& outline = filter.outline();
-    return {"", outline.centre, ClosedSpline(outline.order, outline.control_points).polygon()};
+    return {"", outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon()};
   }
 
-  PublishedOptions options_;
+  track::contour::PublishedOptions options_;
 };
 
-class BoxMethod final : public LoneFilters<BoxFilter> {
+class BoxMethod final : public LoneFilters<track::contour::BoxFilter> {
  private:
   /// The nearest detection within a box's height of the filter's centre.
-  void advance(BoxFilter& filter, const Frame& /*frame*/, std::span<const Detection> detections) override {
+  void advance(track::contour::BoxFilter& filter, const Frame& /*frame*/, std::span<const Detection> detections) override {
     const Detection* nearest = nullptr;
     double reach = filter.box().height;
     for (const Detection& detection : detections) {
@@ -212,8 +214,12 @@ class BoxMethod final : public LoneFilters<BoxFilter> {
       filter.step(std::nullopt, std::nullopt);
     }
   }
-  BoxFilter make(const Detection& /*before*/, const Detection& now) const override { return {{}, now.box, now.centre}; }
-  FollowedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box())}; }
+  track::contour::BoxFilter make(const Detection& /*before*/, const Detection& now) const override {
+    return {{}, now.box, now.centre};
+  }
+  FollowedShape shape_of(const track::contour::BoxFilter& filter) const override {
+    return {"", filter.centre(), corners(filter.box())};
+  }
 };
 
 }  // namespace
@@ -222,11 +228,11 @@ std::unique_ptr<OutlineMethod> silhouette_method() {
   return std::make_unique<TrackedMethod>(std::nullopt);
 }
 
-std::unique_ptr<OutlineMethod> marey_method(const OutlineOptions& options) {
+std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions& options) {
   return std::make_unique<TrackedMethod>(options);
 }
 
-std::unique_ptr<OutlineMethod> published_method(const PublishedOptions& options) {
+std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options) {
   return std::make_unique<PublishedMethod>(options);
 }
 
@@ -234,4 +240,4 @@ std::unique_ptr<OutlineMethod> box_method() {
   return std::make_unique<BoxMethod>();
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,11 +8,11 @@
 
 #include "marey/core/detection.h"
 #include "marey/core/frame.h"
-#include "marey/simulate/people_renderer.h"
+#include "marey/simulate/people/people_renderer.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/contour/published_outline.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Where a method says that a person is.
 struct FollowedShape {
@@ -32,7 +32,7 @@ class OutlineMethod {
   /// What the method says of a frame. `detections` are those of the first method, for methods that have no detector of their own;
   /// `truth` serves to begin those that have no birth.
   virtual std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
-                                          std::span<const TrueFigure> truth) = 0;
+                                          std::span<const simulate::people::TrueFigure> truth) = 0;
 
   /// Of the last frame, where the method has a detector of its own.
   virtual std::span<const Detection> detections() const { return {}; }
@@ -48,8 +48,8 @@ class OutlineMethod {
 /// Marey's detector and tracker, with the detector's own silhouettes as outlines.
 std::unique_ptr<OutlineMethod> silhouette_method();
 /// The same with followed outlines.
-std::unique_ptr<OutlineMethod> marey_method(const OutlineOptions& options);
-std::unique_ptr<OutlineMethod> published_method(const PublishedOptions& options);
+std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions& options);
+std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options);
 std::unique_ptr<OutlineMethod> box_method();
 
-}  // namespace marey
+}  // namespace marey::pipeline

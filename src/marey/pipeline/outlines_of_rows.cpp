@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// The outline moved with its target from `from` to `to`, and scaled about it.
@@ -19,7 +19,7 @@ std::shared_ptr<const Outline> carried(const Outline& outline, const Vector<2>& 
   return result;
 }
 
-std::shared_ptr<const Outline> with_centre(const std::shared_ptr<const Outline>& outline, const TrackRow& row) {
+std::shared_ptr<const Outline> with_centre(const std::shared_ptr<const Outline>& outline, const track::TrackRow& row) {
   if (!row.has_centre) return outline;
   const Vector<2> centre(row.centre_x, row.centre_y);
   auto result = std::make_shared<Outline>(*outline);
@@ -33,13 +33,13 @@ std::shared_ptr<const Outline> with_centre(const std::shared_ptr<const Outline>&
 
 }  // namespace
 
-void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, std::span<Track<2>> tracks) {
+void OutlinesOfRows::attach(std::int64_t frame, std::span<const track::TrackRow> rows, std::span<Track<2>> tracks) {
   assert(rows.size() == tracks.size());
-  const OutlineRecording::Frame& outlines = recording_.at(frame);
+  const track::OutlineRecording::Frame& outlines = recording_.at(frame);
   std::swap(last_, before_);
   last_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const TrackRow& row = rows[i];
+    const track::TrackRow& row = rows[i];
     const Vector<2> place(row.x, row.y);
     if (row.observed()) {
       const auto found = outlines.find(row.first_id);
@@ -55,4 +55,4 @@ void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, 
   }
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -9,7 +9,7 @@
 #include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Gives the rows of a second pass the outlines of the first. A row that was seen keeps the outline of that frame, its centre
 /// smoothed; one that was filled in gets the last outline of the same target, moved and scaled with it, and `held`. Curves that
@@ -17,10 +17,10 @@ namespace marey {
 class OutlinesOfRows {
  public:
   /// The recording must outlive it.
-  explicit OutlinesOfRows(OutlineRecording& recording) : recording_(recording) {}
+  explicit OutlinesOfRows(track::OutlineRecording& recording) : recording_(recording) {}
 
   /// `rows` are those of `frame`, and `tracks` the same as tracks, in the same order. Frames grow from call to call.
-  void attach(std::int64_t frame, std::span<const TrackRow> rows, std::span<Track<2>> tracks);
+  void attach(std::int64_t frame, std::span<const track::TrackRow> rows, std::span<Track<2>> tracks);
 
  private:
   struct Last {
@@ -29,8 +29,8 @@ class OutlinesOfRows {
     double height = 0;  // of its box
   };
 
-  OutlineRecording& recording_;
+  track::OutlineRecording& recording_;
   std::map<std::int32_t, Last> last_, before_;  // by id; of those in the frame, and in the one before
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -4,7 +4,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 Track<2> track_at(int id, double x) {
@@ -19,8 +19,8 @@ Track<2> track_at(int id, double x) {
   return track;
 }
 
-TrackRow row_at(int frame, int id, int first_id, double x, double height, Track<2>::State state) {
-  TrackRow row;
+track::TrackRow row_at(int frame, int id, int first_id, double x, double height, Track<2>::State state) {
+  track::TrackRow row;
   row.frame = frame;
   row.id = id;
   row.first_id = first_id;
@@ -34,7 +34,7 @@ TrackRow row_at(int frame, int id, int first_id, double x, double height, Track<
 
 constexpr auto kSeen = Track<2>::State::observed, kFilled = Track<2>::State::predicted;
 
-std::shared_ptr<const Outline> attached(OutlinesOfRows& outlines, const TrackRow& row) {
+std::shared_ptr<const Outline> attached(OutlinesOfRows& outlines, const track::TrackRow& row) {
   std::vector<Track<2>> tracks(1);
   outlines.attach(row.frame, std::vector{row}, tracks);
   return tracks[0].outline;
@@ -42,7 +42,7 @@ std::shared_ptr<const Outline> attached(OutlinesOfRows& outlines, const TrackRow
 
 TEST(OutlinesOfRows, FollowTheNumbersThatTrackletsHadBeforeTheyWereJoined) {
   const test::TemporaryFolder folder;
-  OutlineRecording recording(folder / "x", true);
+  track::OutlineRecording recording(folder / "x", true);
   recording.add(0, std::vector{track_at(3, 10), track_at(5, 100)});
   recording.add(4, std::vector{track_at(3, 200), track_at(8, 50)});
   OutlinesOfRows outlines(recording);
@@ -52,7 +52,7 @@ TEST(OutlinesOfRows, FollowTheNumbersThatTrackletsHadBeforeTheyWereJoined) {
 
 TEST(OutlinesOfRows, InAGapTheLastOutlineMovesAndGrowsWithItsRow) {
   const test::TemporaryFolder folder;
-  OutlineRecording recording(folder / "x", true);
+  track::OutlineRecording recording(folder / "x", true);
   recording.add(0, std::vector{track_at(3, 10)});
   recording.add(2, std::vector{track_at(3, 500)});  // where the first pass coasted to: not believed
   OutlinesOfRows outlines(recording);
@@ -69,7 +69,7 @@ TEST(OutlinesOfRows, InAGapTheLastOutlineMovesAndGrowsWithItsRow) {
 
 TEST(OutlinesOfRows, ARowWithoutAnOutlineGetsNone) {
   const test::TemporaryFolder folder;
-  OutlineRecording recording(folder / "x", false);
+  track::OutlineRecording recording(folder / "x", false);
   recording.add(0, std::vector{track_at(3, 10)});
   OutlinesOfRows outlines(recording);
   EXPECT_EQ(attached(outlines, row_at(0, 1, 4, 11, 16, kSeen)), nullptr);
@@ -77,4 +77,4 @@ TEST(OutlinesOfRows, ARowWithoutAnOutlineGetsNone) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -9,7 +9,7 @@
 #include "marey/source/open_source.h"
 #include "marey/source/region_source.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 // A detector learns the empty scene from this many pictures, spread over this long a beginning.
@@ -33,21 +33,22 @@ std::vector<Frame> sample(Source& source) {
 }  // namespace
 
 std::unique_ptr<Source> open_pictures(const PeopleInput& input) {
-  auto source = open_source(input.pictures, input.rate_hz);
-  return input.region ? crop(std::move(source), *input.region) : std::move(source);
+  auto source = source::open_source(input.pictures, input.rate_hz);
+  return input.region ? source::crop(std::move(source), *input.region) : std::move(source);
 }
 
-PeopleEyes open_eyes(const PeopleInput& input, const PeopleEyesOptions& options) {
+DetectionStage open_detection_stage(const PeopleInput& input, const DetectionStageOptions& options) {
   if (!input.detections.empty()) {
     DetectionsInput known = open_detections(input.detections, input.rate_hz);
     return {std::move(known.source), std::move(known.detector)};
   }
-  auto people = std::make_unique<PeopleDetector>(make_background(options.background), options.people);
-  PeopleEyes eyes{open_pictures(input), nullptr, people.get()};
+  auto people =
+      std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
+  DetectionStage eyes{open_pictures(input), nullptr, people.get()};
   eyes.detector = std::move(people);
   if (options.read_ahead) eyes.detector->prime(sample(*open_pictures(input)));
   eyes.source = read_ahead(std::move(eyes.source));
   return eyes;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "marey/core/source.h"
-#include "marey/detect/background.h"
-#include "marey/detect/people.h"
+#include "marey/detect/background/background.h"
+#include "marey/detect/people/people.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Where people are looked for: in pictures, or in what another program detected. One of the two paths is given.
 struct PeopleInput {
@@ -19,15 +19,15 @@ struct PeopleInput {
 };
 
 /// Where frames come from, and what finds people in them.
-struct PeopleEyes {
-  std::unique_ptr<Source> source;          ///< pictures are decoded ahead, on a thread of its own
-  std::unique_ptr<Detector> detector;      ///< `prime` was called, where it was asked for
-  const PeopleDetector* people = nullptr;  ///< the same detector, where it is Marey's own
+struct DetectionStage {
+  std::unique_ptr<Source> source;                          ///< pictures are decoded ahead, on a thread of its own
+  std::unique_ptr<detect::Detector> detector;              ///< `prime` was called, where it was asked for
+  const detect::people::PeopleDetector* people = nullptr;  ///< the same detector, where it is Marey's own
 };
 
-struct PeopleEyesOptions {
-  BackgroundOptions background = {};
-  PeopleOptions people = {};
+struct DetectionStageOptions {
+  detect::background::BackgroundOptions background = {};
+  detect::people::PeopleOptions people = {};
   bool read_ahead = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
 };
 
@@ -35,6 +35,6 @@ struct PeopleEyesOptions {
 std::unique_ptr<Source> open_pictures(const PeopleInput& input);
 
 /// Opens the input. Throws Error where it cannot be read.
-PeopleEyes open_eyes(const PeopleInput& input, const PeopleEyesOptions& options);
+DetectionStage open_detection_stage(const PeopleInput& input, const DetectionStageOptions& options);
 
-}  // namespace marey
+}  // namespace marey::pipeline

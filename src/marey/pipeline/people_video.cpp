@@ -9,7 +9,7 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/format/whole_file.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// COCO's uncompressed run lengths of a mask: columns from the left, each from the top; background first, foreground next, and so
@@ -42,9 +42,9 @@ class TruthFiles {
     positions_.write("frame,time,id,team,x,y,foot_x,foot_y,visible\n");
   }
 
-  void write(int frame, double time, const TrueFigure& person, cv::Size size) {
+  void write(int frame, double time, const simulate::people::TrueFigure& person, cv::Size size) {
     const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
-    const Box box = intersection(person.whole.box(), picture);
+    const Box box = geometry::intersection(person.whole.box(), picture);
     if (box.empty()) return;
     boxes_.write(fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.id, box.left + 1, box.top + 1,
                              box.width, box.height, person.visible_share));
@@ -63,25 +63,26 @@ class TruthFiles {
   }
 
  private:
-  WholeFile boxes_, positions_, silhouettes_;
+  format::WholeFile boxes_, positions_, silhouettes_;
 };
 
 }  // namespace
 
-void film_people(const PeopleFilm& film, const std::string& folder, const std::function<void(int, int)>& progress) {
+void film_people(const simulate::people::PeopleFilm& film, const std::string& folder,
+                 const std::function<void(int, int)>& progress) {
   const std::filesystem::path place = folder;
-  const PeopleFilmOptions& options = film.options();
-  MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, MovieWriter::Quality::to_measure);
+  const simulate::people::PeopleFilmOptions& options = film.options();
+  draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
   TruthFiles truth(place);
   for (int i = 0; i < film.frames(); ++i) {
     const double time = i / options.rate_hz;
-    const RenderedFrame frame = film.render(i);
+    const simulate::people::RenderedFrame frame = film.render(i);
     movie.write(frame.picture, timestamp_from_seconds(time));
-    for (const TrueFigure& person : frame.people) truth.write(i, time, person, options.size);
+    for (const simulate::people::TrueFigure& person : frame.people) truth.write(i, time, person, options.size);
     if (progress) progress(i + 1, film.frames());
   }
   movie.finish();
   truth.finish();
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

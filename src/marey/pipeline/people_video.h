@@ -3,9 +3,9 @@
 #include <functional>
 #include <string>
 
-#include "marey/simulate/people_film.h"
+#include "marey/simulate/people/people_film.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Films people into a folder, which must exist:
 ///   video.mp4          H.264, hardly compressed
@@ -16,6 +16,7 @@ namespace marey {
 ///   silhouettes.jsonl  an object a person and frame: frame, id, size [height, width], and the silhouettes `whole` and `visible`
 ///                      within the picture as COCO's run lengths (column by column, background first)
 /// `progress` may be empty. Throws Error where a file cannot be written.
-void film_people(const PeopleFilm& film, const std::string& folder, const std::function<void(int done, int all)>& progress = {});
+void film_people(const simulate::people::PeopleFilm& film, const std::string& folder,
+                 const std::function<void(int done, int all)>& progress = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,7 +8,7 @@
 #include "marey/draw/trajectory_plot.h"
 #include "marey/format/whole_file.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// A plot of trajectories that becomes a file at the end of a run; that it can be written shows at the beginning.
 class PlotFile {
@@ -25,9 +25,9 @@ class PlotFile {
   }
 
  private:
-  WholeFile file_;
+  format::WholeFile file_;
   std::string title_;
-  TrajectoryPlot plot_;
+  draw::TrajectoryPlot plot_;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

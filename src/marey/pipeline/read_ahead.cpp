@@ -9,7 +9,7 @@
 
 #include <tbb/concurrent_queue.h>
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 class ReadAhead final : public Source {
@@ -76,4 +76,4 @@ std::unique_ptr<Source> read_ahead(std::unique_ptr<Source> source, int depth) {
   return std::make_unique<ReadAhead>(std::move(source), depth);
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -4,10 +4,10 @@
 
 #include "marey/core/source.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// The same source, read on a thread of its own, so that decoding and looking at frames go on side by side. At most `depth`
 /// frames wait. Frames and their order do not depend on the threads.
 std::unique_ptr<Source> read_ahead(std::unique_ptr<Source> source, int depth = 8);
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// Frames numbered from 0; tells how many were asked for, and fails after `fails_after` where that is given.
@@ -77,4 +77,4 @@ TEST(ReadAhead, AFailureReachesTheReader) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

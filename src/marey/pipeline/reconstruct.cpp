@@ -11,15 +11,15 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/motion.h"
-#include "marey/format/take_file.h"
+#include "marey/format/motion/motion.h"
+#include "marey/format/take/take_file.h"
 #include "marey/pipeline/blob_feed.h"
 #include "marey/pipeline/gap_filler.h"
 #include "marey/pipeline/instants.h"
 #include "marey/pipeline/learned_noise.h"
 #include "marey/pipeline/set_labels.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
@@ -47,10 +47,10 @@ class Reconstruction {
         filler_(frames_in(options.fill_s), frames_in(std::min(options.predict_s, options.fill_s))) {
     if (instants_.rate_hz() <= 0) throw Error("not one frame could be read from any camera");
     choose_cameras();
-    RosterTrackerOptions tracker = options.tracker;
+    track::RosterTrackerOptions tracker = options.tracker;
     if (!options.set.has_places()) tracker.labels = options.set.labels;
-    tracker_ = make_roster_tracker<3>(tracker);
-    writer_ = std::make_unique<TakeWriter>(
+    tracker_ = track::make_roster_tracker<3>(tracker);
+    writer_ = std::make_unique<format::take::TakeWriter>(
         out,
         TakeHeader{.name = out, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = instants_.rate_hz(), .rig = rig_});
   }
@@ -84,7 +84,7 @@ class Reconstruction {
         summary_.warnings.push_back(fmt::format("camera \"{}\" has no calibration and is left out", camera.name));
       }
     }
-    CorrespondOptions correspond = options_.correspond;
+    reconstruct::CorrespondOptions correspond = options_.correspond;
     correspond.noise_px = noise_.px();
     if (cameras.size() == 2) correspond.fewest_rays = 2;
     corresponder_.emplace(std::move(cameras), correspond);
@@ -100,7 +100,7 @@ class Reconstruction {
     }
     const auto begin = Clock::now();
     expect(instant.time);
-    const Correspondences* found = &corresponder_->match(seen_, expected_);
+    const reconstruct::Correspondences* found = &corresponder_->match(seen_, expected_);
     if (noise_.learn(*found)) {
       corresponder_->set_noise(noise_.px());
       if (summary_.frames == 0) found = &corresponder_->match(seen_, expected_);
@@ -108,7 +108,7 @@ class Reconstruction {
     const auto matched = Clock::now();
     corresponding_.add(std::chrono::duration<double>(matched - begin).count());
     points_.clear();
-    for (const Placed& placed : found->points) {
+    for (const reconstruct::Placed& placed : found->points) {
       Observation<3> point;
       point.value = placed.point.position;
       point.covariance = placed.point.covariance;
@@ -131,7 +131,7 @@ class Reconstruction {
     }
   }
 
-  void record(const Instant& instant, const Correspondences& found, std::span<const Track<3>> tracks) {
+  void record(const Instant& instant, const reconstruct::Correspondences& found, std::span<const Track<3>> tracks) {
     TakeFrame frame{.index = instant.index, .time = instant.time, .observations = {}, .points = {}};
     for (const Observation<2>& blob : seen_) {
       frame.observations.push_back({.camera = CameraId{rig_number_[static_cast<std::size_t>(number(blob.camera))]},
@@ -144,7 +144,7 @@ class Reconstruction {
       if (!track.confirmed) continue;
       name(track);
       if (!track.observation) continue;
-      const Placed& placed = found.points[static_cast<std::size_t>(*track.observation)];
+      const reconstruct::Placed& placed = found.points[static_cast<std::size_t>(*track.observation)];
       TakePoint point;
       point.track = track.id;
       point.position = placed.point.position;
@@ -222,9 +222,9 @@ class Reconstruction {
   LearnedNoise noise_;
   SetLabels labels_;
   GapFiller filler_;
-  std::optional<Corresponder> corresponder_;
-  std::unique_ptr<Tracker<3>> tracker_;
-  std::unique_ptr<TakeWriter> writer_;
+  std::optional<reconstruct::Corresponder> corresponder_;
+  std::unique_ptr<track::Tracker<3>> tracker_;
+  std::unique_ptr<format::take::TakeWriter> writer_;
   ReconstructSummary summary_;
   StageTimes corresponding_, tracking_, writing_, chain_;
   double squares_ = 0;
@@ -245,18 +245,19 @@ struct ForAWhile {
 };
 
 /// Most formats begin with what is known only at the end: the take is read twice.
-void rewrite(const std::string& take, const std::string& out, MotionFormat format) {
-  const MotionPlan plan = plan_of(*open_motion(take, MotionFormat::take), take);
-  const auto reader = open_motion(take, MotionFormat::take);
-  const auto writer = create_motion(out, format, plan);
+void rewrite(const std::string& take, const std::string& out, format::motion::MotionFormat format) {
+  const format::motion::MotionPlan plan =
+      format::motion::plan_of(*format::motion::open_motion(take, format::motion::MotionFormat::take), take);
+  const auto reader = format::motion::open_motion(take, format::motion::MotionFormat::take);
+  const auto writer = format::motion::create_motion(out, format, plan);
   while (const auto frame = reader->next()) writer->write(*frame);
   writer->finish();
 }
 
 }  // namespace
 
-RosterTrackerOptions space_tracker_options() {
-  return {.filter = KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4},
+track::RosterTrackerOptions space_tracker_options() {
+  return {.filter = filter::KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4},
           .labels = {},
           .max_speed = 15,
           .marker_width = 0.02,
@@ -266,13 +267,13 @@ RosterTrackerOptions space_tracker_options() {
 
 ReconstructSummary reconstruct(Rig rig, const std::string& observations, const std::string& out, const ReconstructOptions& options,
                                const RunHooks& hooks) {
-  const auto format = motion_format_of_name(out);
+  const auto format = format::motion::motion_format_of_name(out);
   if (!format) throw Error("{}: its ending is of no format; .marey is a take, {} are others", out, ".c3d, .trc and .csv");
-  if (*format == MotionFormat::take) return Reconstruction(std::move(rig), observations, out, options, hooks)();
+  if (*format == format::motion::MotionFormat::take) return Reconstruction(std::move(rig), observations, out, options, hooks)();
   const ForAWhile take{out + ".part.marey"};
   ReconstructSummary summary = Reconstruction(std::move(rig), observations, take.path, options, hooks)();
   rewrite(take.path, out, *format);
   return summary;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

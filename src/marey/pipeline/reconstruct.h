@@ -6,24 +6,24 @@
 #include <vector>
 
 #include "marey/core/rig.h"
-#include "marey/detect/marker_detector.h"
-#include "marey/format/marker_set.h"
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/format/motion/marker_set.h"
 #include "marey/pipeline/run.h"
 #include "marey/pipeline/stage_times.h"
 #include "marey/reconstruct/correspond.h"
 #include "marey/track/roster_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// What fits markers in space: m.
-RosterTrackerOptions space_tracker_options();
+track::RosterTrackerOptions space_tracker_options();
 
 struct ReconstructOptions {
-  MarkerOptions markers;
-  CorrespondOptions correspond = {};
+  detect::markers::MarkerOptions markers;
+  reconstruct::CorrespondOptions correspond = {};
   std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
-  RosterTrackerOptions tracker = space_tracker_options();
-  MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
+  track::RosterTrackerOptions tracker = space_tracker_options();
+  format::motion::MarkerSet set;  ///< labels, with places where the markers keep their distances at the beginning; may be empty
   std::optional<double> rate_hz;  ///< of sources and observations that do not tell theirs
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is told as it was expected; ≤ fill_s
@@ -65,4 +65,4 @@ struct ReconstructSummary {
 ReconstructSummary reconstruct(Rig rig, const std::string& observations, const std::string& out,
                                const ReconstructOptions& options = {}, const RunHooks& hooks = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -13,18 +13,18 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/format/rig_file.h"
-#include "marey/format/take_file.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/take/take_file.h"
 #include "marey/pipeline/gap_filler.h"
 #include "marey/pipeline/instants.h"
 #include "marey/pipeline/room_files.h"
 #include "marey/reconstruct/layout.h"
-#include "marey/simulate/room.h"
+#include "marey/simulate/room/room.h"
 
 #include "support/data.h"
 #include "support/files.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 struct Score {
@@ -42,9 +42,9 @@ struct Score {
 };
 
 /// Every point of a take against the nearest true marker at its time.
-Score score_of(const std::string& path, const RoomScene& scene) {
+Score score_of(const std::string& path, const simulate::room::RoomScene& scene) {
   Score score;
-  TakeReader reader(path);
+  format::take::TakeReader reader(path);
   while (const auto frame = reader.next()) {
     const auto truth = scene.points(seconds(frame->time));
     for (const TakePoint& point : frame->points) {
@@ -68,10 +68,10 @@ Score score_of(const std::string& path, const RoomScene& scene) {
 
 TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   const test::TemporaryFolder folder;
-  RoomOptions room{.markers = 30, .frames = 600, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.02, .bump = {}};
-  const RoomScene scene(room);
+  simulate::room::RoomOptions room{.markers = 30, .frames = 600, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.02, .bump = {}};
+  const simulate::room::RoomScene scene(room);
   write_room(scene, folder.path());
-  const auto summary = reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   EXPECT_EQ(summary.frames, 600);
   EXPECT_NEAR(summary.noise_px, 0.1, 0.02);
   EXPECT_EQ(summary.stages.size(), 6);
@@ -91,9 +91,9 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
 
 TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
   const test::TemporaryFolder folder;
-  const RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .offset_s = 0.02, .bump = {}});
+  const simulate::room::RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .offset_s = 0.02, .bump = {}});
   write_room(scene, folder.path());
-  reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   Score score = score_of(folder / "walk.marey", scene);
   EXPECT_GT(score.points, 0.85 * 240 * 20);
   EXPECT_LT(score.median(), 0.001);
@@ -101,7 +101,7 @@ TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
 
 TEST(Reconstruct, ACameraThatStopsCostsOnlyItsRays) {
   const test::TemporaryFolder folder;
-  const RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .bump = {}});
+  const simulate::room::RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .bump = {}});
   write_room(scene, folder.path());
   {
     std::ifstream all(folder / "observations.csv");
@@ -111,8 +111,8 @@ TEST(Reconstruct, ACameraThatStopsCostsOnlyItsRays) {
       some << line << '\n';
     }
   }
-  reconstruct(read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.marey");
-  reconstruct(read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.c3d");
+  reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.marey");
+  reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "some.csv", folder / "walk.c3d");
   EXPECT_GT(std::filesystem::file_size(folder / "walk.c3d"), 240 * 20 * 16);
   EXPECT_FALSE(std::filesystem::exists(folder / "walk.c3d.part.marey"));
   Score score = score_of(folder / "walk.marey", scene);
@@ -122,15 +122,17 @@ TEST(Reconstruct, ACameraThatStopsCostsOnlyItsRays) {
 
 TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
   const test::TemporaryFolder folder;
-  const RoomScene scene({.motion = RoomMotion::still, .markers = 20, .frames = 60, .occlusion = false, .bump = {}});
+  const simulate::room::RoomScene scene(
+      {.motion = simulate::room::RoomMotion::still, .markers = 20, .frames = 60, .occlusion = false, .bump = {}});
   write_room(scene, folder.path());
   ReconstructOptions options;
   options.set.labels = scene.labels();
-  const Rigid3 turned{rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
+  const Rigid3 turned{geometry::rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
   for (const Vector<3>& place : scene.points(0)) options.set.places.push_back(turned * place);
-  const auto summary = reconstruct(read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "still.marey", options);
+  const auto summary =
+      reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "still.marey", options);
   EXPECT_EQ(summary.labelled, 20);
-  TakeReader reader(folder / "still.marey");
+  format::take::TakeReader reader(folder / "still.marey");
   const auto frame = reader.next().value();
   const auto tracks = reader.tracks();
   const auto truth = scene.points(0);
@@ -145,9 +147,9 @@ TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
 
 TEST(Reconstruct, RefusesWhatCannotBe) {
   const test::TemporaryFolder folder;
-  const RoomScene scene({.cameras = 2, .markers = 4, .frames = 3, .bump = {}});
+  const simulate::room::RoomScene scene({.cameras = 2, .markers = 4, .frames = 3, .bump = {}});
   write_room(scene, folder.path());
-  Rig rig = read_rig(folder / "rig.toml");
+  Rig rig = format::rig::read_rig(folder / "rig.toml");
   EXPECT_THROW(reconstruct(rig, "", folder / "a.marey"), Error) << "no sources";
   EXPECT_THROW(reconstruct(rig, folder / "observations.csv", folder / "a.docx"), Error);
   EXPECT_THROW(reconstruct(rig, folder / "nothing.csv", folder / "a.marey"), Error);
@@ -199,7 +201,7 @@ Rig rig_of_wing(const std::string& folder) {
     for (double value = 0; text >> value;) list.push_back(value);
     return list;
   };
-  BrownLens lens;
+  geometry::BrownLens lens;
   Rigid3 pose;
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("focal_px")) lens.focal = Vector<2>::Constant(numbers(line)[0]);
@@ -275,7 +277,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   EXPECT_EQ(summary.frames, 6);
   EXPECT_EQ(summary.labelled, 16);
 
-  TakeReader reader(folder / "wing.marey");
+  format::take::TakeReader reader(folder / "wing.marey");
   std::map<TrackId, int> marker_of;
   for (const TakeTrack& track : reader.tracks()) {
     if (!track.label.empty()) marker_of[track.id] = std::stoi(track.label) - 1;
@@ -302,7 +304,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
       }
     }
     ASSERT_EQ(markers.size(), 16) << "at " << frame->index;
-    const Rigid3 fit = rigid_fit(from, to);
+    const Rigid3 fit = reconstruct::rigid_fit(from, to);
     for (std::size_t i = 0; i < from.size(); ++i) {
       places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
     }
@@ -319,4 +321,4 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

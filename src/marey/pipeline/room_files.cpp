@@ -10,25 +10,25 @@
 #include "marey/draw/canvas.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/rig/rig_file.h"
 #include "marey/format/whole_file.h"
-#include "marey/simulate/discs.h"
+#include "marey/simulate/markers/discs.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
-SeenFrame seen_of(const RoomFrame& frame, const std::vector<std::string>& labels) {
-  SeenFrame seen;
+format::SeenFrame seen_of(const simulate::room::RoomFrame& frame, const std::vector<std::string>& labels) {
+  format::SeenFrame seen;
   seen.frame = frame.index;
   for (int camera = 0; camera < std::ssize(frame.seen); ++camera) {
-    for (const RoomBlob& blob : frame.seen[static_cast<std::size_t>(camera)]) {
+    for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(camera)]) {
       seen.points.push_back({CameraId{camera}, blob.pixel, blob.marker ? labels[static_cast<std::size_t>(*blob.marker)] : ""});
     }
   }
   return seen;
 }
 
-void append_truth(std::string& text, const RoomScene& scene, const RoomFrame& frame) {
+void append_truth(std::string& text, const simulate::room::RoomScene& scene, const simulate::room::RoomFrame& frame) {
   std::vector<int> cameras(frame.points.size(), 0);
   for (int camera = 0; camera < scene.options().cameras; ++camera) {
     const std::vector<bool> visible = scene.visible(camera, frame.time_s, frame.points);
@@ -44,18 +44,18 @@ void append_truth(std::string& text, const RoomScene& scene, const RoomFrame& fr
 /// One film a camera. Blobs are drawn at their exact places: the pixels bring the noise.
 class Films {
  public:
-  Films(const RoomScene& scene, const std::filesystem::path& folder, const RoomFilesOptions& options)
+  Films(const simulate::room::RoomScene& scene, const std::filesystem::path& folder, const RoomFilesOptions& options)
       : scene_(exact(scene.options())), options_(options) {
     for (const RigCamera& camera : scene_.rig().cameras) {
-      movies_.push_back(std::make_unique<MovieWriter>((folder / (camera.name + ".mp4")).string(), *camera.size,
-                                                      scene_.options().rate_hz, MovieWriter::Quality::to_measure));
+      movies_.push_back(std::make_unique<draw::MovieWriter>((folder / (camera.name + ".mp4")).string(), *camera.size,
+                                                            scene_.options().rate_hz, draw::MovieWriter::Quality::to_measure));
     }
   }
 
   void write(std::int64_t index) {
-    const RoomFrame frame = scene_.frame(index);
+    const simulate::room::RoomFrame frame = scene_.frame(index);
     for (std::size_t camera = 0; camera < movies_.size(); ++camera) {
-      movies_[camera]->write(Canvas(Picture(render(frame, camera))).take(), timestamp_from_seconds(frame.time_s));
+      movies_[camera]->write(draw::Canvas(Picture(render(frame, camera))).take(), timestamp_from_seconds(frame.time_s));
     }
   }
 
@@ -64,30 +64,30 @@ class Films {
   }
 
  private:
-  static RoomOptions exact(RoomOptions options) {
+  static simulate::room::RoomOptions exact(simulate::room::RoomOptions options) {
     options.noise_px = 0;
     options.merge_px = 0;  // discs that touch are one by themselves
     return options;
   }
 
-  cv::Mat render(const RoomFrame& frame, std::size_t camera) const {
+  cv::Mat render(const simulate::room::RoomFrame& frame, std::size_t camera) const {
     constexpr float kGround = 22;  // grey level
     const RigCamera& eye = scene_.rig_at(frame.time_s).cameras[camera];
     const Vector<3> centre = eye.camera()->centre();
-    std::vector<Disc> discs;
-    for (const RoomBlob& blob : frame.seen[camera]) {
+    std::vector<simulate::markers::Disc> discs;
+    for (const simulate::room::RoomBlob& blob : frame.seen[camera]) {
       const double away = blob.marker ? (frame.points[static_cast<std::size_t>(*blob.marker)] - centre).norm() : 4.0;
-      discs.push_back({blob.pixel, std::max(0.6, options_.marker_radius * focal_of(*eye.lens).x() / away)});
+      discs.push_back({blob.pixel, std::max(0.6, options_.marker_radius * geometry::focal_of(*eye.lens).x() / away)});
     }
     cv::Mat image(*eye.size, CV_32FC1, cv::Scalar(kGround));
-    draw_discs(image, discs);
+    simulate::markers::draw_discs(image, discs);
     const auto seed = scene_.options().seed * 1000003u + static_cast<std::uint64_t>(frame.index) * 64 + camera;
-    return expose(image, options_.picture_noise, seed);
+    return simulate::markers::expose(image, options_.picture_noise, seed);
   }
 
-  RoomScene scene_;
+  simulate::room::RoomScene scene_;
   RoomFilesOptions options_;
-  std::vector<std::unique_ptr<MovieWriter>> movies_;
+  std::vector<std::unique_ptr<draw::MovieWriter>> movies_;
 };
 
 Rig with_sources(Rig rig, bool videos) {
@@ -95,8 +95,8 @@ Rig with_sources(Rig rig, bool videos) {
   return rig;
 }
 
-void write_labels(const RoomScene& scene, const std::filesystem::path& folder) {
-  WholeFile file((folder / "labels.csv").string());
+void write_labels(const simulate::room::RoomScene& scene, const std::filesystem::path& folder) {
+  format::WholeFile file((folder / "labels.csv").string());
   file.write("label,x,y,z\n");
   const std::vector<Vector<3>> points = scene.points(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -105,10 +105,10 @@ void write_labels(const RoomScene& scene, const std::filesystem::path& folder) {
   file.finish();
 }
 
-void write_rigs(const RoomScene& scene, const std::filesystem::path& folder, bool videos) {
+void write_rigs(const simulate::room::RoomScene& scene, const std::filesystem::path& folder, bool videos) {
   const auto write = [&](const Rig& rig, const char* name) {
-    WholeFile file((folder / name).string());
-    file.write(rig_text(rig));
+    format::WholeFile file((folder / name).string());
+    file.write(format::rig::rig_text(rig));
     file.finish();
   };
   Rig truth = with_sources(scene.rig(), videos);
@@ -126,21 +126,21 @@ void write_rigs(const RoomScene& scene, const std::filesystem::path& folder, boo
 
 }  // namespace
 
-void write_room(const RoomScene& scene, const std::string& folder, const RoomFilesOptions& options,
+void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options,
                 const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const std::filesystem::path place = folder;
   write_rigs(scene, place, options.videos);
   write_labels(scene, place);
-  ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
-  ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
-  WholeFile truth((place / "truth.csv").string());
+  format::ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
+  format::ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
+  format::WholeFile truth((place / "truth.csv").string());
   truth.write("frame,time,label,x,y,z,cameras\n");
   std::optional<Films> films;
   if (options.videos) films.emplace(scene, place, options);
   std::string text;
   for (std::int64_t i = 0; i < scene.options().frames; ++i) {
-    const RoomFrame frame = scene.frame(i);
-    const SeenFrame seen = seen_of(frame, scene.labels());
+    const simulate::room::RoomFrame frame = scene.frame(i);
+    const format::SeenFrame seen = seen_of(frame, scene.labels());
     observations.write(seen);
     blobs.write(seen);
     text.clear();
@@ -155,4 +155,4 @@ void write_room(const RoomScene& scene, const std::string& folder, const RoomFil
   if (films) films->finish();
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

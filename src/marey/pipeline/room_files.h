@@ -3,9 +3,9 @@
 #include <functional>
 #include <string>
 
-#include "marey/simulate/room.h"
+#include "marey/simulate/room/room.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct RoomFilesOptions {
   bool videos = false;           ///< renders camN.mp4, and makes it each camera's source
@@ -21,7 +21,7 @@ struct RoomFilesOptions {
 ///   labels.csv        label,x,y,z: where each marker is at the beginning, m
 ///   truth.csv         frame,time,label,x,y,z,cameras: m, by the rig's clock; by how many cameras it can be seen
 /// Memory does not grow with the length. `progress` may be empty. Throws Error where a file cannot be written.
-void write_room(const RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},
+void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},
                 const std::function<void(std::int64_t done, std::int64_t all)>& progress = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

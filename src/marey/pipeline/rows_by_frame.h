@@ -10,14 +10,14 @@
 #include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Hands out a table of rows, sorted by frame, frame by frame. The table must outlive it.
 class RowsByFrame {
  public:
   /// `labels[id]` is the label of track `id`, where there is one. With `outlines`, which must outlive it, tracks have theirs.
-  explicit RowsByFrame(const std::vector<TrackRow>& rows, std::vector<std::string> labels = {},
-                       OutlineRecording* outlines = nullptr)
+  explicit RowsByFrame(const std::vector<track::TrackRow>& rows, std::vector<std::string> labels = {},
+                       track::OutlineRecording* outlines = nullptr)
       : at_(rows.begin()), end_(rows.end()), labels_(std::move(labels)) {
     if (outlines != nullptr) outlines_.emplace(*outlines);
   }
@@ -33,7 +33,7 @@ class RowsByFrame {
   }
 
  private:
-  Track<2> track_of(const TrackRow& row) const {
+  Track<2> track_of(const track::TrackRow& row) const {
     Track<2> track;
     track.id = TrackId{row.id};
     if (const auto id = static_cast<std::size_t>(row.id); id < labels_.size()) track.label = labels_[id];
@@ -45,10 +45,10 @@ class RowsByFrame {
     return track;
   }
 
-  std::vector<TrackRow>::const_iterator at_, end_;
+  std::vector<track::TrackRow>::const_iterator at_, end_;
   std::vector<std::string> labels_;
   std::optional<OutlinesOfRows> outlines_;
   std::vector<Track<2>> tracks_;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

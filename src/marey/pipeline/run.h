@@ -5,14 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "marey/format/track_file.h"
+#include "marey/format/tracks/track_file.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Where the results of a run go.
 struct TrackOutput {
   std::string tracks;
-  TrackFormat format = TrackFormat::mot;
+  format::tracks::TrackFormat format = format::tracks::TrackFormat::mot;
   std::string overlay = {};  ///< a film with the tracks drawn into the pictures; empty for none
   std::string plot = {};     ///< an SVG picture of the ways that were gone, in the coordinates of the image; empty for none
 };
@@ -36,4 +36,4 @@ struct RunHooks {
   }
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

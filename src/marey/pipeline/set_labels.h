@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "marey/core/track.h"
-#include "marey/format/marker_set.h"
+#include "marey/format/motion/marker_set.h"
 #include "marey/reconstruct/layout.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 /// Gives tracks the names of a marker set with places: the instant at which most of the set is seen as the file has it decides, and
 /// later ones name those who were missing, while the set still keeps its shape.
 class SetLabels {
  public:
-  explicit SetLabels(const MarkerSet& set) : set_(set) {
+  explicit SetLabels(const format::motion::MarkerSet& set) : set_(set) {
     if (!set_.has_places()) return;
     double nearest = kWidest;
     for (std::size_t a = 0; a < set_.places.size(); ++a) {
@@ -35,7 +35,7 @@ class SetLabels {
       points_.push_back(track.position);
       ids_.push_back(track.id);
     }
-    const auto match = match_layout(set_.places, points_, tolerance_);
+    const auto match = reconstruct::match_layout(set_.places, points_, tolerance_);
     if (!match) return;
     for (std::size_t m = 0; m < set_.labels.size(); ++m) {
       if (!match->point_of[m] || !given_.insert(m).second) continue;
@@ -53,7 +53,7 @@ class SetLabels {
   static constexpr double kWidest = 0.03, kNarrowest = 0.001;  // m
   static constexpr int kFrames = 2000;                         // that are looked at
 
-  MarkerSet set_;
+  format::motion::MarkerSet set_;
   std::string none_;
   double tolerance_ = kWidest;
   int frames_ = 0;
@@ -63,4 +63,4 @@ class SetLabels {
   std::set<std::size_t> given_;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace marey {
+namespace marey::pipeline {
 
 /// How long one step took, over any number of frames, in constant memory: counts in bins that grow by 5 %, from 0.1 µs to minutes.
 class StageTimes {
@@ -39,4 +39,4 @@ class StageTimes {
   std::int64_t total_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::pipeline

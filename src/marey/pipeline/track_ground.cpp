@@ -11,13 +11,13 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/ground_file.h"
-#include "marey/format/rig_sources.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_films.h"
 #include "marey/pipeline/ground_offsets.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,13 +28,14 @@ double since(std::chrono::steady_clock::time_point begin) {
 
 /// What the cameras saw at an instant, kept until the tracker is sure of it.
 struct KeptLooks {
-  KeptLooks(std::int32_t number, std::span<const GroundLook> all) : frame(number), looks(all.begin(), all.end()) {
+  KeptLooks(std::int32_t number, std::span<const track::ground::CameraObservations> all)
+      : frame(number), looks(all.begin(), all.end()) {
     seen.reserve(looks.size());
-    for (GroundLook& look : looks) look.seen = seen.emplace_back(look.seen.begin(), look.seen.end());
+    for (track::ground::CameraObservations& look : looks) look.seen = seen.emplace_back(look.seen.begin(), look.seen.end());
   }
 
   std::int32_t frame;
-  std::vector<GroundLook> looks;
+  std::vector<track::ground::CameraObservations> looks;
   std::vector<std::vector<Observation<2>>> seen;
 };
 
@@ -58,7 +59,7 @@ class Run {
         hooks_(hooks),
         area_(rig.ground_from_world, options.pitch, options.margin),
         cameras_(rig, area_, {with_read_ahead(options.eyes, !options.live), options.rate_hz}),
-        tracker_(make_ground_tracker(options.tracker, cameras_.views())),
+        tracker_(track::ground::make_ground_tracker(options.tracker, cameras_.views())),
         paths_(offsets_of(rig)),
         logs_(rig.cameras.size()),
         shows_(!output.boxes_of.empty() || !output.overlays.empty() || !output.pitch_view.empty()) {
@@ -73,7 +74,7 @@ class Run {
 
   GroundSummary operator()() {
     const auto begin = std::chrono::steady_clock::now();
-    follow();
+    track::ground::follow();
     cameras_.close();
     summary_.tracking_s = since(begin);
     if (!options_.live) {
@@ -84,7 +85,7 @@ class Run {
     if (file_) {
       file_->finish();
     } else if (output_.boxes_of.empty()) {
-      write_ground(recording_, output_.tracks);
+      format::match::write_ground(recording_, output_.tracks);
     }
     if (shows_) show();
     tell();
@@ -92,7 +93,7 @@ class Run {
   }
 
  private:
-  static PeopleEyesOptions with_read_ahead(PeopleEyesOptions eyes, bool read_ahead) {
+  static DetectionStageOptions with_read_ahead(DetectionStageOptions eyes, bool read_ahead) {
     eyes.read_ahead = read_ahead;
     return eyes;
   }
@@ -122,8 +123,8 @@ class Run {
   }
 
   /// What the tracker is sure of, of instants that waited for it.
-  void record(std::span<const GroundDecision> decisions) {
-    for (const GroundDecision& decision : decisions) {
+  void record(std::span<const track::ground::GroundDecision> decisions) {
+    for (const track::ground::GroundDecision& decision : decisions) {
       const KeptLooks& kept = waiting_.front();
       recorder_.add(kept.frame, decision.now, decision.tracks, kept.looks, decision.claims);
       log_boxes(kept.frame, kept.looks, decision.claims);
@@ -138,10 +139,11 @@ class Run {
     }
   }
 
-  void log_boxes(std::int32_t frame, std::span<const GroundLook> looks, std::span<const GroundClaim> claims) {
+  void log_boxes(std::int32_t frame, std::span<const track::ground::CameraObservations> looks,
+                 std::span<const track::ground::ObservationMatch> claims) {
     if (!shows_) return;
-    for (const GroundClaim& claim : claims) {
-      const GroundLook& look = looks[static_cast<std::size_t>(claim.look)];
+    for (const track::ground::ObservationMatch& claim : claims) {
+      const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.look)];
       const Observation<2>& seen = look.seen[static_cast<std::size_t>(claim.observation)];
       if (seen.box && !seen.shared) logs_[static_cast<std::size_t>(number(look.camera))].add_box(frame, claim.track, *seen.box);
     }
@@ -178,7 +180,7 @@ class Run {
 
   /// The second pass: who is whom over the whole recording, in the user's coordinates, without those who never were on the pitch.
   void join() {
-    GroundRecorder::Joined joined =
+    track::ground::GroundRecorder::Joined joined =
         std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
     std::vector<std::string> names = std::move(recording_.cameras);
     recording_ = std::move(joined.recording);
@@ -188,10 +190,10 @@ class Run {
     for (std::size_t person = 0; person < now.size(); ++person) {
       if (now[person] >= 0) wears[static_cast<std::size_t>(now[person])] = joined.wears[person];
     }
-    TeamOptions teams = options_.teams;
+    analyse::TeamOptions teams = options_.teams;
     teams.pitch = area_.pitch();
-    teams_ = find_teams(recording_, wears, teams);
-    note_teams(teams_, recording_);
+    teams_ = analyse::find_teams(recording_, wears, teams);
+    analyse::note_teams(teams_, recording_);
     pieces_ = std::move(joined);
     for (ViewLog& log : logs_) {
       log.name([&](TrackId track, std::int32_t frame) -> std::optional<int> {
@@ -259,13 +261,13 @@ class Run {
     if (!output_.pitch_view.empty()) summary_.stopped |= film_ground(all, times_, output_.pitch_view);
   }
 
-  std::vector<Colour> colours() const {
-    std::vector<Colour> colours;
+  std::vector<draw::Colour> colours() const {
+    std::vector<draw::Colour> colours;
     for (std::size_t i = 0; i < recording_.people.size(); ++i) {
       const auto team = i < teams_.members.size() ? teams_.members[i].team : std::nullopt;
-      const bool alone = !team || teams_.members[i].role != Teams::Role::player;
-      colours.push_back(alone ? colour_of(recording_.people[i].id)
-                              : colour_of(teams_.teams[static_cast<std::size_t>(*team)].colour));
+      const bool alone = !team || teams_.members[i].role != analyse::Teams::Role::player;
+      colours.push_back(alone ? draw::colour_of(recording_.people[i].id)
+                              : draw::colour_of(teams_.teams[static_cast<std::size_t>(*team)].colour));
     }
     return colours;
   }
@@ -292,17 +294,17 @@ class Run {
   RunHooks hooks_;
   GroundArea area_;
   GroundCameras cameras_;
-  std::unique_ptr<GroundTracker> tracker_;
+  std::unique_ptr<track::ground::GroundTracker> tracker_;
   std::deque<KeptLooks> waiting_;
-  GroundRecorder recorder_;
+  track::ground::GroundRecorder recorder_;
   GroundPathLog paths_;
-  GroundRecorder::Joined pieces_;
+  track::ground::GroundRecorder::Joined pieces_;
   GroundRecording recording_;
-  Teams teams_;
+  analyse::Teams teams_;
   std::vector<double> times_;  // s, of each instant by the first camera's clock
   std::vector<ViewLog> logs_;  // of each camera, where something is to be shown
   bool shows_;
-  std::optional<GroundWriter> file_;
+  std::optional<format::match::GroundWriter> file_;
   std::map<TrackId, std::int32_t> live_people_;
   GroundSummary summary_;
 };
@@ -313,7 +315,7 @@ void check(const Rig& rig, const GroundOutput& output, const TrackGroundOptions&
   if (!(options.margin >= 0)) throw Error("the margin is {} m; it must not be negative", options.margin);
   if (!output.boxes_of.empty()) {
     Rig copy = rig;
-    camera_named(copy, output.boxes_of);
+    format::rig::camera_named(copy, output.boxes_of);
   }
 }
 
@@ -341,4 +343,4 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Tra
   return summary;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "marey/analyse/teams.h"
+#include "marey/core/geometry.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
 #include "marey/pipeline/ground_cameras.h"
@@ -14,16 +15,16 @@
 #include "marey/track/ground/ground_recorder.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct TrackGroundOptions {
-  PeopleEyesOptions eyes;
-  GroundTrackerOptions tracker;
-  GroundJoinOptions join;
-  TeamOptions teams;               ///< `pitch` is taken from below
-  std::optional<double> rate_hz;   ///< of cameras of which the rig does not say it
-  std::optional<PitchSize> pitch;  ///< only people on it count; nothing: everybody does
-  double margin = 2;               ///< m round the pitch where people still count
+  DetectionStageOptions eyes;
+  track::ground::GroundTrackerOptions tracker;
+  track::ground::GroundJoinOptions join;
+  analyse::TeamOptions teams;                ///< `pitch` is taken from below
+  std::optional<double> rate_hz;             ///< of cameras of which the rig does not say it
+  std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
+  double margin = 2;                         ///< m round the pitch where people still count
   /// Every instant is written as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;
 };
@@ -48,7 +49,7 @@ struct GroundSummary {
   std::int64_t predicted = 0;   ///< rows in which nobody saw the person
   std::int64_t off_pitch = 0;   ///< people left out: never on the pitch or its margin
   std::vector<Camera> cameras;  ///< in the rig's order
-  std::vector<Teams::Team> teams;
+  std::vector<analyse::Teams::Team> teams;
   std::vector<std::string> notes;  ///< what was found out beside, one sentence each: when cameras were started
   double tracking_s = 0;           ///< wall time of the first pass: decoding, detecting, tracking
   double joining_s = 0;            ///< of the second
@@ -64,4 +65,4 @@ struct GroundSummary {
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const TrackGroundOptions& options = {},
                            const RunHooks& hooks = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -8,21 +8,21 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "marey/format/ground_file.h"
-#include "marey/format/mot.h"
-#include "marey/format/rig_file.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/tracks/mot.h"
 #include "marey/pipeline/judge_match.h"
 #include "marey/pipeline/match_files.h"
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kReach = 1.5;  // m
 
 MatchJudgement judge(const std::string& truth, const std::string& tracks) {
-  return judge_match(read_ground(truth), read_ground(tracks), kReach);
+  return judge_match(format::match::read_ground(truth), format::match::read_ground(tracks), kReach);
 }
 
 double share(std::int64_t part, std::int64_t whole) {
@@ -39,7 +39,7 @@ MatchFilesOptions match(std::uint64_t seed, double seconds, int cameras = 6) {
 
 Rig simulate(const std::string& folder, const MatchFilesOptions& options) {
   write_match(options, folder);
-  return read_rig(folder + "/rig.toml");
+  return format::rig::read_rig(folder + "/rig.toml");
 }
 
 GroundOutput to(const std::string& tracks) {
@@ -48,7 +48,7 @@ GroundOutput to(const std::string& tracks) {
   return output;
 }
 
-TrackGroundOptions over_pitch(const PitchSize& pitch = {}, double margin = 2) {
+TrackGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double margin = 2) {
   TrackGroundOptions options;
   options.pitch = pitch, options.margin = margin;
   return options;
@@ -90,7 +90,7 @@ TEST(TrackGround, SixCamerasGiveEverybodyOneNumber) {
 TEST(TrackGround, TwoCamerasOnOneStandInTheUsersMirroredFrame) {
   const test::TemporaryFolder folder;
   MatchFilesOptions options = match(4, 16);
-  options.cameras.stand = MatchStand::football;
+  options.cameras.stand = simulate::match::MatchStand::football;
   const Rig rig = simulate(folder.path(), options);
   ASSERT_TRUE(rig.ground_from_world);
   ASSERT_LT(rig.ground_from_world->determinant(), 0);
@@ -109,7 +109,7 @@ TEST(TrackGround, ACameraKnownByItsHomographyAloneIsEnough) {
   Rig rig = simulate(folder.path(), options);
   for (RigCamera& camera : rig.cameras) {
     const Camera whole = *camera.camera();
-    const BrownLens& lens = std::get<BrownLens>(whole.lens());
+    const geometry::BrownLens& lens = std::get<geometry::BrownLens>(whole.lens());
     Matrix<3> pinhole = Matrix<3>::Identity(), camera_from_ground;
     pinhole.topLeftCorner<2, 2>() = lens.focal.asDiagonal();
     pinhole.topRightCorner<2, 1>() = lens.principal;
@@ -138,7 +138,7 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 51, folder / "right.txt")};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.people, 2);
-  const GroundRecording found = read_ground(folder / "out.csv");
+  const GroundRecording found = format::match::read_ground(folder / "out.csv");
   std::map<int, CameraMask> seen_by;
   for (const auto& sample : found.samples) seen_by[sample.person] |= sample.cameras;
   EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{0, 3}, {1, 1}})) << "who walks is seen by both";
@@ -174,7 +174,7 @@ TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.people, 1);
   EXPECT_EQ(summary.cameras[1].counts.missed, 20) << "before it was started";
-  for (const auto& sample : read_ground(folder / "out.csv").samples)
+  for (const auto& sample : format::match::read_ground(folder / "out.csv").samples)
     EXPECT_NEAR(sample.place.x(), 10 + 0.2 * sample.frame, 0.2) << sample.frame;
 }
 
@@ -203,12 +203,12 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
   GroundOutput view_of = to(folder / "cam2_out.txt");
   view_of.boxes_of = "cam2";
   track_ground(rig, view_of, over_pitch());
-  const GroundRecording ground = read_ground(folder / "out.csv");
+  const GroundRecording ground = format::match::read_ground(folder / "out.csv");
   std::map<std::pair<int, int>, Vector<2>> places;
   for (const auto& sample : ground.samples)
     places[{sample.frame, ground.people[static_cast<std::size_t>(sample.person)].id}] = sample.place;
   const GroundView view = *rig.cameras[1].ground_view();
-  const MotTable boxes = read_mot(folder / "cam2_out.txt", MotKind::tracks);
+  const format::tracks::MotTable boxes = format::tracks::read_mot(folder / "cam2_out.txt", format::tracks::MotKind::tracks);
   EXPECT_GT(boxes.boxes.size(), 1500U);
   std::size_t near = 0;
   for (const LabelledBox& box : boxes.boxes) {
@@ -222,10 +222,10 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
 TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
   const test::TemporaryFolder folder;
   MatchFilesOptions options = match(3, 8);
-  options.cameras.stand = MatchStand::corners, options.cameras.size = cv::Size(1280, 720);
+  options.cameras.stand = simulate::match::MatchStand::corners, options.cameras.size = cv::Size(1280, 720);
   options.films = true;
   Rig rig = simulate(folder.path(), options);
-  const Rig boxes = read_rig(folder / "boxes.toml");
+  const Rig boxes = format::rig::read_rig(folder / "boxes.toml");
   rig.cameras[1] = boxes.cameras[1];
   ASSERT_FALSE(rig.cameras[0].source.empty());
   ASSERT_FALSE(rig.cameras[1].detections.empty());
@@ -249,8 +249,8 @@ TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch(), hooks);
   EXPECT_TRUE(summary.stopped);
   EXPECT_LT(summary.frames, 100);
-  EXPECT_LT(read_ground(folder / "out.csv").samples.back().frame, summary.frames);
+  EXPECT_LT(format::match::read_ground(folder / "out.csv").samples.back().frame, summary.frames);
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

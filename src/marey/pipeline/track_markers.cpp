@@ -21,7 +21,7 @@
 #include "marey/track/fill_gaps.h"
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr double kFittedSeconds = 20;  // of the recording, from which noise is told
@@ -32,7 +32,7 @@ class MarkerRun {
             const TrackMarkersOptions& options, const RunHooks& hooks)
       : pictures_(pictures), rate_hz_(rate_hz), options_(options), hooks_(hooks), source_(open()), detector_(options.markers) {
     if (options.fit_noise && !options.live) fit();
-    tracker_ = make_roster_tracker<2>(options_.tracker);
+    tracker_ = track::make_roster_tracker<2>(options_.tracker);
     file_.emplace(output.tracks, output.format);
     if (!output.plot.empty()) plot_.emplace(output.plot, "Trajectories in " + source_->info().name);
     if (!output.overlay.empty()) movie_.emplace(output.overlay, source_->info().size, source_->info().rate_hz);
@@ -41,7 +41,7 @@ class MarkerRun {
   MarkerSummary operator()() {
     follow();
     if (!options_.live) {
-      const std::vector<TrackRow> rows = fill_gaps(recording_);
+      const std::vector<track::TrackRow> rows = track::fill_gaps(recording_);
       for (RowsByFrame by_frame(rows, labels()); const std::int64_t frame : frames_) {
         tell(frame, recording_.time_of(static_cast<std::int32_t>(frame)), by_frame.at(frame));
       }
@@ -62,14 +62,14 @@ class MarkerRun {
   }
 
  private:
-  std::unique_ptr<Source> open() const { return read_ahead(open_source(pictures_, rate_hz_)); }
+  std::unique_ptr<Source> open() const { return read_ahead(source::open_source(pictures_, rate_hz_)); }
 
   /// A first look at the beginning of the recording, to learn how the markers move and how well they are seen.
   void fit() {
-    const std::unique_ptr<Source> source = open_source(pictures_, rate_hz_);
-    MarkerDetector detector(options_.markers);
-    const auto tracker = make_roster_tracker<2>(options_.tracker);
-    std::map<TrackId, MeasuredPath<2>> paths;
+    const std::unique_ptr<Source> source = source::open_source(pictures_, rate_hz_);
+    detect::markers::MarkerDetector detector(options_.markers);
+    const auto tracker = track::make_roster_tracker<2>(options_.tracker);
+    std::map<TrackId, filter::MeasuredPath<2>> paths;
     while (const auto frame = source->next()) {
       if (seconds(frame->time) > kFittedSeconds) break;
       const auto seen = look(detector, *frame, *tracker);
@@ -79,17 +79,18 @@ class MarkerRun {
         paths[track.id].positions.push_back(seen[*track.observation].value);
       }
     }
-    std::vector<MeasuredPath<2>> list;
+    std::vector<filter::MeasuredPath<2>> list;
     for (auto& [id, path] : paths) list.push_back(std::move(path));
-    summary_.noise = fit_noise<2>(list);
+    summary_.noise = filter::fit_noise<2>(list);
     if (summary_.noise) {
-      options_.tracker.filter = with_noise(options_.tracker.filter, *summary_.noise);
+      options_.tracker.filter = filter::with_noise(options_.tracker.filter, *summary_.noise);
     } else {
       summary_.warnings.push_back(pictures_ + ": too little moves in its beginning to tell the noise from; the defaults were kept");
     }
   }
 
-  static std::vector<Observation<2>> look(MarkerDetector& detector, const Frame& frame, Tracker<2>& tracker) {
+  static std::vector<Observation<2>> look(detect::markers::MarkerDetector& detector, const Frame& frame,
+                                          track::Tracker<2>& tracker) {
     std::vector<Expected> expected;
     for (const Track<2>& track : tracker.expected(frame.time)) {
       if (track.box) expected.push_back({*track.box});
@@ -122,7 +123,8 @@ class MarkerRun {
     }
     if (summary_.frames == 0) throw Error("{}: not one frame could be read", source_->info().name);
     for (const std::string& warning : source_->warnings()) summary_.warnings.push_back(warning);
-    for (const std::string& warning : warnings(detector_.counts())) summary_.warnings.push_back(pictures_ + ": " + warning);
+    for (const std::string& warning : detect::markers::warnings(detector_.counts()))
+      summary_.warnings.push_back(pictures_ + ": " + warning);
   }
 
   std::vector<std::string> labels() const {
@@ -142,7 +144,7 @@ class MarkerRun {
   }
 
   /// A second look at the pictures, because the tracks of a frame are known only after the last one.
-  void draw(const std::vector<TrackRow>& rows) {
+  void draw(const std::vector<track::TrackRow>& rows) {
     const auto source = open();
     RowsByFrame by_frame(rows, labels());
     for (std::int64_t done = 0; done < summary_.frames;) {
@@ -162,13 +164,13 @@ class MarkerRun {
   RunHooks hooks_;
   MarkerSummary summary_;
   std::unique_ptr<Source> source_;
-  MarkerDetector detector_;
-  std::unique_ptr<Tracker<2>> tracker_;
-  std::optional<TrackFile> file_;
+  detect::markers::MarkerDetector detector_;
+  std::unique_ptr<track::Tracker<2>> tracker_;
+  std::optional<format::tracks::TrackFile> file_;
   std::optional<PlotFile> plot_;
-  std::optional<MovieWriter> movie_;
-  Overlay overlay_;
-  Recording recording_;
+  std::optional<draw::MovieWriter> movie_;
+  draw::Overlay overlay_;
+  track::Recording recording_;
   std::vector<std::int64_t> frames_;
   std::vector<Track<2>> confirmed_;
   std::map<TrackId, std::string> label_of_;
@@ -203,11 +205,11 @@ std::vector<std::string> read_labels(const std::string& path) {
 
 cv::Mat read_mask(const std::string& path) {
   constexpr double kBlack = 8;  // what a lossy picture may make of 0
-  const auto frame = open_source(path)->next();
+  const auto frame = source::open_source(path)->next();
   if (!frame) throw Error("{}: cannot be read as a picture; give a PNG in which what is to be left out is white", path);
   cv::Mat grey;
   cv::cvtColor(frame->picture.bgr(), grey, cv::COLOR_BGR2GRAY);
   return grey > kBlack;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

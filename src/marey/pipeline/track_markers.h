@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "marey/detect/marker_detector.h"
+#include "marey/detect/markers/marker_detector.h"
 #include "marey/filter/fit_noise.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/roster_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct TrackMarkersOptions {
-  MarkerOptions markers;
-  RosterTrackerOptions tracker;
+  detect::markers::MarkerOptions markers;
+  track::RosterTrackerOptions tracker;
   bool fit_noise = false;  ///< read the filter's noise off the beginning of the recording
   /// Every frame's markers are written as they come, and nothing is improved by what came later.
   bool live = false;
@@ -22,13 +22,13 @@ struct TrackMarkersOptions {
 
 struct MarkerSummary {
   std::int64_t frames = 0;
-  double seconds = 0;                 ///< from the first frame to the last
-  std::int64_t markers = 0;           ///< distinct names
-  std::int64_t rows = 0;              ///< markers times the frames they are in
-  std::int64_t detections = 0;        ///< handed to the tracker
-  std::optional<NoiseFit> noise;      ///< where it was asked for and could be told
-  bool stopped = false;               ///< before the end, because a hook said so
-  std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
+  double seconds = 0;                     ///< from the first frame to the last
+  std::int64_t markers = 0;               ///< distinct names
+  std::int64_t rows = 0;                  ///< markers times the frames they are in
+  std::int64_t detections = 0;            ///< handed to the tracker
+  std::optional<filter::NoiseFit> noise;  ///< where it was asked for and could be told
+  bool stopped = false;                   ///< before the end, because a hook said so
+  std::vector<std::string> warnings;      ///< what went wrong without stopping the run, one sentence each
 };
 
 /// Follows markers through a recording (whatever open_source opens) under the names they have in the first frame, and writes where
@@ -44,4 +44,4 @@ std::vector<std::string> read_labels(const std::string& path);
 /// A mask for MarkerOptions from a picture file: what is brighter than black is left out. Throws Error where it cannot be read.
 cv::Mat read_mask(const std::string& path);
 
-}  // namespace marey
+}  // namespace marey::pipeline

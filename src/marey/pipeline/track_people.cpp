@@ -15,7 +15,7 @@
 #include "marey/track/outline_recording.h"
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
@@ -41,8 +41,8 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
 }
 
 /// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
-TrackerOptions tracker_options(const PeopleInput& input, const TrackPeopleOptions& options) {
-  TrackerOptions tracker = options.tracker;
+track::TrackerOptions tracker_options(const PeopleInput& input, const TrackPeopleOptions& options) {
+  track::TrackerOptions tracker = options.tracker;
   tracker.steady_camera = !input.pictures.empty();
   tracker.reclaim = tracker.steady_camera && options.live;
   return tracker;
@@ -54,8 +54,8 @@ class Run {
       : input_(input),
         options_(options),
         hooks_(hooks),
-        eyes_(open_eyes(input, {options.background, options.people, !options.live})),
-        tracker_(make_tracker<2>(tracker_options(input, options))),
+        eyes_(open_detection_stage(input, {options.background, options.people, !options.live})),
+        tracker_(track::make_tracker<2>(tracker_options(input, options))),
         file_(output.tracks, output.format),
         overlay_({.trail_of_centres = options.outlines.has_value()}) {
     const SourceInfo& info = eyes_.source->info();
@@ -70,7 +70,7 @@ class Run {
   TrackSummary operator()() {
     follow();
     if (!options_.live) {
-      const std::vector<TrackRow> rows = join(recording_, options_.join);
+      const std::vector<track::TrackRow> rows = track::join(recording_, options_.join);
       write(rows);
       file_.finish();
       if (movie_) draw(rows);
@@ -89,7 +89,7 @@ class Run {
     std::set<TrackId> begun, believed;
     while (auto frame = eyes_.source->next()) {
       const std::vector<Expected> expected = expected_of(tracker_->expected(frame->time));
-      const Detections seen = eyes_.detector->detect(*frame, expected);
+      const detect::Detections seen = eyes_.detector->detect(*frame, expected);
       const auto tracks = follow(*frame, seen);
       for (const Track<2>& track : tracks) (track.confirmed ? believed : begun).insert(track.id);
       if (options_.live) {
@@ -115,7 +115,7 @@ class Run {
   }
 
   /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
-  std::span<const Track<2>> follow(const Frame& frame, const Detections& seen) {
+  std::span<const Track<2>> follow(const Frame& frame, const detect::Detections& seen) {
     std::vector<Observation<2>> observations = observations_of(seen.detections, frame.camera);
     if (!follower_) return tracker_->step(frame.time, observations);
     const auto hints = follower_->look(frame, seen.foreground, seen.detections);
@@ -143,16 +143,18 @@ class Run {
     if (plot_) plot_->add(frame, tracks);
   }
 
-  void write(const std::vector<TrackRow>& rows) {
+  void write(const std::vector<track::TrackRow>& rows) {
     RowsByFrame by_frame = rows_by_frame(rows);
     for (std::int32_t frame = 0; frame < summary_.frames; ++frame)
       tell_confirmed(frame, recording_.time_of(frame), by_frame.at(frame));
   }
 
-  RowsByFrame rows_by_frame(const std::vector<TrackRow>& rows) { return RowsByFrame(rows, {}, outlines_ ? &*outlines_ : nullptr); }
+  RowsByFrame rows_by_frame(const std::vector<track::TrackRow>& rows) {
+    return RowsByFrame(rows, {}, outlines_ ? &*outlines_ : nullptr);
+  }
 
   /// A second look at the pictures, because the tracks of a frame are known only after the last one.
-  void draw(const std::vector<TrackRow>& rows) {
+  void draw(const std::vector<track::TrackRow>& rows) {
     const auto source = read_ahead(open_pictures(input_));
     RowsByFrame by_frame = rows_by_frame(rows);
     const bool stopped_before = summary_.stopped;  // then the film shows what was tracked until then
@@ -169,15 +171,15 @@ class Run {
   PeopleInput input_;
   TrackPeopleOptions options_;
   RunHooks hooks_;
-  PeopleEyes eyes_;
-  std::unique_ptr<Tracker<2>> tracker_;
-  std::optional<OutlineFollower> follower_;
-  std::optional<OutlineRecording> outlines_;
-  TrackFile file_;
+  DetectionStage eyes_;
+  std::unique_ptr<track::Tracker<2>> tracker_;
+  std::optional<track::contour::OutlineFollower> follower_;
+  std::optional<track::OutlineRecording> outlines_;
+  format::tracks::TrackFile file_;
   std::optional<PlotFile> plot_;
-  std::optional<MovieWriter> movie_;
-  Overlay overlay_;
-  Recording recording_;
+  std::optional<draw::MovieWriter> movie_;
+  draw::Overlay overlay_;
+  track::Recording recording_;
   std::set<TrackId> people_;
   TrackSummary summary_;
 };
@@ -194,4 +196,4 @@ TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, c
   return Run(input, output, options, hooks)();
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -11,14 +11,14 @@
 #include "marey/track/join.h"
 #include "marey/track/tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 
 struct TrackPeopleOptions {
-  BackgroundOptions background;
-  PeopleOptions people;
-  TrackerOptions tracker;
-  JoinOptions join;
-  std::optional<OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it
+  detect::background::BackgroundOptions background;
+  detect::people::PeopleOptions people;
+  track::TrackerOptions tracker;
+  track::JoinOptions join;
+  std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it
   /// Every frame's tracks are written as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
 };
@@ -48,4 +48,4 @@ struct TrackSummary {
 TrackSummary track_people(const PeopleInput& input, const TrackOutput& output, const TrackPeopleOptions& options = {},
                           const RunHooks& hooks = {});
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -13,7 +13,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// Two dark figures on a noisy lawn, 8 s at 10 frames a second: one walks right, one left, on different rows.
@@ -101,8 +101,9 @@ TEST(TrackPeople, TheSameFilmGivesTheSameBytes) {
   for (const bool live : {false, true}) {
     TrackPeopleOptions options;
     options.live = live;
-    track_people(input, {.tracks = folder / "a.csv", .format = TrackFormat::csv}, options);
-    track_people(input, {.tracks = folder / "b.csv", .format = TrackFormat::csv, .overlay = folder / "b.mp4"}, options);
+    track_people(input, {.tracks = folder / "a.csv", .format = format::tracks::TrackFormat::csv}, options);
+    track_people(input, {.tracks = folder / "b.csv", .format = format::tracks::TrackFormat::csv, .overlay = folder / "b.mp4"},
+                 options);
     EXPECT_EQ(test::read_file(folder / "a.csv"), test::read_file(folder / "b.csv"));
   }
 }
@@ -133,7 +134,7 @@ TEST(TrackPeople, EveryBackgroundAndEveryFilterRuns) {
   const PeopleInput input{.pictures = folder / "film.avi"};
   for (const char* name : {"marey", "mog2", "knn"}) {
     TrackPeopleOptions options;
-    options.background = parse_background(name);
+    options.background = detect::background::parse_background(name);
     EXPECT_GE(track_people(input, {.tracks = folder / "out.txt"}, options).people, 1) << name;
   }
 }
@@ -154,4 +155,4 @@ TEST(TrackPeople, WhatCannotWorkIsSaidBeforeAnythingIsWritten) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::pipeline

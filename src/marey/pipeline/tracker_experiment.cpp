@@ -18,11 +18,11 @@
 #include "marey/evaluate/label_loss.h"
 #include "marey/filter/filters.h"
 #include "marey/pipeline/marker_video.h"
-#include "marey/simulate/marker_scene.h"
+#include "marey/simulate/markers/marker_scene.h"
 #include "marey/track/independent_tracker.h"
 #include "marey/track/roster_tracker.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 /// A folder for the videos, removed with everything in it.
@@ -46,37 +46,40 @@ class TemporaryFolder {
 
 struct Method {
   std::string name;
-  std::function<std::unique_ptr<Tracker<2>>()> make;
+  std::function<std::unique_ptr<track::Tracker<2>>()> make;
 };
 
-Method alone(std::string name, const FilterOptions& options) {
+Method alone(std::string name, const filter::FilterOptions& options) {
   return {std::move(name), [options] {
-            return with_filter<2>(options, []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<Tracker<2>> {
-              return std::make_unique<IndependentTracker<F>>(chosen);
-            });
+            return filter::with_filter<2>(
+                options, []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
+                  return std::make_unique<track::IndependentTracker<F>>(chosen);
+                });
           }};
 }
 
 /// The paper's three, with its parameters; every other filter in their place; and Marey's own tracker.
 std::vector<Method> methods() {
-  std::vector<Method> list{alone("alpha-beta (paper)", AlphaBetaOptions{}), alone("Kalman (paper)", KalmanPaperOptions{}),
-                           alone("CONDENSATION (paper)", CondensationOptions{})};
-  for (const NamedFilter& filter : named_filters()) {
+  std::vector<Method> list{alone("alpha-beta (paper)", filter::AlphaBetaOptions{}),
+                           alone("Kalman (paper)", filter::KalmanPaperOptions{}),
+                           alone("CONDENSATION (paper)", filter::CondensationOptions{})};
+  for (const filter::NamedFilter& filter : filter::named_filters()) {
     const std::string_view name = filter.name;
     if (name == "alpha-beta" || name == "kalman-paper" || name == "condensation") continue;
     list.push_back(alone(std::string(name), filter.options));
   }
-  list.push_back({"Marey", [] { return make_roster_tracker<2>({}); }});
+  list.push_back({"Marey", [] { return track::make_roster_tracker<2>({}); }});
   return list;
 }
 
 struct Video {
-  MarkerScene scene;
+  simulate::markers::MarkerScene scene;
   SeenMarkers seen;
 };
 
-Video make_video(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options, const std::string& path) {
-  Video video{simulate_markers(situation, seed, options), {}};
+Video make_video(simulate::markers::MarkerSituation situation, std::uint64_t seed,
+                 const simulate::markers::MarkerSceneOptions& options, const std::string& path) {
+  Video video{simulate::markers::simulate_markers(situation, seed, options), {}};
   film_markers(video.scene, path);
   video.seen = see_markers(path);
   return video;
@@ -88,11 +91,11 @@ struct Outcome {
   std::vector<double> errors;  ///< px, of the predictions for the first marker
 };
 
-Outcome track(const Video& video, Tracker<2>& tracker) {
-  std::vector<std::vector<NamedPlace>> truth(video.seen.frames.size()), named(video.seen.frames.size());
+Outcome track(const Video& video, track::Tracker<2>& tracker) {
+  std::vector<std::vector<evaluate::NamedPlace>> truth(video.seen.frames.size()), named(video.seen.frames.size());
   Outcome outcome;
   for (std::size_t i = 0; i < video.seen.frames.size(); ++i) {
-    for (const MarkerTruth& marker : video.scene.frames[i]) {
+    for (const simulate::markers::MarkerTruth& marker : video.scene.frames[i]) {
       if (marker.visible) truth[i].push_back({std::to_string(marker.marker), marker.position});
     }
     const auto& seen = video.seen.frames[i];
@@ -113,7 +116,7 @@ Outcome track(const Video& video, Tracker<2>& tracker) {
     }
   }
   const double reach = 1.5 * video.scene.options.radius_px;
-  for (const LabelFate& fate : judge_labels(truth, named, reach)) outcome.lost = outcome.lost || fate.lost();
+  for (const evaluate::LabelFate& fate : evaluate::judge_labels(truth, named, reach)) outcome.lost = outcome.lost || fate.lost();
   return outcome;
 }
 
@@ -132,7 +135,7 @@ PredictionError summarise(const std::vector<double>& errors) {
   return result;
 }
 
-StepTime time_steps(const Video& video, Tracker<2>& tracker) {
+StepTime time_steps(const Video& video, track::Tracker<2>& tracker) {
   std::vector<double> times;
   for (std::size_t i = 0; i < video.seen.frames.size(); ++i) {
     const auto before = std::chrono::steady_clock::now();
@@ -146,9 +149,10 @@ StepTime time_steps(const Video& video, Tracker<2>& tracker) {
   return {static_cast<int>(video.scene.frames.front().size()), at(0.05), at(0.5), at(0.95), times.back()};
 }
 
-constexpr std::array<MarkerSituation, TrackerRow::kSituations> kSituations{
-    MarkerSituation::slow_zigzag, MarkerSituation::rapid_zigzag, MarkerSituation::acceleration, MarkerSituation::occlusion,
-    MarkerSituation::crossing};
+constexpr std::array<simulate::markers::MarkerSituation, TrackerRow::kSituations> kSituations{
+    simulate::markers::MarkerSituation::slow_zigzag, simulate::markers::MarkerSituation::rapid_zigzag,
+    simulate::markers::MarkerSituation::acceleration, simulate::markers::MarkerSituation::occlusion,
+    simulate::markers::MarkerSituation::crossing};
 
 /// Tables I–VII as printed.
 std::vector<TrackerRow> paper_rows() {
@@ -225,9 +229,9 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
     }
   }
   for (const int markers : options.timed_markers) {
-    MarkerSceneOptions scene;
+    simulate::markers::MarkerSceneOptions scene;
     scene.markers = markers;
-    const Video video = make_video(MarkerSituation::plain, options.seed, scene, folder.file("timed.mp4"));
+    const Video video = make_video(simulate::markers::MarkerSituation::plain, options.seed, scene, folder.file("timed.mp4"));
     for (std::size_t m = 0; m < all_methods.size(); ++m) {
       experiment.ours[m].times.push_back(time_steps(video, *all_methods[m].make()));
     }
@@ -236,4 +240,4 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
   return experiment;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -10,9 +10,9 @@
 #include "marey/filter/filters.h"
 #include "marey/format/whole_file.h"
 #include "marey/pipeline/tracker_experiment.h"
-#include "marey/simulate/marker_scene.h"
+#include "marey/simulate/markers/marker_scene.h"
 
-namespace marey {
+namespace marey::pipeline {
 namespace {
 
 constexpr std::array<const char*, TrackerRow::kSituations> kNames{"slow", "rapid", "acceleration", "occlusion", "swap"};
@@ -65,35 +65,36 @@ void add_times(std::string& text, const TrackerExperiment& experiment) {
   }
 }
 
-BarChart loss_chart(const TrackerExperiment& experiment) {
-  BarChart chart{
+draw::BarChart loss_chart(const TrackerExperiment& experiment) {
+  draw::BarChart chart{
       fmt::format("Table I: losses, of {} videos", experiment.videos), "videos with a loss", {kNames.begin(), kNames.end()}, {}};
   for (const TrackerRow* row : all_rows(experiment)) {
     auto& group = chart.groups.emplace_back();
     group.name = row->method;
     for (const auto& losses : row->losses) {
-      group.bars.push_back(losses ? std::optional(Bar{static_cast<double>(*losses), {}, {}}) : std::nullopt);
+      group.bars.push_back(losses ? std::optional(draw::Bar{static_cast<double>(*losses), {}, {}}) : std::nullopt);
     }
   }
   return chart;
 }
 
-BarChart error_chart(const TrackerExperiment& experiment, std::size_t motion) {
-  BarChart chart{fmt::format("Table {}: prediction error, {}", kErrorTables[motion], kNames[motion]),
-                 "px, mean with 99 % interval",
-                 {"error"},
-                 {}};
+draw::BarChart error_chart(const TrackerExperiment& experiment, std::size_t motion) {
+  draw::BarChart chart{fmt::format("Table {}: prediction error, {}", kErrorTables[motion], kNames[motion]),
+                       "px, mean with 99 % interval",
+                       {"error"},
+                       {}};
   for (const TrackerRow* row : all_rows(experiment)) {
     const auto& error = row->errors[motion];
     auto& group = chart.groups.emplace_back();
     group.name = row->method;
-    group.bars.push_back(error && error->samples > 0 ? std::optional(Bar{error->mean, error->low, error->high}) : std::nullopt);
+    group.bars.push_back(error && error->samples > 0 ? std::optional(draw::Bar{error->mean, error->low, error->high})
+                                                     : std::nullopt);
   }
   return chart;
 }
 
-LineChart time_chart(const TrackerExperiment& experiment) {
-  LineChart chart{"Tables V-VII: time of the tracking step, median", "markers", "ms", true, {}};
+draw::LineChart time_chart(const TrackerExperiment& experiment) {
+  draw::LineChart chart{"Tables V-VII: time of the tracking step, median", "markers", "ms", true, {}};
   for (const TrackerRow* row : all_rows(experiment)) {
     auto& line = chart.lines.emplace_back();
     line.name = row->method;
@@ -106,9 +107,10 @@ LineChart time_chart(const TrackerExperiment& experiment) {
 
 /// Like the paper's Figure 3: the way of a rapid zigzag, dashed; the marker; the alpha-beta filter's prediction and search area.
 std::string search_picture(std::uint64_t seed) {
-  const MarkerScene scene = simulate_markers(MarkerSituation::rapid_zigzag, seed);
-  const AlphaBetaOptions options;
-  AlphaBeta<2> filter(options, scene.frames.front()[0].position, Matrix<2>::Zero());
+  const simulate::markers::MarkerScene scene =
+      simulate::markers::simulate_markers(simulate::markers::MarkerSituation::rapid_zigzag, seed);
+  const filter::AlphaBetaOptions options;
+  filter::AlphaBeta<2> filter(options, scene.frames.front()[0].position, Matrix<2>::Zero());
   const std::size_t shown = scene.frames.size() / 2;
   std::string path;
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
@@ -149,18 +151,18 @@ std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, co
   std::vector<std::string> names;
   const auto save = [&](const std::string& name, const std::string& svg) {
     const std::string path = (std::filesystem::path(folder) / name).string();
-    WholeFile file(path);
+    format::WholeFile file(path);
     file.write(svg);
     file.finish();
     names.push_back(path);
   };
-  save("table_1_losses.svg", to_svg(loss_chart(experiment)));
+  save("table_1_losses.svg", draw::to_svg(loss_chart(experiment)));
   for (std::size_t motion = 0; motion < TrackerRow::kMotions; ++motion) {
-    save(fmt::format("table_{}_error_{}.svg", motion + 2, kNames[motion]), to_svg(error_chart(experiment, motion)));
+    save(fmt::format("table_{}_error_{}.svg", motion + 2, kNames[motion]), draw::to_svg(error_chart(experiment, motion)));
   }
-  save("tables_5_7_time.svg", to_svg(time_chart(experiment)));
+  save("tables_5_7_time.svg", draw::to_svg(time_chart(experiment)));
   save("figure_3_search.svg", search_picture(experiment.seed));
   return names;
 }
 
-}  // namespace marey
+}  // namespace marey::pipeline

@@ -1,12 +1,12 @@
 #include "marey/reconstruct/correspond.h"
 
 #include "marey/core/error.h"
-#include "marey/reconstruct/claims.h"
 #include "marey/reconstruct/frame_rays.h"
-#include "marey/reconstruct/meetings.h"
 #include "marey/reconstruct/ray_groups.h"
+#include "marey/reconstruct/ray_intersections.h"
+#include "marey/reconstruct/track_matches.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 class Corresponder::Impl {
  public:
@@ -51,8 +51,8 @@ class Corresponder::Impl {
   CorrespondOptions options_;
   Triangulator triangulator_;
   FrameRays frame_;
-  TrackClaims claims_;
-  RayMeetings meetings_;
+  TrackMatches claims_;
+  RayIntersections meetings_;
   RayGroups groups_;
   std::vector<int> seen_;
   Correspondences result_;
@@ -77,4 +77,4 @@ const Correspondences& Corresponder::match(std::span<const Observation<2>> seen,
   return impl_->match(seen, expected);
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -24,7 +24,7 @@
 #include "marey/core/track.h"
 #include "marey/reconstruct/triangulate.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 struct CorrespondOptions {
   double noise_px = 0.1;  ///< standard deviation of calibration and of what blobs do not say of themselves, along each axis
@@ -71,4 +71,4 @@ class Corresponder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace marey
+}  // namespace marey::reconstruct

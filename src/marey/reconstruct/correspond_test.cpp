@@ -10,7 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/reconstruct/room_test.h"
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 using room::Random;
@@ -249,4 +249,4 @@ TEST(Correspond, TakesOddInput) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 constexpr double kLeastBaseline = 1e-6;  // m
@@ -77,4 +77,4 @@ void EpipolarMatcher::match(const FrameRays& frame, std::span<const char> taken,
   }
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -8,7 +8,7 @@
 
 #include "marey/reconstruct/frame_rays.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// Two rays that meet before both cameras, as far as noise lets that be told.
 struct EpipolarPair {
@@ -47,4 +47,4 @@ class EpipolarMatcher {
   std::vector<Entry> of_a_, of_b_;
 };
 
-}  // namespace marey
+}  // namespace marey::reconstruct

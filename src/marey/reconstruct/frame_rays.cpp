@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 constexpr double kSmallestCell = 8;  // px
@@ -73,4 +73,4 @@ void FrameRays::lay_grid(int camera, std::span<const Observation<2>> seen) {
   order_.swap(sorted_);
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -7,7 +7,7 @@
 #include "marey/core/observation.h"
 #include "marey/reconstruct/sight_line.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// Everything that the cameras of a rig saw at one instant, as sight lines: those of one camera side by side, and within a camera
 /// those of one cell of a grid over its picture, so that the blobs near a pixel are found by looking at a few cells.
@@ -72,4 +72,4 @@ class FrameRays {
   std::vector<int> by_camera_, order_, sorted_, starts_, starts_of_cells_;
 };
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 constexpr double kFlattest = 0.1;        // height of the triangle over its base, at least
@@ -140,4 +140,4 @@ std::optional<LayoutMatch> match_layout(std::span<const Vector<3>> layout, std::
   return std::nullopt;
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

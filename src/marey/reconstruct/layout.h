@@ -11,9 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 struct LayoutMatch {
   Rigid3 world_from_layout;
@@ -30,4 +31,4 @@ std::optional<LayoutMatch> match_layout(std::span<const Vector<3>> layout, std::
 /// Huang, Blostein 1987).
 Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to);
 
-}  // namespace marey
+}  // namespace marey::reconstruct

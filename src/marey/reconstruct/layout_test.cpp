@@ -6,7 +6,7 @@
 
 #include "marey/reconstruct/room_test.h"
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 TEST(Layout, IsFoundAmongOtherPointsWithACornerHidden) {
@@ -14,7 +14,8 @@ TEST(Layout, IsFoundAmongOtherPointsWithACornerHidden) {
     room::Random random(seed);
     std::vector<Vector<3>> layout, points;
     for (int i = 0; i < 12; ++i) layout.push_back({random.uniform(0, 0.5), random.uniform(0, 0.8), random.uniform(0, 0.3)});
-    const Rigid3 truth{rotation_from({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}), random.in_room()};
+    const Rigid3 truth{geometry::rotation_from({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}),
+                       random.in_room()};
     for (int i = 0; i < 5; ++i) points.push_back(random.in_room());
     const int hidden = static_cast<int>(seed) % 12;
     for (int i = 0; i < 12; ++i) {
@@ -39,7 +40,7 @@ TEST(Layout, OfTwoWaysToLieASymmetricOneTakesTheSmallerTurn) {
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 5; ++j) grid.push_back({0.1 * i, 0.05 * j, 0});
   }
-  const Rigid3 turned{rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
+  const Rigid3 turned{geometry::rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
   std::vector<Vector<3>> points;
   for (const Vector<3>& place : grid) points.push_back(turned * place);
   const auto match = match_layout(grid, points, 0.01);
@@ -57,4 +58,4 @@ TEST(Layout, NoMatchWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace marey {
+namespace marey::reconstruct {
 
 std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, const PersonShape& shape) {
   const Vector<2> away = ground - camera.centre().head<2>();
@@ -23,4 +23,4 @@ std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, con
   return Box::from_centre(0.5 * (*feet + *head), width, height);
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "marey/geometry/box.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// An upright person, m: what is taken for granted where nothing is known of who it is.
 struct PersonShape {
@@ -17,4 +17,4 @@ struct PersonShape {
 /// Nothing where the person is behind the camera or beyond what the lens shows.
 std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, const PersonShape& shape = {});
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 /// 10 m up at the origin, looking along y and 20° down.
@@ -13,7 +13,7 @@ Camera camera_on_a_mast() {
   Matrix<3> R;
   R << 1, 0, 0, 0, -std::sin(down), -std::cos(down), 0, std::cos(down), -std::sin(down);
   const Vector<3> centre(0, 0, 10);
-  return {BrownLens{.focal = {1000, 1000}, .principal = {959.5, 539.5}}, Rigid3{R, -R * centre}, {1920, 1080}};
+  return {geometry::BrownLens{.focal = {1000, 1000}, .principal = {959.5, 539.5}}, Rigid3{R, -R * centre}, {1920, 1080}};
 }
 
 TEST(PersonView, TheBoxGoesFromTheFeetToTheCrown) {
@@ -36,4 +36,4 @@ TEST(PersonView, NobodyIsSeenBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 constexpr double at_border = 1.5;     // px: a box that comes this near to the picture's border is cut by it
@@ -160,4 +160,4 @@ PlacedPeople place_people(std::span<const Detection> detections, const GroundVie
   return placed;
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

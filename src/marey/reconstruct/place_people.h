@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "marey/core/detection.h"
+#include "marey/core/geometry.h"
 #include "marey/core/observation.h"
 #include "marey/geometry/ground_view.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// Standard deviations where nothing else is said.
 struct PlacePeopleOptions {
@@ -39,4 +40,4 @@ struct PlacedPeople {
 PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
                           const PlacePeopleOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::reconstruct

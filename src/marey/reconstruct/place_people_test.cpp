@@ -5,7 +5,7 @@
 
 #include "marey/reconstruct/room_test.h"
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 /// 7 m above the ground, 14 m before a touchline, looking across a pitch; x along it, y away from the camera.
@@ -15,7 +15,7 @@ Camera beside_the_pitch(double tilt_degrees = 12) {
   camera_from_world.row(0) = Vector<3>(1, 0, 0);
   camera_from_world.row(1) = Vector<3>(0, -std::sin(tilt), -std::cos(tilt));
   camera_from_world.row(2) = Vector<3>(0, std::cos(tilt), -std::sin(tilt));
-  return {BrownLens{{1500, 1500}, {959.5, 539.5}, {-0.1, 0.02}},
+  return {geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {-0.1, 0.02}},
           {camera_from_world, -camera_from_world * Vector<3>(0, -14, 7)},
           {1920, 1080}};
 }
@@ -53,7 +53,7 @@ double squared_distance(const Observation<2>& seen, const Vector<2>& truth) {
 
 TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
   const Camera camera = beside_the_pitch();
-  const Camera straight(BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
+  const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
   for (double y = 6; y <= 70; y += 8) {
     const Vector<2> place(y / 4, y);
     const auto whole = placed(box_of(camera, place), GroundView(camera));
@@ -66,7 +66,7 @@ TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
 }
 
 TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
-  const Camera camera(BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, beside_the_pitch().camera_from_world(), {1920, 1080});
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, beside_the_pitch().camera_from_world(), {1920, 1080});
   for (double y = 6; y <= 70; y += 8) {
     const Vector<2> from_camera = Vector<2>(y / 4, y) - Vector<2>(0, -14);
     const Vector<2> place(y / 4, y), tip = place - 0.1 * from_camera.normalized();
@@ -85,7 +85,7 @@ TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
 TEST(PlacePeople, SaysHowFarItMayBeWrong) {
   const PlacePeopleOptions options;
   const Camera bent = beside_the_pitch();
-  const Camera straight(BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, bent.camera_from_world(), bent.size());
+  const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, bent.camera_from_world(), bent.size());
   room::Random random(1);
   for (const double y : {8.0, 30.0, 65.0}) {
     const Vector<2> place(0.2 * y, y);
@@ -116,7 +116,7 @@ TEST(PlacePeople, SaysHowFarItMayBeWrong) {
 
 TEST(PlacePeople, TheHeadMakesThePlaceSurer) {
   const Camera camera = beside_the_pitch();
-  const Camera straight(BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
+  const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
   const Box box = box_of(straight, {5, 50});
   const auto whole = placed(box, GroundView(straight));
   const auto bare = placed(box, homography_of(straight));
@@ -164,7 +164,7 @@ TEST(PlacePeople, WhatThePictureCutsIsDoubted) {
 TEST(PlacePeople, ASharedRegionCoversItsPeople) {
   const Camera camera = beside_the_pitch();
   const Vector<2> left(-0.5, 30), right(0.5, 30.4);
-  const Box both = hull(box_of(camera, left), box_of(camera, right));
+  const Box both = geometry::hull(box_of(camera, left), box_of(camera, right));
   const auto seen = placed(both, GroundView(camera), 1);
   ASSERT_TRUE(seen);
   EXPECT_TRUE(seen->shared);
@@ -179,4 +179,4 @@ TEST(PlacePeople, NobodyStandsInTheSky) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -8,7 +8,7 @@
 #include "marey/reconstruct/frame_rays.h"
 #include "marey/reconstruct/triangulate.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// The rays of one frame as they are given away to points, each once.
 class RayGroups {
@@ -68,4 +68,4 @@ class RayList {
   std::vector<SightLine> lines_;
 };
 
-}  // namespace marey
+}  // namespace marey::reconstruct

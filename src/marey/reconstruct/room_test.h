@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/filter/random_stream.h"
 #include "marey/geometry/camera.h"
 
-namespace marey::room {
+namespace marey::reconstruct::room {
 
 class Random {
  public:
@@ -26,7 +27,7 @@ class Random {
   Vector<3> in_room() { return {uniform(-1.5, 1.5), uniform(-1.5, 1.5), uniform(0, 2.2)}; }
 
  private:
-  RandomStream stream_;
+  filter::RandomStream stream_;
 };
 
 /// At `centre`, looking at `target`, with a little distortion: 1280 × 1024 px, 60° wide.
@@ -35,7 +36,7 @@ inline Camera looking(const Vector<3>& centre, const Vector<3>& target) {
   const Vector<3> x = z.cross(Vector<3>::UnitZ()).normalized();
   Matrix<3> rotation;
   rotation << x.transpose(), z.cross(x).transpose(), z.transpose();
-  BrownLens lens;
+  geometry::BrownLens lens;
   lens.focal = {1000, 1004};
   lens.principal = {641, 509};
   lens.distortion = {-0.12, 0.05, 0.0004, -0.0003};
@@ -52,4 +53,4 @@ inline std::vector<Camera> cameras_round(int count) {
   return cameras;
 }
 
-}  // namespace marey::room
+}  // namespace marey::reconstruct::room

@@ -1,6 +1,6 @@
 #include "marey/reconstruct/sight_line.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 std::optional<SightLine> sight_line(const Camera& camera, int number, const Vector<2>& pixel, double sigma) {
   const auto ray = camera.ray(pixel);
@@ -10,4 +10,4 @@ std::optional<SightLine> sight_line(const Camera& camera, int number, const Vect
   return SightLine{number, ray->origin, ray->direction, at->by_world, sigma};
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <optional>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// What one seen pixel says of the world, in a form in which the reprojection error of a point costs a dozen multiplications
 /// whatever the lens: the half-line behind the pixel, and how pixels change across it.
@@ -35,4 +36,4 @@ struct SightLine {
 /// The half-line behind `pixel`, whose noise is `sigma` > 0 px along each axis; nothing where the lens shows nothing there.
 std::optional<SightLine> sight_line(const Camera& camera, int number, const Vector<2>& pixel, double sigma);
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 constexpr int kMostSteps = 25;
@@ -198,4 +198,4 @@ Triangulation Triangulator::operator()(std::span<const SightLine> rays, const Ve
   return solve(rays, used, near);
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -17,7 +17,7 @@
 
 #include "marey/reconstruct/sight_line.h"
 
-namespace marey {
+namespace marey::reconstruct {
 
 /// Why rays make no point.
 enum class NoPoint {
@@ -82,4 +82,4 @@ inline Triangulation triangulate(std::span<const SightLine> rays, const Triangul
   return Triangulator(options)(rays);
 }
 
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -8,7 +8,7 @@
 
 #include "marey/reconstruct/room_test.h"
 
-namespace marey {
+namespace marey::reconstruct {
 namespace {
 
 using room::cameras_round;
@@ -161,4 +161,4 @@ TEST(Triangulate, DoubtsFewSoundPoints) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::reconstruct

@@ -11,7 +11,7 @@
 
 #include "marey/simulate/random.h"
 
-namespace marey {
+namespace marey::simulate {
 namespace {
 
 constexpr double turning = 0.25;  // s, standard deviation: how long it takes to change one's velocity
@@ -145,4 +145,4 @@ EncounterScene simulate_encounters(std::uint64_t seed, const EncounterOptions& o
   return scene;
 }
 
-}  // namespace marey
+}  // namespace marey::simulate

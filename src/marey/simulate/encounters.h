@@ -6,7 +6,7 @@
 
 #include "marey/core/observation.h"
 
-namespace marey {
+namespace marey::simulate {
 
 /// What happens to two people who meet.
 enum class Encounter {
@@ -40,4 +40,4 @@ struct EncounterScene {
 /// what kind each meeting is, where and how, is drawn.
 EncounterScene simulate_encounters(std::uint64_t seed, const EncounterOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::simulate

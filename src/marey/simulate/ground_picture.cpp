@@ -9,7 +9,7 @@
 
 #include "marey/simulate/value_noise.h"
 
-namespace marey {
+namespace marey::simulate {
 namespace {
 
 struct Patch {
@@ -20,7 +20,7 @@ constexpr double kStripe = 5.5;     // m, of mowing
 constexpr double kLineWide = 0.12;  // m
 constexpr double kLineEvery = 11;   // m
 
-Rgb lawn_at(const Vector<2>& at, double px_per_m, std::uint64_t seed) {
+people::Rgb lawn_at(const Vector<2>& at, double px_per_m, std::uint64_t seed) {
   double bright = 1;
   for (std::size_t i = 0; i < kPatches.size(); ++i) {
     const double seen = std::clamp(kPatches[i].size * px_per_m / 2 - 0.5, 0.0, 1.0);
@@ -35,13 +35,13 @@ Rgb lawn_at(const Vector<2>& at, double px_per_m, std::uint64_t seed) {
 
 }  // namespace
 
-std::optional<Sighting> LevelCamera::operator()(const Vector<3>& point) const {
+std::optional<people::Sighting> LevelCamera::operator()(const Vector<3>& point) const {
   const double c = std::cos(pitch), s = std::sin(pitch);
   const double ahead = distance + c * point.y() - s * point.z();
   if (ahead < 0.1) return std::nullopt;
   const double down = -s * point.y() - c * point.z();
   const double scale = focal / ahead;
-  return Sighting{{(size.width - 1) / 2.0 + scale * point.x(), (size.height - 1) / 2.0 + scale * down}, scale, ahead};
+  return people::Sighting{{(size.width - 1) / 2.0 + scale * point.x(), (size.height - 1) / 2.0 + scale * down}, scale, ahead};
 }
 
 std::optional<Vector<2>> LevelCamera::on_ground(const Vector<2>& place) const {
@@ -59,11 +59,11 @@ Picture draw_lawn(const LevelCamera& camera, std::uint64_t seed) {
   const std::array<double, 2> offsets{-0.25, 0.25};
   for (int y = 0; y < bgr.rows; ++y) {
     for (int x = 0; x < bgr.cols; ++x) {
-      Rgb sum{};
+      people::Rgb sum{};
       for (const double dy : offsets) {
         for (const double dx : offsets) {
           const auto at = camera.on_ground({x + dx, y + dy});
-          const Rgb colour = at ? lawn_at(*at, camera.focal / camera.distance, seed) : Rgb{120, 130, 140};
+          const people::Rgb colour = at ? lawn_at(*at, camera.focal / camera.distance, seed) : people::Rgb{120, 130, 140};
           for (std::size_t i = 0; i < 3; ++i) sum[i] += colour[i] / 4;
         }
       }
@@ -74,4 +74,4 @@ Picture draw_lawn(const LevelCamera& camera, std::uint64_t seed) {
   return Picture::from_bgr(bgr);
 }
 
-}  // namespace marey
+}  // namespace marey::simulate

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "marey/core/picture.h"
-#include "marey/simulate/people_renderer.h"
+#include "marey/simulate/people/people_renderer.h"
 
-namespace marey {
+namespace marey::simulate {
 
 /// A camera above the origin's near side that looks at the origin: pinhole, no roll, no distortion. World: x to the right, y away
 /// from the camera.
@@ -16,7 +16,7 @@ struct LevelCamera {
   double distance = 45;     ///< m from the origin
   double pitch = 0.38;      ///< rad downwards
 
-  std::optional<Sighting> operator()(const Vector<3>& point) const;
+  std::optional<people::Sighting> operator()(const Vector<3>& point) const;
   /// The point of the ground that is seen at a place of the picture, m; nothing above the horizon.
   std::optional<Vector<2>> on_ground(const Vector<2>& place) const;
 };
@@ -24,4 +24,4 @@ struct LevelCamera {
 /// A mown lawn with white lines as the camera sees it: stripes, patches, blades where they are large enough to be seen. Colour.
 Picture draw_lawn(const LevelCamera& camera, std::uint64_t seed);
 
-}  // namespace marey
+}  // namespace marey::simulate

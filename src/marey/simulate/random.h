@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-namespace marey {
+namespace marey::simulate {
 
 /// Random numbers that are the same on every machine and standard library: the engine is fixed by the C++ standard, and the
 /// distributions, which it leaves open, are ours.
@@ -33,4 +33,4 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-}  // namespace marey
+}  // namespace marey::simulate

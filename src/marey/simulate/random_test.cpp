@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::simulate {
 namespace {
 
 TEST(Random, SameSeedSameNumbers) {
@@ -34,4 +34,4 @@ TEST(Random, MomentsAreThoseOfTheDistributions) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::simulate

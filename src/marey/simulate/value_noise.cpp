@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace marey {
+namespace marey::simulate {
 namespace {
 
 /// A random value in [−1, 1] for a corner of a grid, by mixing bits (after Steele, Lea & Flood's SplitMix64).
@@ -27,4 +27,4 @@ double value_noise(const Vector<2>& at, std::uint64_t seed) {
   return (1 - v) * top + v * bottom;
 }
 
-}  // namespace marey
+}  // namespace marey::simulate

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::simulate {
 
 /// Smooth random values in [−1, 1] over the plane: random at the corners of a grid of whole numbers, mixed between them. The same
 /// for the same seed.
 double value_noise(const Vector<2>& at, std::uint64_t seed);
 
-}  // namespace marey
+}  // namespace marey::simulate

@@ -8,7 +8,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 struct FreeFrame {
@@ -122,4 +122,4 @@ Picture PictureMaker::turned(const Picture& picture) const {
   return {luma, cb, cr, picture.range()};
 }
 
-}  // namespace marey
+}  // namespace marey::source

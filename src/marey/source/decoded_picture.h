@@ -9,7 +9,7 @@
 struct AVFrame;
 struct SwsContext;
 
-namespace marey {
+namespace marey::source {
 
 /// Makes Pictures of what FFmpeg decodes. 4:2:0 and grey are taken as they are, without a copy for 4:2:0; any other storage
 /// (RGB, 4:2:2, 10 bits …) is brought to 4:2:0, and grey deeper than 8 bits to 16.
@@ -33,4 +33,4 @@ class PictureMaker {
   int turn_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::source

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/free_by.h"
 #include "marey/source/decoded_picture.h"
 
 extern "C" {
@@ -14,13 +14,13 @@ extern "C" {
 #include <libavutil/display.h>
 }
 
-namespace marey {
+namespace marey::source {
 namespace {
 
-using FormatPtr = std::unique_ptr<AVFormatContext, FreeBy<AVFormatContext, avformat_close_input>>;
-using CodecPtr = std::unique_ptr<AVCodecContext, FreeBy<AVCodecContext, avcodec_free_context>>;
-using FramePtr = std::unique_ptr<AVFrame, FreeBy<AVFrame, av_frame_free>>;
-using PacketPtr = std::unique_ptr<AVPacket, FreeBy<AVPacket, av_packet_free>>;
+using FormatPtr = std::unique_ptr<AVFormatContext, CDeleter<AVFormatContext, avformat_close_input>>;
+using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 
 /// A decoder that is out of packets may refuse this many pictures in a row before it is given up.
 constexpr int kMostErrorsWhileDraining = 64;
@@ -174,4 +174,4 @@ void Decoder::Parts::feed() {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::source

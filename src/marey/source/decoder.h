@@ -11,7 +11,7 @@
 
 struct AVFrame;
 
-namespace marey {
+namespace marey::source {
 
 /// FFmpeg's libraries behind five verbs: opens the best video stream of a file and yields its pictures in order of display.
 /// What is damaged is passed over and counted; only a file that cannot be opened at all throws.
@@ -49,4 +49,4 @@ class Decoder {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace marey
+}  // namespace marey::source

@@ -5,7 +5,7 @@
 #include "marey/source/picture_files.h"
 #include "marey/source/video_source.h"
 
-namespace marey {
+namespace marey::source {
 
 std::unique_ptr<Source> open_source(const std::string& path, std::optional<double> rate_hz) {
   std::error_code error;
@@ -17,4 +17,4 @@ std::unique_ptr<Source> open_source(const std::string& path, std::optional<doubl
   return open_video(path, rate_hz);
 }
 
-}  // namespace marey
+}  // namespace marey::source

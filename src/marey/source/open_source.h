@@ -6,10 +6,10 @@
 
 #include "marey/core/source.h"
 
-namespace marey {
+namespace marey::source {
 
 /// Opens whatever `path` names: a video file, a folder of pictures, or a pattern of picture names (see find_pictures).
 /// `rate_hz`, which must be positive, overrides what the file says. Throws Error where there is nothing to be read.
 std::unique_ptr<Source> open_source(const std::string& path, std::optional<double> rate_hz = std::nullopt);
 
-}  // namespace marey
+}  // namespace marey::source

@@ -11,7 +11,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 /// Five pictures, shot_8.png to shot_12.png, each one grey level.
@@ -92,4 +92,4 @@ TEST(OpenSource, NothingToReadIsSaidInOneSentence) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::source

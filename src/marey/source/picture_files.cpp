@@ -11,7 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/source/decoder.h"
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ std::unique_ptr<Source> open_pictures(const std::string& name, std::vector<std::
   return std::make_unique<PictureFiles>(name, std::move(files), rate_hz);
 }
 
-}  // namespace marey
+}  // namespace marey::source

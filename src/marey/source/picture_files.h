@@ -7,7 +7,7 @@
 
 #include "marey/core/source.h"
 
-namespace marey {
+namespace marey::source {
 
 /// The pictures that `path` names, sorted as a person would: picture2 before picture10. A folder: every file in it that ends
 /// as pictures do. A pattern: files whose whole name matches, `%d` or `%04d` for a number, `*` and `?` as in a shell; patterns
@@ -25,4 +25,4 @@ bool is_picture_pattern(const std::string& path);
 /// empty or none of them can be read; `name` is what the user gave.
 std::unique_ptr<Source> open_pictures(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz);
 
-}  // namespace marey
+}  // namespace marey::source

@@ -4,7 +4,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 /// Chroma is stored at half size: a region that begins on an odd pixel is cut from the colours themselves.
@@ -60,4 +60,4 @@ std::unique_ptr<Source> crop(std::unique_ptr<Source> source, cv::Rect region) {
   return std::make_unique<RegionSource>(std::move(source), region);
 }
 
-}  // namespace marey
+}  // namespace marey::source

@@ -9,7 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/source/decoder.h"
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 /// What a file without a rate is counted at.
@@ -101,4 +101,4 @@ std::unique_ptr<Source> open_video(const std::string& path, std::optional<double
   return std::make_unique<VideoSource>(path, rate_hz);
 }
 
-}  // namespace marey
+}  // namespace marey::source

@@ -11,7 +11,7 @@
 #include "support/data.h"
 #include "support/files.h"
 
-namespace marey {
+namespace marey::source {
 namespace {
 
 using test::ffmpeg;
@@ -218,4 +218,4 @@ TEST(VideoSource, TheStreetVideo) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::source

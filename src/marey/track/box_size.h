@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "marey/geometry/box.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::track {
 
 struct BoxSizeOptions {
   double noise = 0.08;          ///< of the logarithm of one measured side, standard deviation
@@ -120,4 +120,4 @@ class BoxSize {
   BoxSide height_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

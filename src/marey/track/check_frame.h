@@ -8,7 +8,7 @@
 #include "marey/core/observation.h"
 #include "marey/core/time.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Throws Error where a frame does not come after the one `before` it.
 inline void check_time(Timestamp now, std::optional<Timestamp> before) {
@@ -31,4 +31,4 @@ void check_finite(Timestamp now, std::span<const Observation<D>> seen) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::track

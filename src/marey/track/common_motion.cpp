@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 constexpr std::size_t most_people = 40;
@@ -87,4 +87,4 @@ Vector<2> common_motion(std::span<const Sighting> expected, std::span<const Sigh
   return best.sum >= still.sum + margin ? best.mean : Vector<2>::Zero();
 }
 
-}  // namespace marey
+}  // namespace marey::track

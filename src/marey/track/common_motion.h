@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Where one target is expected, or one thing was seen, with its height: px.
 struct Sighting {
@@ -17,4 +17,4 @@ struct Sighting {
 /// few to tell or standing still explains them as well.
 Vector<2> common_motion(std::span<const Sighting> expected, std::span<const Sighting> seen);
 
-}  // namespace marey
+}  // namespace marey::track

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 std::vector<Sighting> crowd(std::mt19937& random, int people) {
@@ -51,4 +51,4 @@ TEST(CommonMotion, TooFewPeopleTellNothing) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

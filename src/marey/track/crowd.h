@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "marey/assign/point_grid.h"
+#include "marey/core/geometry.h"
 #include "marey/core/observation.h"
-#include "marey/geometry/box.h"
 #include "marey/track/target.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Who is near whom in the image: which targets crowd each other, which hide behind others, and which have merged into one region.
 /// Makes sense of targets with a size in the image only. `camera` is by how far the camera has moved the picture.
@@ -35,7 +35,7 @@ class Crowd {
       neighbours_.for_each_near(in_view(target), (target.unit + widest_) / 2, [&](int index) {
         const Target<F>& other = targets[index];
         if (other.id == target.id || !other.size || target.crowded) return;
-        target.crowded = intersection(box, box_of(other)).area() > crowded_share * box.area();
+        target.crowded = geometry::intersection(box, box_of(other)).area() > crowded_share * box.area();
       });
     }
   }
@@ -64,7 +64,7 @@ class Crowd {
     for (Target<F>& target : targets) {
       if (target.observation >= 0 || !target.size) continue;
       const Box box = box_of(target);
-      const auto covers = [&](const Box& other) { return intersection(box, other).area() > covered_share * box.area(); };
+      const auto covers = [&](const Box& other) { return geometry::intersection(box, other).area() > covered_share * box.area(); };
       neighbours_.for_each_near(in_view(target), target.unit / 2 + widest_, [&](int index) {
         const Target<F>& other = targets[index];
         if (target.hidden || other.observation < 0 || !other.size) return;
@@ -94,7 +94,7 @@ class Crowd {
       const Target<F>& target = targets[index];
       if (!target.confirmed || target.observation >= 0 || !target.size) return;
       const Box box = box_of(target);
-      if (intersection(box, region).area() > merged_share * box.area()) covered_.push_back(index);
+      if (geometry::intersection(box, region).area() > merged_share * box.area()) covered_.push_back(index);
     });
     std::sort(covered_.begin(), covered_.end());
   }
@@ -106,9 +106,9 @@ class Crowd {
 
   Vector<2> camera_ = Vector<2>::Zero();
   std::vector<Vector<2>> centres_;
-  PointGrid<2> neighbours_;
+  assign::PointGrid<2> neighbours_;
   double widest_ = 0;
   std::vector<int> covered_, claimant_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 /// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the way. Velocities at the ends are
@@ -53,4 +53,4 @@ std::vector<TrackRow> fill_gaps(Recording& recording, const GapOptions& options,
   return rows;
 }
 
-}  // namespace marey
+}  // namespace marey::track

@@ -4,7 +4,7 @@
 
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::track {
 
 struct GapOptions {
   double longest_filled = 1;  ///< s; in a longer gap nothing is said of where the target was
@@ -16,4 +16,4 @@ struct GapOptions {
 /// frames, then ids. The recording's tracklets are used up.
 std::vector<TrackRow> fill_gaps(Recording& recording, const GapOptions& options = {}, int fewest = 3);
 
-}  // namespace marey
+}  // namespace marey::track

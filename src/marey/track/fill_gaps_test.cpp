@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 Timestamp frame_time(int frame) {
@@ -58,4 +58,4 @@ TEST(FillGaps, ALongGapStaysOpenAndAFewSightingsAreNobody) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

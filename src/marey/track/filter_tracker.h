@@ -16,15 +16,16 @@
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/point_grid.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/chi_square.h"
 #include "marey/track/check_frame.h"
 #include "marey/track/common_motion.h"
 #include "marey/track/crowd.h"
-#include "marey/track/reclaim.h"
+#include "marey/track/reidentification.h"
 #include "marey/track/target.h"
 #include "marey/track/tracker.h"
 
-namespace marey {
+namespace marey::track {
 
 template <typename F>
 class FilterTracker final : public Tracker<F::dimension> {
@@ -35,7 +36,7 @@ class FilterTracker final : public Tracker<F::dimension> {
       : options_(options),
         filter_options_(filter_options),
         size_options_{.noise = options.size_noise, .drift = options.size_drift},
-        gate_(chi_square_quantile(D, options.gate_probability)) {}
+        gate_(geometry::chi_square_quantile(D, options.gate_probability)) {}
 
   std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
     check_time(now, now_);
@@ -52,7 +53,7 @@ class FilterTracker final : public Tracker<F::dimension> {
                        [&](const Observation<D>& o, const Target<F>& target) { return place_of(o, target); });
     }
     keep_merged(seen);
-    correct(now, seen);
+    filter::correct(now, seen);
     retire_lost(now);
     start_unclaimed(now, seen);
     return report(now);
@@ -183,7 +184,7 @@ class FilterTracker final : public Tracker<F::dimension> {
     }
     const auto columns = assigner_.assign(static_cast<int>(free_targets_.size()), static_cast<int>(candidates_.size()), pairs_);
     for (int row = 0; row < static_cast<int>(free_targets_.size()); ++row) {
-      if (columns[row] != GatedAssigner::nobody) targets_[free_targets_[row]].observation = candidates_[columns[row]];
+      if (columns[row] != assign::GatedAssigner::nobody) targets_[free_targets_[row]].observation = candidates_[columns[row]];
     }
   }
 
@@ -210,13 +211,13 @@ class FilterTracker final : public Tracker<F::dimension> {
         if (!target.confirmed || target.observation >= 0 || !target.size || seconds(*now_ - target.last_seen) > recently) continue;
         const Box box = target.size->around(in_view(target));
         grid_.for_each_near(in_view(target), target.unit, [&](int column) {
-          const double overlap = iou(box, *seen[candidates_[column]].box);
+          const double overlap = geometry::iou(box, *seen[candidates_[column]].box);
           if (overlap > overlapped) pairs_.push_back({row, column, overlap});
         });
       }
       const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(candidates_.size()), pairs_);
       for (int row = 0; row < static_cast<int>(targets_.size()); ++row) {
-        if (columns[row] != GatedAssigner::nobody) targets_[row].observation = candidates_[columns[row]];
+        if (columns[row] != assign::GatedAssigner::nobody) targets_[row].observation = candidates_[columns[row]];
       }
     }
   }
@@ -332,16 +333,16 @@ class FilterTracker final : public Tracker<F::dimension> {
     Matrix<D> R = observation.covariance;
     if (has_box) R.diagonal() = R.diagonal().cwiseMax(Vector<D>::Constant(std::pow(options_.place_noise * unit, 2)));
     Target<F> target{.id = TrackId{next_id_++},
-                     .filter = F(filter_options_.scaled(unit), centre_of(observation) - camera_, R),
-                     .size = {},
-                     .unit = unit,
-                     .born = now,
-                     .last_seen = now,
-                     .evidence = evidence_of(observation.score),
-                     .confirmed = false,
-                     .score = observation.score,
-                     .observation = index,
-                     .hidden = false};
+                             .filter = F(filter_options_.scaled(unit), centre_of(observation) - camera_, R),
+                             .size = {},
+                             .unit = unit,
+                             .born = now,
+                             .last_seen = now,
+                             .evidence = evidence_of(observation.score),
+                             .confirmed = false,
+                             .score = observation.score,
+                             .observation = index,
+                             .hidden = false};
     if (has_box) target.size.emplace(*observation.box, size_options_);
     target.confirmed = target.evidence >= options_.confirm;
     targets_.push_back(target);
@@ -401,12 +402,12 @@ class FilterTracker final : public Tracker<F::dimension> {
   std::vector<int> candidates_, free_targets_;
   std::vector<Vector<D>> points_;
   std::vector<Sighting> expected_, sightings_;
-  std::vector<GatedPair> pairs_;
+  std::vector<assign::GatedPair> pairs_;
   std::vector<char> claimed_, merged_;
-  PointGrid<D> grid_;  // of observations
+  assign::PointGrid<D> grid_;  // of observations
   Crowd<F> crowd_;
-  Reclaim<F> reclaim_;
-  GatedAssigner assigner_;
+  Reidentification<F> reclaim_;
+  assign::GatedAssigner assigner_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

@@ -16,9 +16,9 @@
 #include "marey/filter/filter.h"
 #include "marey/track/tracker.h"
 
-namespace marey {
+namespace marey::track {
 
-template <Filter F>
+template <filter::Filter F>
 class IndependentTracker final : public Tracker<F::dimension> {
  public:
   static constexpr int D = F::dimension;
@@ -93,4 +93,4 @@ class IndependentTracker final : public Tracker<F::dimension> {
   Timestamp last_{};
 };
 
-}  // namespace marey
+}  // namespace marey::track

@@ -4,10 +4,10 @@
 
 #include "marey/filter/alpha_beta.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
-using PaperTracker = IndependentTracker<AlphaBeta<2>>;
+using PaperTracker = IndependentTracker<filter::AlphaBeta<2>>;
 
 std::vector<Observation<2>> at(std::initializer_list<Vector<2>> places) {
   std::vector<Observation<2>> seen;
@@ -20,7 +20,7 @@ Timestamp frame(int index) {
 }
 
 TEST(IndependentTracker, EachTargetTakesTheNearestPointInItsOwnCircle) {
-  PaperTracker tracker(AlphaBetaOptions{});
+  PaperTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}, {200, 100}}));
   const auto tracks = tracker.step(frame(1), at({{205, 100}, {110, 100}, {120, 100}}));
   ASSERT_EQ(tracks.size(), 2u);
@@ -29,14 +29,14 @@ TEST(IndependentTracker, EachTargetTakesTheNearestPointInItsOwnCircle) {
 }
 
 TEST(IndependentTracker, TwoTargetsMayTakeTheSamePoint) {
-  PaperTracker tracker(AlphaBetaOptions{});
+  PaperTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}, {110, 100}}));
   const auto tracks = tracker.step(frame(1), at({{104, 100}}));
   EXPECT_EQ(tracks[0].position, tracks[1].position);
 }
 
 TEST(IndependentTracker, WithNothingInTheCircleItCoasts) {
-  PaperTracker tracker(AlphaBetaOptions{});
+  PaperTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}}));
   tracker.step(frame(1), at({{110, 100}}));
   const Vector<2> expected = tracker.expected(frame(2))[0].position;
@@ -47,4 +47,4 @@ TEST(IndependentTracker, WithNothingInTheCircleItCoasts) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

@@ -15,7 +15,7 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/track/smooth.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 using Tracklet = Recording::Tracklet;
@@ -90,12 +90,13 @@ class Joiner {
     return end;
   }
 
-  std::vector<GatedPair> candidates(const std::vector<End>& tails, const std::vector<End>& heads, double longest_gap) const {
+  std::vector<assign::GatedPair> candidates(const std::vector<End>& tails, const std::vector<End>& heads,
+                                            double longest_gap) const {
     std::vector<int> by_time(heads.size());
     std::iota(by_time.begin(), by_time.end(), 0);
     std::sort(by_time.begin(), by_time.end(),
               [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
-    std::vector<GatedPair> pairs;
+    std::vector<assign::GatedPair> pairs;
     for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
       const auto later = [&](double time, int head) { return time < heads[head].time; };
       auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time, later);
@@ -129,13 +130,13 @@ class Joiner {
   static void merge(std::vector<Tracklet>& tracklets, std::span<const int> successors) {
     std::vector<char> follows(tracklets.size(), 0);
     for (const int successor : successors) {
-      if (successor != GatedAssigner::nobody) follows[successor] = 1;
+      if (successor != assign::GatedAssigner::nobody) follows[successor] = 1;
     }
     std::vector<Tracklet> joined;
     for (std::size_t first = 0; first < tracklets.size(); ++first) {
       if (follows[first]) continue;
       Tracklet whole = std::move(tracklets[first]);
-      for (int next = successors[first]; next != GatedAssigner::nobody; next = successors[next]) {
+      for (int next = successors[first]; next != assign::GatedAssigner::nobody; next = successors[next]) {
         whole.insert(whole.end(), tracklets[next].begin(), tracklets[next].end());
         Tracklet().swap(tracklets[next]);
       }
@@ -146,7 +147,7 @@ class Joiner {
 
   const Recording& recording_;
   const JoinOptions& options_;
-  GatedAssigner assigner_;
+  assign::GatedAssigner assigner_;
 };
 
 /// Predicted rows at the ends are cut.
@@ -238,4 +239,4 @@ std::vector<TrackRow> join(Recording& recording, const JoinOptions& options) {
   return by_frame(tracklets);
 }
 
-}  // namespace marey
+}  // namespace marey::track

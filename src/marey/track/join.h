@@ -4,7 +4,7 @@
 
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Lengths in body heights where targets have boxes, else in px.
 struct JoinOptions {
@@ -26,4 +26,4 @@ struct JoinOptions {
 /// first appearance. Rows in the order of frames, then ids. The recording's tracklets are used up.
 std::vector<TrackRow> join(Recording& recording, const JoinOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::track

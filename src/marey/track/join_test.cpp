@@ -8,7 +8,7 @@
 
 #include "marey/track/smooth.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 constexpr double rate = 10;  // Hz
@@ -130,4 +130,4 @@ TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

@@ -10,7 +10,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ void OutlineRecording::read_frame() {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::track

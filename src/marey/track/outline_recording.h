@@ -11,7 +11,7 @@
 #include "marey/core/outline.h"
 #include "marey/core/track.h"
 
-namespace marey {
+namespace marey::track {
 
 /// The outlines of a recording, frame by frame, kept for a second pass: on disk, in a file without a name that is gone with the
 /// program, because an outline takes ten times the room of all else that is known of a target in a frame. Lengths are kept as
@@ -53,4 +53,4 @@ class OutlineRecording {
   Frame frame_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

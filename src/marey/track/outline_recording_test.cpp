@@ -8,7 +8,7 @@
 
 #include "support/files.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 /// Numbers that single precision holds exactly, so that what is read must equal what was written.
@@ -97,4 +97,4 @@ TEST(OutlineRecording, LeavesNothingInTheFolderAndTakesADeviceForNone) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 TrackRow row_of(std::int32_t frame, const Track<2>& track) {
@@ -69,4 +69,4 @@ std::vector<Recording::Tracklet> Recording::take_tracklets() {
   return all;
 }
 
-}  // namespace marey
+}  // namespace marey::track

@@ -7,7 +7,7 @@
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 
-namespace marey {
+namespace marey::track {
 
 /// One target in one frame, as small as a match of 90 minutes needs it: 64 bytes. px and px/s.
 struct TrackRow {
@@ -55,4 +55,4 @@ class Recording {
   std::vector<Tracklet> closed_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
-#include "marey/track/companions.h"
+#include "marey/track/rigid_neighbours.h"
 #include "marey/track/roster_target.h"
 
-namespace marey {
+namespace marey::track {
 
 template <typename F>
 class RosterAdoption {
@@ -25,8 +25,8 @@ class RosterAdoption {
       : options_(options), filter_options_(filter_options) {}
 
   /// Gives targets that are missed what they are thought to be seen as, and marks it in `claimed`, one entry a point.
-  void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed, RosterSight<F>& sight,
-                 const Companions& companions) {
+  void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
+                 RosterSight<F>& sight, const RigidNeighbours& companions) {
     lost_.clear();
     free_.clear();
     for (int i = 0; i < std::ssize(targets); ++i) {
@@ -53,7 +53,7 @@ class RosterAdoption {
   /// What it costs to believe that a target that was lost is at a place; nothing where it cannot be. Where enough of those that
   /// move with it are seen, their word counts; else the way. Of who has `stayed` there for a while less is asked: somebody he must
   /// be.
-  std::optional<double> cost(const Target& target, const Vector<D>& place, const Companions& companions, bool stayed) const {
+  std::optional<double> cost(const Target& target, const Vector<D>& place, const RigidNeighbours& companions, bool stayed) const {
     if constexpr (D == 3) {
       if (target.member) {
         if (const auto misfit = companions.misfit(*target.member, place)) {
@@ -74,7 +74,7 @@ class RosterAdoption {
   }
 
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& claimed,
-                    const RosterSight<F>& sight, const Companions& companions) {
+                    const RosterSight<F>& sight, const RigidNeighbours& companions) {
     if (free_.empty() || std::ssize(lost_) * std::ssize(free_) > kMostLostPairs) return;
     pairs_.clear();
     for (int row = 0; row < std::ssize(lost_); ++row) {
@@ -89,7 +89,7 @@ class RosterAdoption {
     }
     const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(free_.size()), pairs_);
     for (int row = 0; row < std::ssize(lost_); ++row) {
-      if (columns[row] == GatedAssigner::nobody) continue;
+      if (columns[row] == assign::GatedAssigner::nobody) continue;
       const int index = free_[columns[row]];
       begin_anew(targets[lost_[row]], seen[index].value, sight.noise_of(seen[index]));
       targets[lost_[row]].observation = index;
@@ -108,7 +108,7 @@ class RosterAdoption {
   }
 
   /// A newcomer that has stayed is one of those who are missed.
-  void adopt_newcomers(std::span<Target> targets, const Companions& companions) {
+  void adopt_newcomers(std::span<Target> targets, const RigidNeighbours& companions) {
     pairs_.clear();
     proven_.clear();
     for (int i = 0; i < std::ssize(targets); ++i) {
@@ -128,7 +128,7 @@ class RosterAdoption {
     if (pairs_.empty()) return;
     const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(targets.size()), pairs_);
     for (int row = 0; row < std::ssize(lost_); ++row) {
-      if (columns[row] == GatedAssigner::nobody) continue;
+      if (columns[row] == assign::GatedAssigner::nobody) continue;
       Target& target = targets[lost_[row]];
       Target& newcomer = targets[columns[row]];
       target.filter = newcomer.filter;
@@ -151,8 +151,8 @@ class RosterAdoption {
   typename F::Options filter_options_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> lost_, free_, proven_;
-  std::vector<GatedPair> pairs_;
-  GatedAssigner assigner_;
+  std::vector<assign::GatedPair> pairs_;
+  assign::GatedAssigner assigner_;
 };
 
-}  // namespace marey
+}  // namespace marey::track

@@ -12,7 +12,7 @@
 #include "marey/core/observation.h"
 #include "marey/track/roster_tracker.h"
 
-namespace marey {
+namespace marey::track {
 
 /// One point that the roster tracker follows.
 template <typename F>
@@ -25,16 +25,16 @@ struct RosterTarget {
   TrackId id;
   std::string label;
   F filter;
-  double width;                     ///< of its marker
+  double width;                             ///< of its marker
   Vector<F::dimension> last_place;  ///< where it was last seen
-  double unseen = 0;                ///< s, since then
-  double seen = 0;                  ///< s, in which it was
-  int observation = kNone;          ///< in this frame
-  int covered_by = kNone;           ///< the observation that it is taken to be behind
-  std::optional<int> member = {};   ///< its number among companions
-  double guided = 0;                ///< while it is unseen: variance of where its companions say that it is; 0 where they do not
-  int doubts = 0;                   ///< frames on end in which companions said that what is followed is somebody else
-  bool crowded = false;             ///< another target is within a marker's width
+  double unseen = 0;                        ///< s, since then
+  double seen = 0;                          ///< s, in which it was
+  int observation = kNone;                  ///< in this frame
+  int covered_by = kNone;                   ///< the observation that it is taken to be behind
+  std::optional<int> member = {};           ///< its number among companions
+  double guided = 0;     ///< while it is unseen: variance of where its companions say that it is; 0 where they do not
+  int doubts = 0;        ///< frames on end in which companions said that what is followed is somebody else
+  bool crowded = false;  ///< another target is within a marker's width
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established
 
@@ -109,4 +109,4 @@ class RosterSight {
   double extent_ = 1;       // of the scene, px
 };
 
-}  // namespace marey
+}  // namespace marey::track

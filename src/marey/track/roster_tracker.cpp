@@ -22,10 +22,10 @@
 #include "marey/core/error.h"
 #include "marey/track/check_frame.h"
 #include "marey/track/roster_adoption.h"
-#include "marey/track/roster_companions.h"
+#include "marey/track/roster_rigid_neighbours.h"
 #include "marey/track/roster_target.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 template <typename F>
@@ -60,7 +60,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       }
       meet(seen);
       adoption_.find_lost(targets_, seen, claimed_, sight_, companions_.all());
-      correct(seen);
+      filter::correct(seen);
       judge_newcomers();
       start_unclaimed(seen);
     }
@@ -151,7 +151,7 @@ class RosterTracker final : public Tracker<F::dimension> {
     }
     const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
     for (int row = 0; row < std::ssize(targets_); ++row) {
-      if (columns[row] == GatedAssigner::nobody) continue;
+      if (columns[row] == assign::GatedAssigner::nobody) continue;
       targets_[row].observation = columns[row];
       claimed_[columns[row]] = 1;
     }
@@ -178,8 +178,8 @@ class RosterTracker final : public Tracker<F::dimension> {
   double reach_of(const Target& target, const Spread& spread) const {
     const double fastest = options_.max_speed * target.unseen + target.width;
     if constexpr (requires { target.filter.search_reach(0.0); }) {
-      const double change =
-          std::max(spread.widest - target.width, target.width - spread.narrowest) - RosterSight<F>::kWidthNoise * target.width;
+      const double change = std::max(spread.widest - target.width, target.width - spread.narrowest) -
+                            RosterSight<F>::kWidthNoise * target.width;
       return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
     } else {
       return fastest;
@@ -340,27 +340,28 @@ class RosterTracker final : public Tracker<F::dimension> {
   int next_id_ = 1;
   RosterSight<F> sight_;
   RosterAdoption<F> adoption_;
-  RosterCompanions<F> companions_;
+  RosterRigidNeighbours<F> companions_;
   std::vector<Target> targets_;  // in the order of their ids
   std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<Vector<D>> points_, places_;
-  std::vector<GatedPair> pairs_;
+  std::vector<assign::GatedPair> pairs_;
   std::vector<char> claimed_;
-  PointGrid<D> grid_;
-  GatedAssigner assigner_;
+  assign::PointGrid<D> grid_;
+  assign::GatedAssigner assigner_;
 };
 
 }  // namespace
 
 template <int D>
 std::unique_ptr<Tracker<D>> make_roster_tracker(const RosterTrackerOptions& options) {
-  return with_filter<D>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
-    return std::make_unique<RosterTracker<F>>(options, filter);
-  });
+  return filter::with_filter<D>(options.filter,
+                                [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
+                                  return std::make_unique<RosterTracker<F>>(options, filter);
+                                });
 }
 
 template std::unique_ptr<Tracker<2>> make_roster_tracker<2>(const RosterTrackerOptions& options);
 template std::unique_ptr<Tracker<3>> make_roster_tracker<3>(const RosterTrackerOptions& options);
 
-}  // namespace marey
+}  // namespace marey::track

@@ -7,11 +7,11 @@
 #include "marey/filter/filters.h"
 #include "marey/track/tracker.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Lengths in the unit of the observations: px in the image, m in space.
 struct RosterTrackerOptions {
-  FilterOptions filter = InteractingModelsOptions{};
+  filter::FilterOptions filter = filter::InteractingModelsOptions{};
   std::vector<std::string> labels;  ///< names for the points of the first frame, left to right, those in one column top to bottom
   double max_speed = 6000;          ///< no marker moves faster, px/s
   double marker_width = 8;          ///< of an observation without a box, px
@@ -26,4 +26,4 @@ struct RosterTrackerOptions {
 template <int D>
 std::unique_ptr<Tracker<D>> make_roster_tracker(const RosterTrackerOptions& options);
 
-}  // namespace marey
+}  // namespace marey::track

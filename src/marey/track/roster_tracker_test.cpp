@@ -4,7 +4,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 using Places = std::vector<Vector<2>>;
@@ -125,4 +125,4 @@ TEST(RosterTracker, ExpectedDoesNotMoveAnybody) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

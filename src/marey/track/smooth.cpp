@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 using Tracklet = Recording::Tracklet;
@@ -135,4 +135,4 @@ void smooth(Tracklet& rows, const Recording& recording, const Smoothing& smoothi
   }
 }
 
-}  // namespace marey
+}  // namespace marey::track

@@ -2,7 +2,7 @@
 
 #include "marey/track/recording.h"
 
-namespace marey {
+namespace marey::track {
 
 struct Smoothing {
   double place = 0.12;  ///< standard deviation of the kernel over time, s
@@ -17,4 +17,4 @@ void fill_gaps(Recording::Tracklet& rows, const Recording& recording, double lon
 /// both ways, so that nothing lags. Observed rows weigh more than predicted ones.
 void smooth(Recording::Tracklet& rows, const Recording& recording, const Smoothing& smoothing);
 
-}  // namespace marey
+}  // namespace marey::track

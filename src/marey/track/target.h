@@ -5,9 +5,9 @@
 #include "marey/core/ids.h"
 #include "marey/core/time.h"
 #include "marey/track/box_size.h"
-#include "marey/track/cruise.h"
+#include "marey/track/unoccluded_motion.h"
 
-namespace marey {
+namespace marey::track {
 
 /// One thing that is followed: its motion, its size, and the evidence that it is there.
 template <typename F>
@@ -24,7 +24,7 @@ struct Target {
   int observation = -1;  ///< its index in this frame; -1 for none
   bool crowded = false;  ///< its box meets another target's
   bool hidden = false;   ///< not seen, and another target or a shared region explains why
-  Cruise<F::dimension> cruise{};
+  UnoccludedMotion<F::dimension> cruise{};
 };
 
-}  // namespace marey
+}  // namespace marey::track

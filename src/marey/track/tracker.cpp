@@ -3,7 +3,7 @@
 #include "marey/core/error.h"
 #include "marey/track/filter_tracker.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 void check(bool good, const char* name, double value, const char* domain) {
@@ -24,7 +24,7 @@ void check(const TrackerOptions& o) {
 
 TrackerOptions point_tracker_options() {
   TrackerOptions options;
-  options.filter = KalmanOptions{};
+  options.filter = filter::KalmanOptions{};
   options.max_speed = 5000;
   return options;
 }
@@ -32,12 +32,13 @@ TrackerOptions point_tracker_options() {
 template <int D>
 std::unique_ptr<Tracker<D>> make_tracker(const TrackerOptions& options) {
   check(options);
-  return with_filter<D>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
-    return std::make_unique<FilterTracker<F>>(options, filter);
-  });
+  return filter::with_filter<D>(options.filter,
+                                [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
+                                  return std::make_unique<FilterTracker<F>>(options, filter);
+                                });
 }
 
 template std::unique_ptr<Tracker<2>> make_tracker<2>(const TrackerOptions& options);
 template std::unique_ptr<Tracker<3>> make_tracker<3>(const TrackerOptions& options);
 
-}  // namespace marey
+}  // namespace marey::track

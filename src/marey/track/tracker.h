@@ -8,7 +8,7 @@
 #include "marey/core/track.h"
 #include "marey/filter/filters.h"
 
-namespace marey {
+namespace marey::track {
 
 /// Follows many targets: observations of one instant in, tracks out. D = 2 in the image (px) and on the ground (m), 3 in space.
 template <int D>
@@ -28,7 +28,7 @@ class Tracker {
 /// Lengths are in sizes of the target where observations carry a box (its height in the image: a standing person moves as many
 /// body heights a second near the camera as far from it), else in the unit of the observations (px or m).
 struct TrackerOptions {
-  FilterOptions filter = KalmanOptions{.acceleration_noise = 0.45, .initial_speed = 0.8, .gate_sigmas = 3.5};
+  filter::FilterOptions filter = filter::KalmanOptions{.acceleration_noise = 0.45, .initial_speed = 0.8, .gate_sigmas = 3.5};
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 7;             ///< nothing moves faster, sizes/s: 12 m/s for a person
   double place_noise = 0.04;        ///< standard deviation of a box's centre, sizes, at least
@@ -52,4 +52,4 @@ TrackerOptions point_tracker_options();
 template <int D>
 std::unique_ptr<Tracker<D>> make_tracker(const TrackerOptions& options);
 
-}  // namespace marey
+}  // namespace marey::track

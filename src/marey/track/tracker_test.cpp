@@ -12,7 +12,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::track {
 namespace {
 
 constexpr double rate = 10;  // Hz
@@ -282,7 +282,7 @@ TEST(Tracker, RefusesOptionsOutOfTheirDomain) {
 }
 
 TEST(Tracker, EveryFilterFollowsPointsInSpace) {
-  for (const NamedFilter& filter : named_filters()) {
+  for (const filter::NamedFilter& filter : filter::named_filters()) {
     TrackerOptions options = point_tracker_options();
     options.filter = filter.options;
     const auto tracker = make_tracker<3>(options);
@@ -300,4 +300,4 @@ TEST(Tracker, EveryFilterFollowsPointsInSpace) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track

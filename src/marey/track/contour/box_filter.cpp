@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 using Measurement = Eigen::Matrix<double, 6, 1>;
@@ -72,4 +72,4 @@ Vector<2> BoxFilter::velocity() const {
   return {x_[3], x_[2]};
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -4,10 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "marey/geometry/box.h"
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 struct BoxFilterOptions {
   double place_noise = 1;        ///< px, of a measured centre and of a measured edge
@@ -39,4 +38,4 @@ class BoxFilter {
   bool frozen_ = false;
 };
 
-}  // namespace marey
+}  // namespace marey::track::contour

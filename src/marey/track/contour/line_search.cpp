@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 constexpr int kMostReach = 48;       // px
@@ -131,4 +131,4 @@ void Footprint::fill(std::span<const Vector<2>> polygon) {
   }
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

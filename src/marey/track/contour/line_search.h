@@ -6,10 +6,11 @@
 
 #include <opencv2/core.hpp>
 
+#include "marey/core/geometry.h"
 #include "marey/core/outline.h"
 #include "marey/geometry/bspline.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// The pixels that a target covers, as it is predicted.
 class Footprint {
@@ -45,4 +46,4 @@ struct LineScene {
 /// `deviation` is how well the place is predicted, px. `line.foot`, `normal` and `reach` are given.
 void search_line(MeasurementLine& line, const LineScene& scene, double deviation);
 
-}  // namespace marey
+}  // namespace marey::track::contour

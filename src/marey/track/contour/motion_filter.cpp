@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace marey {
+namespace marey::track::contour {
 
 MotionFilter::MotionFilter(const Vector<2>& centre, const Vector<2>& velocity, double growth, double centre_deviation,
                            double velocity_deviation, double growth_deviation)
@@ -55,4 +55,4 @@ double MotionFilter::growth_deviation() const {
   return std::sqrt(Pss_);
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

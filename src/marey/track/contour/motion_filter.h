@@ -1,8 +1,8 @@
 #pragma once
 
-#include "marey/geometry/vector.h"
+#include "marey/core/geometry.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// Lengths in px.
 struct MotionNoise {
@@ -38,4 +38,4 @@ class MotionFilter {
   double Pss_;
 };
 
-}  // namespace marey
+}  // namespace marey::track::contour

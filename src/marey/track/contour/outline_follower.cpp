@@ -16,13 +16,14 @@
 #include <map>
 #include <utility>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/line_search.h"
 #include "marey/track/contour/motion_filter.h"
 #include "marey/track/contour/shape_filter.h"
 #include "marey/track/contour/silhouette_spline.h"
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 using Finding = MeasurementLine::Finding;
@@ -47,7 +48,7 @@ constexpr double kHintScore = 0.3;    // continues a track, begins none
 constexpr double kGrowthDoubt = 0.5;  // 1/s
 
 struct Silhouette {
-  ClosedSpline spline;
+  geometry::ClosedSpline spline;
   Timestamp time;
 };
 
@@ -152,9 +153,9 @@ class OutlineFollower::Implementation {
     target.crowded = false;
     const Box wide = grown(target.box, 2 + kMostReach * target.height);
     for (const FollowedTarget& other : targets_) {
-      if (&other == &target || intersection(other.box, wide).area() <= 0) continue;
+      if (&other == &target || geometry::intersection(other.box, wide).area() <= 0) continue;
       others_.push_back(&other.footprint);
-      target.crowded = target.crowded || intersection(other.box, target.box).area() > 0;
+      target.crowded = target.crowded || geometry::intersection(other.box, target.box).area() > 0;
     }
     target.share = foreground_share(target, mask);
     place_lines(target);
@@ -234,13 +235,13 @@ class OutlineFollower::Implementation {
   }
 
   void place_lines(FollowedTarget& target) {
-    const ClosedSpline& spline = target.shape.spline();
+    const geometry::ClosedSpline& spline = target.shape.spline();
     spline.evenly_spaced(places_);
     target.lines.clear();
     weights_.clear();
     deviations_.clear();
     for (const double place : places_) {
-      const SplineWeights weights = spline_weights(spline.order(), spline.count(), place);
+      const geometry::SplineWeights weights = geometry::spline_weights(spline.order(), spline.count(), place);
       Vector<2> at = Vector<2>::Zero(), slope = Vector<2>::Zero();
       for (int j = 0; j < spline.order(); ++j) {
         const Vector<2>& point = spline.control_points()[(weights.first + j) % spline.count()];
@@ -263,7 +264,8 @@ class OutlineFollower::Implementation {
     const Box box = target.shape.spline().box();
     target.box = box;
     for (const Detection& detection : detections) {
-      if (iou(detection.box, box) > kExplained || intersection(detection.box, box).area() > 0.6 * box.area()) return;
+      if (geometry::iou(detection.box, box) > kExplained || geometry::intersection(detection.box, box).area() > 0.6 * box.area())
+        return;
     }
     const Vector<2> deviation = target.motion.centre_deviation();
     hints_.push_back({.value = box.centre(),
@@ -299,7 +301,7 @@ class OutlineFollower::Implementation {
     std::vector<Vector<2>> points = target.shape.spline().control_points();
     const Vector<2> shift = box.centre() - target.shape.spline().centroid();
     for (Vector<2>& point : points) point += shift;
-    target.shape = ShapeFilter(ClosedSpline(target.shape.spline().order(), std::move(points)), kBend * target.height);
+    target.shape = ShapeFilter(geometry::ClosedSpline(target.shape.spline().order(), std::move(points)), kBend * target.height);
     target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthDoubt);
     target.state = Outline::State::held;
     target.measured.reset();
@@ -317,7 +319,7 @@ class OutlineFollower::Implementation {
       return nullptr;
     }
     const double dt = seconds(*now_ - first->second.time);
-    const ClosedSpline& before = first->second.spline;
+    const geometry::ClosedSpline& before = first->second.spline;
     const Vector<2> centre = spline->centroid(), velocity = (centre - before.centroid()) / dt;
     const double growth = (std::sqrt(spline->area() / before.area()) - 1) / dt;
     const double height = seen.box.height;
@@ -343,7 +345,7 @@ class OutlineFollower::Implementation {
       *slot = std::make_shared<Outline>();
     }
     Outline& outline = **slot;
-    const ClosedSpline& spline = target.shape.spline();
+    const geometry::ClosedSpline& spline = target.shape.spline();
     outline.order = spline.order();
     outline.control_points = spline.control_points();
     outline.deviations.resize(spline.count());
@@ -372,7 +374,7 @@ class OutlineFollower::Implementation {
   std::vector<int> nearest_first_;
   std::vector<const Footprint*> others_;
   std::vector<double> places_, deviations_;
-  std::vector<SplineWeights> weights_;
+  std::vector<geometry::SplineWeights> weights_;
   std::vector<Vector<2>> polygon_;
 };
 
@@ -390,4 +392,4 @@ std::span<const Track<2>> OutlineFollower::attach(std::span<const Track<2>> trac
   return self_->attach(tracks, detections);
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -12,7 +12,7 @@
 #include "marey/core/outline.h"
 #include "marey/core/track.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// Lengths in px; noises in heights of the target, so that the same hold near the camera and far from it.
 struct OutlineOptions {
@@ -55,4 +55,4 @@ class OutlineFollower {
   std::unique_ptr<Implementation> self_;
 };
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/box_filter.h"
 #include "marey/track/contour/line_search.h"
@@ -15,7 +16,7 @@
 #include "marey/track/contour/published_outline.h"
 #include "marey/track/contour/shape_filter.h"
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 constexpr double kRate = 25;  // Hz
@@ -64,7 +65,7 @@ double overlap(std::span<const Vector<2>> a, std::span<const Vector<2>> b) {
 Detection detection_of(const std::vector<Vector<2>>& polygon) {
   Detection detection;
   detection.outline = polygon;
-  detection.centre = polygon_centroid(polygon).value_or(Vector<2>::Zero());
+  detection.centre = geometry::polygon_centroid(polygon).value_or(Vector<2>::Zero());
   Vector<2> least = polygon[0], most = polygon[0];
   for (const Vector<2>& corner : polygon) {
     least = least.cwiseMin(corner);
@@ -91,7 +92,7 @@ Frame frame_at(int index) {
 }
 
 std::vector<Vector<2>> polygon_of(const Outline& outline) {
-  return ClosedSpline(outline.order, outline.control_points).polygon();
+  return geometry::ClosedSpline(outline.order, outline.control_points).polygon();
 }
 
 TEST(OutlineFollower, OneWhoIsSeenIsFollowedFromItsSecondSilhouetteOn) {
@@ -108,7 +109,7 @@ TEST(OutlineFollower, OneWhoIsSeenIsFollowedFromItsSecondSilhouetteOn) {
     if (k < 5) continue;
     const Outline& outline = *tracks[0].outline;
     EXPECT_GT(overlap(polygon_of(outline), polygon), 0.93) << k;
-    EXPECT_LT((outline.centre - *polygon_centroid(polygon)).norm(), 0.7) << k;
+    EXPECT_LT((outline.centre - *geometry::polygon_centroid(polygon)).norm(), 0.7) << k;
     EXPECT_NEAR(outline.velocity.x(), 1.5 * kRate, 12) << k;
     EXPECT_EQ(outline.lines.size(), 24u);
     EXPECT_EQ(outline.state, Outline::State::seen);
@@ -125,7 +126,7 @@ TEST(OutlineFollower, LinesAloneFollowWhomTheDetectorMissesAndSaySo) {
     const auto hints = follower.look(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, detections);
     ASSERT_EQ(hints.size(), missed ? 1u : 0u) << k;
     if (missed) {
-      EXPECT_GT(iou(*hints[0].box, seen.box), 0.8) << k;
+      EXPECT_GT(geometry::iou(*hints[0].box, seen.box), 0.8) << k;
     }
     const Track<2> track = track_of(1, seen, 0);
     const auto tracks = follower.attach(std::span(&track, 1), detections);
@@ -147,12 +148,12 @@ TEST(OutlineFollower, OneWhoVanishesKeepsItsShapeAndCoasts) {
     const auto tracks = follower.attach(std::span(&track, 1), detections);
     if (k == 0) continue;
     const Outline& outline = *tracks[0].outline;
-    const double now = ClosedSpline(outline.order, outline.control_points).area();
+    const double now = geometry::ClosedSpline(outline.order, outline.control_points).area();
     if (k == 14) area = now;
     if (!hidden) continue;
     EXPECT_EQ(outline.state, Outline::State::held) << k;
     EXPECT_NEAR(now, area, 0.02 * area) << k;
-    EXPECT_LT((outline.centre - *polygon_centroid(polygon)).norm(), 6) << k;
+    EXPECT_LT((outline.centre - *geometry::polygon_centroid(polygon)).norm(), 6) << k;
   }
 }
 
@@ -161,7 +162,7 @@ TEST(OutlineFollower, LinesOnANeighbourAreNotBelieved) {
   for (int k = 0; k < 30; ++k) {
     const std::vector<std::vector<Vector<2>>> bodies = {body({70, 50}, 50, 0), body({30 + 1.2 * k, 58}, 50, 0)};
     std::vector<Detection> seen = {detection_of(bodies[0]), detection_of(bodies[1])};
-    const bool meet = intersection(seen[0].box, seen[1].box).area() > 0;
+    const bool meet = geometry::intersection(seen[0].box, seen[1].box).area() > 0;
     for (Detection& one : seen) one.group = meet ? std::optional<int>(0) : std::nullopt;
     follower.look(frame_at(k), Foreground{drawn(bodies), {}}, seen);
     const std::vector<Track<2>> given = {track_of(1, seen[0], 0), track_of(2, seen[1], 1)};
@@ -225,7 +226,7 @@ TEST(OutlineFollower, NoShapeGivesWhatIsNotFinite) {
 TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
   std::vector<Vector<2>> circle;
   for (int i = 0; i < 8; ++i) circle.emplace_back(20 * std::cos(i * std::numbers::pi / 4), 20 * std::sin(i * std::numbers::pi / 4));
-  ShapeFilter filter(ClosedSpline(4, circle), 1);
+  ShapeFilter filter(geometry::ClosedSpline(4, circle), 1);
   filter.predict({1, -2}, 0.1, {0, 0}, {.bend = 0.3, .together = 0.8, .shift = 0.5, .growth = 0.02});
   // The same with matrices, coordinates in the order x₀ … x₇ y₀ … y₇.
   Eigen::VectorXd x(16);
@@ -245,7 +246,7 @@ TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
   }
   P += 0.02 * 0.02 * arm * arm.transpose();
   for (const double u : {0.3, 2.9, 5.5}) {
-    const SplineWeights place = spline_weights(4, 8, u);
+    const geometry::SplineWeights place = geometry::spline_weights(4, 8, u);
     const Vector<2> normal = *filter.spline().normal(u);
     Eigen::RowVectorXd h = Eigen::RowVectorXd::Zero(16);
     for (int j = 0; j < 4; ++j) {
@@ -264,8 +265,8 @@ TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
       EXPECT_NEAR(filter.deviation(i).x(), std::sqrt(P(i, i)), 1e-9);
     }
   }
-  const ClosedSpline before = filter.spline();
-  EXPECT_FALSE(filter.correct(spline_weights(4, 8, 1), {1, 0}, 1000, 0.4, 3)) << "an outlier";
+  const geometry::ClosedSpline before = filter.spline();
+  EXPECT_FALSE(filter.correct(geometry::spline_weights(4, 8, 1), {1, 0}, 1000, 0.4, 3)) << "an outlier";
   EXPECT_EQ(filter.spline().control_points()[1], before.control_points()[1]);
 }
 
@@ -306,7 +307,7 @@ TEST(BoxFilter, FollowsABoxAndFreezesWhileItJumps) {
     filter.step(seen, seen.centre());
     EXPECT_EQ(filter.frozen(), merged) << k;
     if (k < 10) continue;
-    EXPECT_GT(iou(filter.box(), box(k)), 0.85) << k;
+    EXPECT_GT(geometry::iou(filter.box(), box(k)), 0.85) << k;
     EXPECT_NEAR(filter.velocity().x(), 2, 0.3) << k;
   }
   filter.step(std::nullopt, std::nullopt);
@@ -338,4 +339,4 @@ TEST(Footprint, CoversThePixelsWhoseCentreIsInside) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -17,20 +17,22 @@
 
 #include "marey/core/error.h"
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 constexpr double kNoGate = 1e12;
 constexpr double kInitialDeviation = 1;  // px, of control points from a silhouette
 constexpr double kMostGrowth = 0.5;      // a frame: beyond it the outline is lost, and would only overflow
 
-ClosedSpline fitted(std::span<const Vector<2>> polygon, const PublishedOptions& options) {
-  if (options.order < 2 || options.order > SplineWeights::max_order || options.control_points < std::max(options.order, 3)) {
+geometry::ClosedSpline fitted(std::span<const Vector<2>> polygon, const PublishedOptions& options) {
+  if (options.order < 2 || options.order > geometry::SplineWeights::max_order ||
+      options.control_points < std::max(options.order, 3)) {
     throw Error("{} control points of order {} make no outline; give an order from 2 to {} and as many control points or more",
-                options.control_points, options.order, +SplineWeights::max_order);
+                options.control_points, options.order, +geometry::SplineWeights::max_order);
   }
   if (options.lines < 1) throw Error("{} measurement lines an outline; give 1 or more", options.lines);
-  auto spline = fit_spline(polygon, {.order = options.order, .least = options.control_points, .most = options.control_points});
+  auto spline =
+      geometry::fit_spline(polygon, {.order = options.order, .least = options.control_points, .most = options.control_points});
   if (!spline) throw Error("a silhouette of {} corners is too small for an outline", polygon.size());
   return std::move(*spline);
 }
@@ -51,8 +53,8 @@ double light(const cv::Mat& luma, const Vector<2>& at) {
 PublishedOutline::PublishedOutline(const PublishedOptions& options, std::span<const Vector<2>> before,
                                    std::span<const Vector<2>> now)
     : options_(options), shape_(fitted(now, options), kInitialDeviation), places_(options.lines) {
-  const ClosedSpline earlier = fitted(before, options);
-  const ClosedSpline& spline = shape_.spline();
+  const geometry::ClosedSpline earlier = fitted(before, options);
+  const geometry::ClosedSpline& spline = shape_.spline();
   centre_ = spline.centroid();
   velocity_ = centre_ - earlier.centroid();
   arm_ = (spline.control_points()[0] - centre_).norm();
@@ -76,7 +78,7 @@ const Outline& PublishedOutline::step(const Frame& frame) {
 }
 
 void PublishedOutline::search(const cv::Mat& luma) {
-  const ClosedSpline& spline = shape_.spline();
+  const geometry::ClosedSpline& spline = shape_.spline();
   spline.evenly_spaced(places_);
   outline_.lines.clear();
   weights_.clear();
@@ -95,7 +97,7 @@ void PublishedOutline::search(const cv::Mat& luma) {
     }
     line.variance = options_.measurement_noise * options_.measurement_noise;
     outline_.lines.push_back(line);
-    weights_.push_back(spline_weights(spline.order(), spline.count(), place));
+    weights_.push_back(geometry::spline_weights(spline.order(), spline.count(), place));
   }
 }
 
@@ -122,7 +124,7 @@ void PublishedOutline::correct() {
 }
 
 void PublishedOutline::report() {
-  const ClosedSpline& spline = shape_.spline();
+  const geometry::ClosedSpline& spline = shape_.spline();
   const double rate = frame_seconds_ ? 1 / *frame_seconds_ : 1;
   outline_.order = spline.order();
   outline_.control_points = spline.control_points();
@@ -136,4 +138,4 @@ void PublishedOutline::report() {
   outline_.scale_rate_deviation = rate * std::sqrt(growth_variance_);
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "marey/core/frame.h"
+#include "marey/core/geometry.h"
 #include "marey/core/outline.h"
 #include "marey/core/time.h"
-#include "marey/geometry/vector.h"
 #include "marey/track/contour/shape_filter.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// The parameters that the paper leaves open.
 struct PublishedOptions {
@@ -50,11 +50,11 @@ class PublishedOutline {
   double velocity_variance_, growth_variance_;
   Vector<2> centre_;
   double arm_;  // px, from the centre to the first control point
-  std::vector<SplineWeights> weights_;
+  std::vector<geometry::SplineWeights> weights_;
   std::vector<double> places_;
   std::optional<Timestamp> time_;
   std::optional<double> frame_seconds_;
   Outline outline_;
 };
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <utility>
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 constexpr double kAlikeOver = 1.5;  // control points: how far along the curve neighbours move alike
 
 }  // namespace
 
-ShapeFilter::ShapeFilter(ClosedSpline spline, double deviation) : spline_(std::move(spline)) {
+ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, double deviation) : spline_(std::move(spline)) {
   const int count = spline_.count();
   P_ = deviation * deviation * Eigen::MatrixXd::Identity(2 * count, 2 * count);
   gain_.resize(2 * count);
@@ -48,7 +48,7 @@ void ShapeFilter::predict(const Vector<2>& shift, double growth, const Vector<2>
   P_.noalias() += noise.growth * noise.growth * out_ * out_.transpose();
 }
 
-double ShapeFilter::project(const SplineWeights& place, const Vector<2>& normal) const {
+double ShapeFilter::project(const geometry::SplineWeights& place, const Vector<2>& normal) const {
   const int count = spline_.count();
   gain_.setZero();
   for (int j = 0; j < spline_.order(); ++j) {
@@ -64,11 +64,12 @@ double ShapeFilter::project(const SplineWeights& place, const Vector<2>& normal)
   return variance;
 }
 
-double ShapeFilter::variance(const SplineWeights& place, const Vector<2>& normal) const {
+double ShapeFilter::variance(const geometry::SplineWeights& place, const Vector<2>& normal) const {
   return project(place, normal);
 }
 
-bool ShapeFilter::correct(const SplineWeights& place, const Vector<2>& normal, double position, double noise, double gate) {
+bool ShapeFilter::correct(const geometry::SplineWeights& place, const Vector<2>& normal, double position, double noise,
+                          double gate) {
   const int count = spline_.count();
   double predicted = 0;
   for (int j = 0; j < spline_.order(); ++j) {
@@ -102,4 +103,4 @@ Matrix<2> ShapeFilter::centroid_covariance() const {
   return gradient * P_ * gradient.transpose();
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

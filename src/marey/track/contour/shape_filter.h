@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// How an outline may stray from its prediction within one step, standard deviations.
 struct ShapeNoise {
@@ -21,30 +21,30 @@ struct ShapeNoise {
 class ShapeFilter {
  public:
   /// Begins at `spline`, each coordinate known to `deviation` px.
-  ShapeFilter(ClosedSpline spline, double deviation);
+  ShapeFilter(geometry::ClosedSpline spline, double deviation);
 
   /// x ← x + shift + growth (x − centre), the paper's prediction; `shift` in px, `growth` relative.
   void predict(const Vector<2>& shift, double growth, const Vector<2>& centre, const ShapeNoise& noise);
 
   /// Variance of the curve's position at `place` along the unit vector `normal`, px².
-  double variance(const SplineWeights& place, const Vector<2>& normal) const;
+  double variance(const geometry::SplineWeights& place, const Vector<2>& normal) const;
 
   /// The curve was found at `position` (px along `normal`: a point's dot product with it), with variance `noise` px² > 0.
   /// Nothing is done where the innovation lies beyond `gate` standard deviations; returns whether it was believed.
-  bool correct(const SplineWeights& place, const Vector<2>& normal, double position, double noise, double gate);
+  bool correct(const geometry::SplineWeights& place, const Vector<2>& normal, double position, double noise, double gate);
 
-  const ClosedSpline& spline() const { return spline_; }
+  const geometry::ClosedSpline& spline() const { return spline_; }
   Vector<2> deviation(int control_point) const;  ///< px
   Matrix<2> centroid_covariance() const;         ///< px²
 
  private:
   /// Fills `gain_` with P h of the line; returns hᵀ P h.
-  double project(const SplineWeights& place, const Vector<2>& normal) const;
+  double project(const geometry::SplineWeights& place, const Vector<2>& normal) const;
 
-  ClosedSpline spline_;
+  geometry::ClosedSpline spline_;
   Eigen::MatrixXd P_;                   // of x₀ x₁ … y₀ y₁ …, px²
   Eigen::VectorXd alike_;               // correlation of the noise of two control points by how far apart they are
   mutable Eigen::VectorXd gain_, out_;  // what a step needs, kept so that it is allocated once
 };
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "marey/core/error.h"
-#include "marey/track/contour/light_edge.h"
+#include "marey/track/contour/intensity_edge.h"
 
-namespace marey {
+namespace marey::track::contour {
 namespace {
 
 constexpr int kMostControlPoints = 64, kMostLines = 512;
@@ -21,8 +21,9 @@ constexpr double kSameBox = 0.5;  // IoU of an outline's box and the detection's
 }  // namespace
 
 void check(const OutlineOptions& options) {
-  if (options.order < 2 || options.order > SplineWeights::max_order) {
-    throw Error("an outline of order {} cannot be; give one from 2 to {} (4 is cubic)", options.order, +SplineWeights::max_order);
+  if (options.order < 2 || options.order > geometry::SplineWeights::max_order) {
+    throw Error("an outline of order {} cannot be; give one from 2 to {} (4 is cubic)", options.order,
+                +geometry::SplineWeights::max_order);
   }
   const int needed = std::max(options.order, 3);
   if (options.control_points && (*options.control_points < needed || *options.control_points > kMostControlPoints)) {
@@ -37,13 +38,13 @@ void check(const OutlineOptions& options) {
     throw Error("the least height of an outline is {} px; it must be 1 or more", options.least_height);
 }
 
-SplineFitOptions fit_options(const OutlineOptions& options) {
+geometry::SplineFitOptions fit_options(const OutlineOptions& options) {
   const int needed = std::max(options.order, 3);
   if (options.control_points) return {options.order, *options.control_points, *options.control_points, options.tolerance};
   return {options.order, std::max(needed, kFewestControlPoints), std::max(needed, kChosenAtMost), options.tolerance};
 }
 
-bool is_knotted(const ClosedSpline& spline) {
+bool is_knotted(const geometry::ClosedSpline& spline) {
   constexpr int kPlaces = 4;  // a span
   const int count = kPlaces * spline.count();
   double turned = 0;
@@ -56,15 +57,16 @@ bool is_knotted(const ClosedSpline& spline) {
   return std::abs(turned - 2 * std::numbers::pi) > 1;
 }
 
-std::optional<ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma, SplineFitOptions options) {
-  const std::vector<Vector<2>> edge = moved_to_light_edges(seen.outline, luma);
+std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
+                                                     geometry::SplineFitOptions options) {
+  const std::vector<Vector<2>> edge = moved_to_intensity_edges(seen.outline, luma);
   for (const int rounds : {options.rounds, 0}) {
     options.rounds = rounds;
-    auto spline = fit_spline(edge, options);
-    if (!spline || !(spline->area() > kLeastArea) || iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
+    auto spline = geometry::fit_spline(edge, options);
+    if (!spline || !(spline->area() > kLeastArea) || geometry::iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
     if (!is_knotted(*spline)) return spline;
   }
   return std::nullopt;
 }
 
-}  // namespace marey
+}  // namespace marey::track::contour

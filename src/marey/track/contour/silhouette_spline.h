@@ -6,19 +6,20 @@
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/outline_follower.h"
 
-namespace marey {
+namespace marey::track::contour {
 
 /// Throws Error where an option is out of its domain.
 void check(const OutlineOptions& options);
 
 /// How the options want a target's first silhouette fitted.
-SplineFitOptions fit_options(const OutlineOptions& options);
+geometry::SplineFitOptions fit_options(const OutlineOptions& options);
 
 /// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
-bool is_knotted(const ClosedSpline& spline);
+bool is_knotted(const geometry::ClosedSpline& spline);
 
 /// The outline of a silhouette, its edge made exact by `luma` (light_edge.h; may be empty); nothing where it is no simple curve, or
 /// not about as large as the detection.
-std::optional<ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma, SplineFitOptions options);
+std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
+                                                     geometry::SplineFitOptions options);
 
-}  // namespace marey
+}  // namespace marey::track::contour

@@ -9,7 +9,7 @@
 
 #include "marey/core/perceived.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr double bin_seconds = 0.5;
@@ -154,8 +154,8 @@ void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end,
 
 }  // namespace
 
-std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                                     const GroundCutOptions& options) {
+std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                      const GroundCutOptions& options) {
   std::vector<GroundTracklet> pieces;
   for (GroundTracklet& tracklet : tracklets) {
     const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
@@ -190,4 +190,4 @@ std::vector<GroundTracklet> cut_where_others_end(std::vector<GroundTracklet> tra
   return pieces;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

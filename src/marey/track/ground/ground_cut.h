@@ -15,7 +15,7 @@
 #include "marey/core/time.h"
 #include "marey/track/ground/ground_tracklet.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 struct GroundCutOptions {
   double shortest = 1;   ///< s; a piece whose colour is believed lasts at least so long
@@ -26,11 +26,11 @@ struct GroundCutOptions {
 };
 
 /// The same tracklets, those in which the colour changes cut there. Order is kept.
-std::vector<GroundTracklet> cut_where_clothes_change(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                                     const GroundCutOptions& options = {});
+std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                      const GroundCutOptions& options = {});
 
 /// The same tracklets, cut where one of the others ends or begins nearby, but for the recording's own first and last second.
 std::vector<GroundTracklet> cut_where_others_end(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                  const GroundCutOptions& options = {});
 
-}  // namespace marey
+}  // namespace marey::track::ground

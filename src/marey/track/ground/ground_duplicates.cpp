@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr double farthest = 2.0;     // m; what lies farther apart is never one person
@@ -55,4 +55,4 @@ const std::vector<std::pair<TrackId, TrackId>>& GroundDuplicates::find(Timestamp
   return merges_;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 #include "marey/core/time.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Finds targets that are one person: cameras that disagree about the place of somebody may each feed a target of its own. Two
 /// that one camera saw in one frame are two people. Two that stay together for a while, each seen, and never both by one camera,
@@ -41,4 +41,4 @@ class GroundDuplicates {
   std::vector<int> by_x_;
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

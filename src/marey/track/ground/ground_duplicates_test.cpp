@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr CameraMask left = 1, right = 2;
@@ -58,4 +58,4 @@ TEST(GroundDuplicates, OfThreeEachGoesOnce) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

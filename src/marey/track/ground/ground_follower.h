@@ -14,7 +14,7 @@
 #include "marey/track/ground/ground_sight.h"
 #include "marey/track/ground/ground_target.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// A target and an observation of one look within its gate.
 template <typename F>
@@ -30,9 +30,9 @@ class GroundFollower : public GroundTracker {
   GroundFollower(const GroundTrackerOptions& options, const typename F::Options& filter, std::vector<GroundView> views)
       : rules_(options, filter, static_cast<int>(views.size())), sight_(std::move(views)) {}
 
-  std::span<const Track<2>> step(Timestamp now, std::span<const GroundLook> looks) final {
+  std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations> looks) final {
     check_time(now, now_);
-    for (const GroundLook& look : looks) sight_.check(look);
+    for (const CameraObservations& look : looks) sight_.check(look);
     predict_to(now);
     claims_.clear();
     for (int i = 0; i < static_cast<int>(looks.size()); ++i) take_in(i, looks[i]);
@@ -41,7 +41,7 @@ class GroundFollower : public GroundTracker {
     return report();
   }
 
-  std::span<const GroundClaim> claims() const final { return claims_; }
+  std::span<const ObservationMatch> claims() const final { return claims_; }
 
   std::span<const GroundDecision> decided() final {
     decision_ = {now_.value_or(Timestamp{}), tracks_, claims_};
@@ -91,7 +91,7 @@ class GroundFollower : public GroundTracker {
     for (GroundTarget<F>& target : targets_) rules_.predict(target, dt);
   }
 
-  void take_in(int index, const GroundLook& look) {
+  void take_in(int index, const CameraObservations& look) {
     const double late = seconds(look.time - *now_);
     sight_.look(look.camera, look.seen, rules_.options().confident);
     owner_.assign(look.seen.size(), nobody);
@@ -138,7 +138,7 @@ class GroundFollower : public GroundTracker {
     }
   }
 
-  void start_unclaimed(int index, const GroundLook& look) {
+  void start_unclaimed(int index, const CameraObservations& look) {
     for (int i = 0; i < static_cast<int>(look.seen.size()); ++i) {
       const Observation<2>& one = look.seen[i];
       if (owner_[i] != nobody || explained_[i] || one.score < rules_.options().confident || is_duplicate(i, look.seen)) continue;
@@ -166,7 +166,7 @@ class GroundFollower : public GroundTracker {
       const auto target = at(gone);
       const auto into = at(kept);
       rules_.absorb(*into, *target);
-      for (GroundClaim& one : claims_) {
+      for (ObservationMatch& one : claims_) {
         if (one.track == gone) one.track = kept;
       }
       targets_.erase(target);
@@ -198,7 +198,7 @@ class GroundFollower : public GroundTracker {
   int next_id_ = 1;
   std::vector<GroundTarget<F>> targets_;  // in the order of their ids
   std::vector<Track<2>> tracks_;
-  std::vector<GroundClaim> claims_;
+  std::vector<ObservationMatch> claims_;
   GroundDecision decision_;
   // What a look needs, kept so that it is allocated once.
   std::vector<int> owner_;  // of each observation: index of its target
@@ -206,7 +206,7 @@ class GroundFollower : public GroundTracker {
   std::vector<Vector<2>> points_;
   std::vector<GroundPair<F>> pairs_;
   std::vector<GroundDuplicates::Member> members_;
-  PointGrid<2> grid_;  // of observations
+  assign::PointGrid<2> grid_;  // of observations
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

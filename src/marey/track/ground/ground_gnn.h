@@ -2,9 +2,9 @@
 
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Follows people on the ground by global nearest neighbour: in each look the one assignment of greatest likelihood.
 std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views);
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-namespace marey {
+namespace marey::track::ground {
 
 void GroundHistory::begin(Timestamp now) {
   if (spare_.empty()) {
@@ -67,7 +67,7 @@ void GroundHistory::decide(std::int64_t level, std::span<const Place> places) {
     std::sort(told_tracks_.begin() + static_cast<std::ptrdiff_t>(before.tracks), told_tracks_.end(),
               [](const Track<2>& a, const Track<2>& b) { return a.id < b.id; });
     std::sort(told_claims_.begin() + static_cast<std::ptrdiff_t>(before.claims), told_claims_.end(),
-              [](const GroundClaim& a, const GroundClaim& b) {
+              [](const ObservationMatch& a, const ObservationMatch& b) {
                 return std::tuple(a.look, a.observation) < std::tuple(b.look, b.observation);
               });
     told_.push_back({decided.now, told_tracks_.size(), told_claims_.size()});
@@ -98,4 +98,4 @@ std::span<const GroundDecision> GroundHistory::told() {
   return decisions_;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -10,7 +10,7 @@
 #include "marey/core/track.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// What is not decided yet of the past of many hypothetical targets: a level for each instant, and in it a record for each that was
 /// thought of then, which points to its own past a level before. Whoever shares a past shares the records. Levels that are decided
@@ -96,9 +96,9 @@ class GroundHistory {
   std::int64_t first_ = 0;
   std::vector<Told> told_;
   std::vector<Track<2>> told_tracks_;
-  std::vector<GroundClaim> told_claims_;
+  std::vector<ObservationMatch> told_claims_;
   std::vector<GroundDecision> decisions_;
   std::vector<std::vector<int>> chosen_;  // of each level that is being decided: records
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -4,10 +4,10 @@
 #include <numeric>
 #include <tuple>
 
-namespace marey {
+namespace marey::track::ground {
 
-std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<const GatedPair> pairs, std::span<const double> missed,
-                                                                  std::span<const char> begins) {
+std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<const assign::GatedPair> pairs,
+                                                                  std::span<const double> missed, std::span<const char> begins) {
   find_groups(pairs, static_cast<int>(begins.size()));
   children_.clear();
   child_tree_.clear();
@@ -30,7 +30,7 @@ std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<cons
 }
 
 /// What gates tie together: clusters, and the observations in the gates of any of their leaves.
-void GroundHypotheses::find_groups(std::span<const GatedPair> pairs, int observations) {
+void GroundHypotheses::find_groups(std::span<const assign::GatedPair> pairs, int observations) {
   const int clusters = static_cast<int>(clusters_.size());
   cluster_of_.assign(tree_.size(), nobody);
   for (int i = 0; i < clusters; ++i) {
@@ -40,7 +40,7 @@ void GroundHypotheses::find_groups(std::span<const GatedPair> pairs, int observa
   }
   first_pair_.assign(tree_.size() + 1, 0);
   sets_.reset(clusters + observations);
-  for (const GatedPair& pair : pairs) {
+  for (const assign::GatedPair& pair : pairs) {
     ++first_pair_[pair.row + 1];
     const int cluster = cluster_of_[pair.row];  // none where every hypothesis that held the leaf was pruned
     if (cluster != nobody) sets_.join(cluster, clusters + pair.column);
@@ -117,12 +117,13 @@ int GroundHypotheses::child(int leaf, int observation, int& slot) {
 }
 
 /// The assignment problems of a cluster, one for each hypothesis. Rows are the leaves that have anything in their gates.
-void GroundHypotheses::pose(const Cluster& parents, std::span<const GatedPair> pairs, std::span<const double> missed, int columns) {
+void GroundHypotheses::pose(const Cluster& parents, std::span<const assign::GatedPair> pairs, std::span<const double> missed,
+                            int columns) {
   posed_.clear();
   problems_.clear();
   posed_at_.assign(1, 0);
   for (const Hypothesis& parent : parents) {
-    AssignmentProblem problem{.rows = 0, .columns = columns, .gain = parent.weight};
+    assign::AssignmentProblem problem{.rows = 0, .columns = columns, .gain = parent.weight};
     for (const int leaf : parent.leaves) {
       problem.gain += missed[leaf];
       const int first = first_pair_[leaf];
@@ -139,7 +140,7 @@ void GroundHypotheses::pose(const Cluster& parents, std::span<const GatedPair> p
   }
 }
 
-void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observations, std::span<const GatedPair> pairs,
+void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observations, std::span<const assign::GatedPair> pairs,
                              std::span<const double> missed, std::span<const char> begins) {
   const int columns = static_cast<int>(observations.size());
   column_of_.resize(std::max(column_of_.size(), begins.size()));
@@ -247,7 +248,7 @@ std::vector<int> GroundHypotheses::trees_of(const Cluster& cluster, const std::v
 
 /// A part for each set of `joined`, whose elements are places in `trees`. What hypotheses say of a part is weighed by all that say
 /// so.
-void GroundHypotheses::take_apart(const Cluster& cluster, std::span<const int> trees, DisjointSets& joined,
+void GroundHypotheses::take_apart(const Cluster& cluster, std::span<const int> trees, assign::DisjointSets& joined,
                                   std::vector<Cluster>& parts) const {
   for (int root = 0; root < static_cast<int>(trees.size()); ++root) {
     if (joined.find(root) != root) continue;
@@ -298,4 +299,4 @@ std::span<const int> GroundHypotheses::best() {
   return order_;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

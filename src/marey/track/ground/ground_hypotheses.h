@@ -20,7 +20,7 @@
 #include "marey/assign/disjoint_sets.h"
 #include "marey/assign/k_best_assignments.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 class GroundHypotheses {
  public:
@@ -52,7 +52,8 @@ class GroundHypotheses {
   /// observation; by leaf, then by observation. `missed`: of each leaf, the logarithm of the probability that it is given nothing.
   /// `begins`: of each observation, whether a tree begins where nothing else explains it. Renumbers all leaves. Valid until the
   /// next call.
-  std::span<const Child> branch(std::span<const GatedPair> pairs, std::span<const double> missed, std::span<const char> begins);
+  std::span<const Child> branch(std::span<const assign::GatedPair> pairs, std::span<const double> missed,
+                                std::span<const char> begins);
 
   /// Makes one of hypotheses that differ in nothing that matters any longer: those with the same trees, whose leaves `alike(a, b)`
   /// calls the same. The likelier one stays and takes over the other's weight, so that of many ways to explain a scuffle the one
@@ -88,36 +89,37 @@ class GroundHypotheses {
   struct Group {
     std::vector<int> clusters, observations;
   };
-  void find_groups(std::span<const GatedPair> pairs, int observations);
+  void find_groups(std::span<const assign::GatedPair> pairs, int observations);
   Cluster combine(std::span<const int> clusters);
   Cluster product(const Cluster& a, const Cluster& b) const;
-  void spawn(const Cluster& parents, std::span<const int> observations, std::span<const GatedPair> pairs,
+  void spawn(const Cluster& parents, std::span<const int> observations, std::span<const assign::GatedPair> pairs,
              std::span<const double> missed, std::span<const char> begins);
-  void pose(const Cluster& parents, std::span<const GatedPair> pairs, std::span<const double> missed, int columns);
+  void pose(const Cluster& parents, std::span<const assign::GatedPair> pairs, std::span<const double> missed, int columns);
   void miss_all(Cluster& cluster, std::span<const double> missed);
   int child(int leaf, int observation, int& slot);
   int kept(std::size_t leaves) const;
   void settle(Cluster& cluster) const;
   void sort_by_tree(std::vector<int>& leaves) const;
-  void take_apart(const Cluster& cluster, std::span<const int> trees, DisjointSets& joined, std::vector<Cluster>& parts) const;
+  void take_apart(const Cluster& cluster, std::span<const int> trees, assign::DisjointSets& joined,
+                  std::vector<Cluster>& parts) const;
   static std::vector<int> trees_of(const Cluster& cluster, const std::vector<int>& tree);
 
   Limits limits_;
   std::vector<Cluster> clusters_;
   std::vector<int> tree_;  // of each leaf
   int next_tree_ = 1;
-  KBestAssigner assigner_;
+  assign::KBestAssigner assigner_;
   // What a look needs.
-  DisjointSets sets_;
+  assign::DisjointSets sets_;
   std::vector<int> cluster_of_, first_pair_;
   std::vector<std::pair<int, int>> elements_;
   std::vector<Group> groups_;
   std::vector<Cluster> next_clusters_;
   std::vector<Child> children_;
   std::vector<int> child_tree_, missed_child_, pair_child_, born_child_, column_of_, row_pairs_;
-  std::vector<GatedPair> posed_;
+  std::vector<assign::GatedPair> posed_;
   std::vector<std::size_t> posed_at_;
-  std::vector<AssignmentProblem> problems_;
+  std::vector<assign::AssignmentProblem> problems_;
   std::vector<char> taken_;
   std::vector<int> order_, number_;
   std::vector<std::pair<std::int64_t, int>> shares_;
@@ -182,4 +184,4 @@ void GroundHypotheses::split(Told&& told) {
   clusters_ = std::move(parts);
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

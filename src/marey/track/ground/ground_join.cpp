@@ -12,7 +12,7 @@
 #include "marey/assign/sparse_assignment.h"
 #include "marey/core/perceived.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr double end_span = 3;  // s of a tracklet that its end is judged by
@@ -114,13 +114,13 @@ class Chainer {
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
     std::vector<char> follows(chains.size(), 0);
     for (const int successor : next) {
-      if (successor != GatedAssigner::nobody) follows[successor] = 1;
+      if (successor != assign::GatedAssigner::nobody) follows[successor] = 1;
     }
     std::vector<std::vector<int>> joined;
     for (std::size_t first = 0; first < chains.size(); ++first) {
       if (follows[first]) continue;
       std::vector<int> whole = chains[first];
-      for (int k = next[first]; k != GatedAssigner::nobody; k = next[k])
+      for (int k = next[first]; k != assign::GatedAssigner::nobody; k = next[k])
         whole.insert(whole.end(), chains[k].begin(), chains[k].end());
       joined.push_back(std::move(whole));
     }
@@ -185,7 +185,7 @@ std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const Ground
   std::sort(by_time.begin(), by_time.end(),
             [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
   const Duration longest = duration_from_seconds(options.longest_gap);
-  std::vector<GatedPair> pairs;
+  std::vector<assign::GatedPair> pairs;
   for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
     auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time,
                                  [&](Timestamp time, int head) { return time < heads[head].time; });
@@ -194,7 +194,7 @@ std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const Ground
       if (gain && *gain > 0) pairs.push_back({tail, *next, *gain});
     }
   }
-  return sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
+  return assign::sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
 }
 
 std::vector<std::vector<int>> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
@@ -224,4 +224,4 @@ std::optional<Appearance> appearance_of(std::span<const GroundSample> samples) {
                     .deviation = static_cast<float>(std::sqrt(variance / count / std::max(1.0, count / alike)))};
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -23,7 +23,7 @@
 #include "marey/track/ground/ground_smooth.h"
 #include "marey/track/ground/ground_tracklet.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Whether somebody who stands there would be seen and reported: within some camera's picture, and on the pitch.
 using InSight = std::function<bool(const Vector<2>&)>;
@@ -88,4 +88,4 @@ std::vector<std::vector<int>> chain(std::span<const GroundTracklet> tracklets, s
 /// What somebody wears by all samples: the median of each component. Nothing where no sample has a colour.
 std::optional<Appearance> appearance_of(std::span<const GroundSample> samples);
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -15,7 +15,7 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/track/ground/ground_follower.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 template <typename F>
@@ -34,14 +34,14 @@ class GroundJpda final : public GroundFollower<F> {
       std::size_t to = from;
       while (to < gains_.size() && gains_[to].row == gains_[from].row) ++to;
       GroundTarget<F>& target = targets[gains_[from].row];
-      correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
+      filter::correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
       from = to;
     }
     claim_probable(targets, seen, probable);
   }
 
-  void correct(GroundTarget<F>& target, std::span<const Observation<2>> seen, double late, std::span<const GatedPair> pairs,
-               std::span<const double> probable) {
+  void correct(GroundTarget<F>& target, std::span<const Observation<2>> seen, double late,
+               std::span<const assign::GatedPair> pairs, std::span<const double> probable) {
     double any = 0;
     Vector<2> mean = Vector<2>::Zero();
     places_.clear();
@@ -62,7 +62,8 @@ class GroundJpda final : public GroundFollower<F> {
     target.filter.correct(mean, R + (1 / share - 1) * S);
   }
 
-  void claim_probable(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, std::span<const double> probable) {
+  void claim_probable(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen,
+                      std::span<const double> probable) {
     explained_.assign(seen.size(), 0);
     for (std::size_t i = 0; i < gains_.size(); ++i) {
       explained_[gains_[i].column] += probable[i];
@@ -70,7 +71,7 @@ class GroundJpda final : public GroundFollower<F> {
     }
     const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
-      if (given[i] == GatedAssigner::nobody) continue;
+      if (given[i] == assign::GatedAssigner::nobody) continue;
       this->rules().take(targets[i], seen[given[i]], this->now());
       this->claim(i, given[i]);
     }
@@ -83,19 +84,20 @@ class GroundJpda final : public GroundFollower<F> {
   static constexpr double least = 1e-6;       // less probable observations change nothing
   static constexpr double least_claim = 0.2;  // of several whose it might be, the most probable must be this much
 
-  std::vector<GatedPair> gains_;
+  std::vector<assign::GatedPair> gains_;
   std::vector<GroundPlace> places_;
   std::vector<double> explained_;  // of each observation: the probability that it is somebody's
-  AssociationMarginals marginals_;
-  GatedAssigner assigner_;
+  assign::AssociationMarginals marginals_;
+  assign::GatedAssigner assigner_;
 };
 
 }  // namespace
 
 std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::vector<GroundView> views) {
-  return with_filter<2>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
-    return std::make_unique<GroundJpda<F>>(options, filter, std::move(views));
-  });
+  return filter::with_filter<2>(
+      options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
+        return std::make_unique<GroundJpda<F>>(options, filter, std::move(views));
+      });
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -2,10 +2,10 @@
 
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Follows people on the ground by joint probabilistic data association: each target is corrected by all observations in its gate,
 /// weighed by their probabilities.
 std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::vector<GroundView> views);
 
-}  // namespace marey
+}  // namespace marey::track::ground

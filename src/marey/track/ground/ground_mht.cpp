@@ -28,16 +28,16 @@
 #include "marey/track/ground/ground_sight.h"
 #include "marey/track/ground/ground_target.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 /// One target with one history: what a number in GroundHypotheses stands for.
 template <typename F>
 struct Leaf {
   GroundTarget<F> target;
-  GroundHistory::Place place = {};         ///< its record of the last instant
-  int claims = GroundHistory::nobody;      ///< at this instant
-  bool over = false;                       ///< given up; it stays until that is decided
+  GroundHistory::Place place = {};                 ///< its record of the last instant
+  int claims = GroundHistory::nobody;              ///< at this instant
+  bool over = false;                               ///< given up; it stays until that is decided
   std::optional<GroundTarget<F>> ahead{};  ///< where it would be a while later, once somebody asked
 };
 
@@ -51,9 +51,9 @@ class GroundMht final : public GroundTracker {
         hypotheses_({options.hypotheses, limits.leaves, -std::log(limits.ratio)}),
         limits_(limits) {}
 
-  std::span<const Track<2>> step(Timestamp now, std::span<const GroundLook> looks) override {
+  std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations> looks) override {
     check_time(now, now_);
-    for (const GroundLook& look : looks) sight_.check(look);
+    for (const CameraObservations& look : looks) sight_.check(look);
     predict_to(now);
     history_.forget_told();
     history_.begin(now);
@@ -67,7 +67,7 @@ class GroundMht final : public GroundTracker {
     return report();
   }
 
-  std::span<const GroundClaim> claims() const override { return claims_; }
+  std::span<const ObservationMatch> claims() const override { return claims_; }
 
   std::span<const Track<2>> expected(Timestamp now) override {
     const double dt = now_ ? std::max(0.0, seconds(now - *now_)) : 0.0;
@@ -101,7 +101,7 @@ class GroundMht final : public GroundTracker {
     now_ = now;
   }
 
-  void take_in(int index, const GroundLook& look) {
+  void take_in(int index, const CameraObservations& look) {
     const double late = seconds(look.time - *now_);
     sight_.look(look.camera, look.seen, rules_.options().confident);
     find_missed();
@@ -188,20 +188,21 @@ class GroundMht final : public GroundTracker {
         const auto ratio = rules_.log_ratio(leaf.target, seen[o], rules_.at_instant(leaf.target, seen[o], late), *now_);
         if (ratio) pairs_.push_back({i, o, *ratio + prior});
       });
-      std::sort(pairs_.begin() + first, pairs_.end(), [](const GatedPair& a, const GatedPair& b) { return a.column < b.column; });
+      std::sort(pairs_.begin() + first, pairs_.end(),
+                [](const assign::GatedPair& a, const assign::GatedPair& b) { return a.column < b.column; });
     }
   }
 
   /// Nobody begins with a detector's doubt, nor with its second box around one person.
   void find_beginnings(std::span<const Observation<2>> seen) {
     explained_.assign(seen.size(), 0);
-    for (const GatedPair& pair : pairs_) explained_[pair.column] = 1;
+    for (const assign::GatedPair& pair : pairs_) explained_[pair.column] = 1;
     begins_.assign(seen.size(), 0);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       bool second = false;
       for (std::size_t j = 0; j < seen.size() && seen[i].box; ++j) {
         if (j == i || !seen[j].box || (j > i && !explained_[j])) continue;
-        second = second || iou(*seen[i].box, *seen[j].box) > duplicate_iou;
+        second = second || geometry::iou(*seen[i].box, *seen[j].box) > duplicate_iou;
       }
       begins_[i] = seen[i].score >= rules_.options().confident && !second;
     }
@@ -322,27 +323,28 @@ class GroundMht final : public GroundTracker {
   double dt_ = 0;
   std::vector<Leaf<F>> leaves_, next_;
   std::vector<Track<2>> tracks_;
-  std::vector<GroundClaim> claims_;
+  std::vector<ObservationMatch> claims_;
   // What an instant needs, kept so that it is allocated once.
   std::vector<double> missed_, visible_;
   std::vector<Observation<2>> seen_;  // of the look at hand, as far as each is believed
-  std::vector<GatedPair> pairs_;
+  std::vector<assign::GatedPair> pairs_;
   std::vector<char> begins_, explained_, gone_;
   std::vector<Vector<2>> points_, known_;
   std::vector<int> past_;
   std::vector<GroundHistory::Place> places_;
   std::vector<std::pair<int, int>> claim_list_;
   std::vector<GroundDuplicates::Member> members_;
-  PointGrid<2> grid_;  // of observations
+  assign::PointGrid<2> grid_;  // of observations
 };
 
 }  // namespace
 
 std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::vector<GroundView> views,
                                                const GroundMhtLimits& limits) {
-  return with_filter<2>(options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
-    return std::make_unique<GroundMht<F>>(options, filter, std::move(views), limits);
-  });
+  return filter::with_filter<2>(
+      options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
+        return std::make_unique<GroundMht<F>>(options, filter, std::move(views), limits);
+      });
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -3,7 +3,7 @@
 #include "marey/track/ground/ground_hypotheses.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// What multiple-hypothesis tracking keeps beyond GroundTrackerOptions.
 struct GroundMhtLimits {
@@ -17,4 +17,4 @@ struct GroundMhtLimits {
 std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::vector<GroundView> views,
                                                const GroundMhtLimits& limits = {});
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -12,7 +12,7 @@
 #include "marey/track/ground/ground_scene_test.h"
 #include "marey/track/ground/ground_target.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 using namespace ground_scene;
@@ -31,7 +31,7 @@ Timestamp instant(int frame) {
 }
 
 std::span<const Track<2>> step(GroundTracker& tracker, int frame, const Seen& seen) {
-  const GroundLook look{CameraId{0}, instant(frame), seen};
+  const CameraObservations look{CameraId{0}, instant(frame), seen};
   return tracker.step(instant(frame), {&look, 1});
 }
 
@@ -42,7 +42,7 @@ const GroundView whole = view_of(-500, 500, -500, 500);
 class Enumeration {
  public:
   explicit Enumeration(const GroundTrackerOptions& options)
-      : rules_(options, std::get<KalmanOptions>(options.filter), 1), hypotheses_(1) {}
+      : rules_(options, std::get<filter::KalmanOptions>(options.filter), 1), hypotheses_(1) {}
 
   void step(int frame, const Seen& seen) {
     const double dt = frame == 0 ? 1.0 : 1 / rate;
@@ -73,7 +73,7 @@ class Enumeration {
 
  private:
   struct Person {
-    GroundTarget<Kalman<2>> target;
+    GroundTarget<filter::Kalman<2>> target;
   };
   struct Hypothesis {
     double weight = 0;
@@ -119,7 +119,7 @@ class Enumeration {
     return rules_.log_ratio(person.target, seen, rules_.at_instant(person.target, seen, 0), now);
   }
 
-  GroundRules<Kalman<2>> rules_;
+  GroundRules<filter::Kalman<2>> rules_;
   std::vector<Hypothesis> hypotheses_;
 };
 
@@ -210,7 +210,7 @@ TEST(GroundMht, TellsEachInstantOnceInOrderAndNotBeforeItsWindow) {
       EXPECT_EQ(one.now, instant(told++));
       EXPECT_LE(one.now, instant(frame) - duration_from_seconds(0.5));
       EXPECT_TRUE(std::is_sorted(one.tracks.begin(), one.tracks.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
-      for (const GroundClaim& claim : one.claims) {
+      for (const ObservationMatch& claim : one.claims) {
         const auto whose = [&](const Track<2>& track) { return track.id == claim.track && track.cameras != 0; };
         EXPECT_EQ(std::count_if(one.tracks.begin(), one.tracks.end(), whose), 1);
       }
@@ -302,4 +302,4 @@ TEST(GroundMht, ManyFalsePointsDoNotMultiply) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

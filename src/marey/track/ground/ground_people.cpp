@@ -7,7 +7,7 @@
 #include "marey/track/ground/ground_join.h"
 #include "marey/track/ground/ground_smooth.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 class Writer {
@@ -135,4 +135,4 @@ GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets,
   return joined;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Whether there is anybody, as probabilities instead of as hypotheses of their own: a person is there and can be seen, or is there
 /// and hidden from everybody for a reason that nobody knows, or is not there: a false alarm, or gone. The three are summed over
@@ -47,4 +47,4 @@ class GroundPresence {
   double hidden_ = 0;
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -8,10 +8,10 @@
 #include <Eigen/LU>
 
 #include "marey/track/ground/ground_cut.h"
-#include "marey/track/ground/ground_meetings.h"
 #include "marey/track/ground/ground_people.h"
+#include "marey/track/ground/ground_swaps.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
@@ -65,11 +65,12 @@ class Melted {
   Vector<3> colours_ = Vector<3>::Zero();
 };
 
-Melted melt(const Track<2>& track, Timestamp now, std::span<const GroundLook> looks, std::span<const GroundClaim> claims) {
+Melted melt(const Track<2>& track, Timestamp now, std::span<const CameraObservations> looks,
+            std::span<const ObservationMatch> claims) {
   Melted melted;
-  for (const GroundClaim& claim : claims) {
+  for (const ObservationMatch& claim : claims) {
     if (claim.track != track.id) continue;
-    const GroundLook& look = looks[claim.look];
+    const CameraObservations& look = looks[claim.look];
     melted.add(look.seen[claim.observation], seconds(now - look.time) * track.velocity);
   }
   return melted;
@@ -77,8 +78,8 @@ Melted melt(const Track<2>& track, Timestamp now, std::span<const GroundLook> lo
 
 }  // namespace
 
-void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const GroundLook> looks,
-                         std::span<const GroundClaim> claims) {
+void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks,
+                         std::span<const CameraObservations> looks, std::span<const ObservationMatch> claims) {
   assert((frames_.empty() || frame > frames_.back()) && "frames are added in order, each once");
   const auto instant = static_cast<std::int32_t>(frames_.size());
   frames_.push_back(frame);
@@ -119,8 +120,8 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   open_.clear();
   std::sort(closed_.begin(), closed_.end(),
             [](const GroundTracklet& a, const GroundTracklet& b) { return a.runs.front().track < b.runs.front().track; });
-  exchange_where_they_met(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
-  std::vector<GroundTracklet> tracklets = cut_where_clothes_change(std::move(closed_), times_);
+  repair_swaps(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
+  std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(closed_), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_);
   GroundMotion unseen = options.motion;
   unseen.acceleration *= restless;
@@ -129,4 +130,4 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

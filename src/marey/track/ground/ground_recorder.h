@@ -13,7 +13,7 @@
 #include "marey/track/ground/ground_tracker.h"
 #include "marey/track/ground/ground_tracklet.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// Lengths in m, times in s.
 struct GroundJoinOptions {
@@ -30,8 +30,8 @@ struct GroundJoinOptions {
 class GroundRecorder {
  public:
   /// One instant: the tracks, looks and claims of one GroundTracker::step. Frames grow from call to call; some may be missing.
-  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const GroundLook> looks,
-           std::span<const GroundClaim> claims);
+  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const CameraObservations> looks,
+           std::span<const ObservationMatch> claims);
 
   /// Between frames `first` and `last`, both included, what the tracker called `track` was `person`.
   struct Piece {
@@ -60,4 +60,4 @@ class GroundRecorder {
   std::vector<GroundTracklet> closed_;
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

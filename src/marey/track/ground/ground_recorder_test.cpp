@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr Appearance white{.lightness = 90, .a = 0, .b = 0, .deviation = 5};
@@ -50,13 +50,13 @@ class Story {
       claims.emplace_back(s.camera, static_cast<int>(list.size()), track.id);
       list.push_back(observation);
     }
-    std::vector<GroundLook> looks;
+    std::vector<CameraObservations> looks;
     std::map<CameraId, int> look_of;
     for (const auto& [camera, list] : observations) {
       look_of[camera] = static_cast<int>(looks.size());
       looks.push_back({camera, now - duration_from_seconds(late), list});
     }
-    std::vector<GroundClaim> told;
+    std::vector<ObservationMatch> told;
     for (const auto& [camera, index, track] : claims) told.push_back({track, look_of[camera], index});
     recorder_.add(frame_++, now, tracks, looks, told);
   }
@@ -288,4 +288,4 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -8,7 +8,7 @@
 #include "marey/filter/random_stream.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey::ground_scene {
+namespace marey::track::ground::ground_scene {
 
 constexpr double rate = 25;  // Hz
 
@@ -24,7 +24,7 @@ class Random {
   }
 
  private:
-  RandomStream stream_;
+  filter::RandomStream stream_;
 };
 
 /// A camera that sees the ground within a rectangle, 10 px a metre, its picture's top at greater y. It is nearer to small y.
@@ -55,7 +55,7 @@ inline void run(GroundTracker& tracker, int cameras, int frames, const std::func
     Looks seen(static_cast<std::size_t>(cameras));
     see(frame, seen);
     const Timestamp now = timestamp_from_seconds(frame / rate);
-    std::vector<GroundLook> looks;
+    std::vector<CameraObservations> looks;
     for (int i = 0; i < cameras; ++i) looks.push_back({CameraId{i}, now, seen[static_cast<std::size_t>(i)]});
     look(frame, tracker.step(now, looks));
   }
@@ -80,4 +80,4 @@ inline int confirmed(std::span<const Track<2>> tracks) {
   return count;
 }
 
-}  // namespace marey::ground_scene
+}  // namespace marey::track::ground::ground_scene

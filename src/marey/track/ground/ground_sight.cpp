@@ -4,9 +4,9 @@
 
 #include "marey/track/check_frame.h"
 
-namespace marey {
+namespace marey::track::ground {
 
-void GroundSight::check(const GroundLook& look) const {
+void GroundSight::check(const CameraObservations& look) const {
   if (number(look.camera) < 0 || number(look.camera) >= cameras())
     throw Error("a look is of camera {}, but the rig has {}; give each camera a view", number(look.camera), cameras());
   check_finite(look.time, look.seen);
@@ -37,9 +37,9 @@ double GroundSight::covered(const Vector<2>& foot) const {
   for (const Box& other : boxes_) {
     if (other.foot().y() < foot.y()) continue;
     const Box body{foot.x() - (other.width - 1) / 2, foot.y() + 0.5 - other.height, other.width, other.height};
-    most = std::max(most, intersection(body, other).area() / other.area());
+    most = std::max(most, geometry::intersection(body, other).area() / other.area());
   }
   return most;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

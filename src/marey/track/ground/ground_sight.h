@@ -3,11 +3,12 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/observation.h"
 #include "marey/geometry/ground_view.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// What each camera can see of the ground: who stands outside its picture, or behind somebody nearer to it, is not missed by it.
 class GroundSight {
@@ -17,7 +18,7 @@ class GroundSight {
   int cameras() const { return static_cast<int>(views_.size()); }
 
   /// Throws Error where a look is of none of the cameras, or not finite.
-  void check(const GroundLook& look) const;
+  void check(const CameraObservations& look) const;
 
   /// Turns to one camera's look: `seen` are its observations, of which those with scores of at least `least_score` may stand before
   /// others. The camera must be one of the rig's.
@@ -39,4 +40,4 @@ class GroundSight {
   std::vector<Box> boxes_;  // of this look
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -4,7 +4,7 @@
 
 #include "marey/track/ground/ground_scene_test.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 using ground_scene::seen_at;
@@ -42,4 +42,4 @@ TEST(GroundSight, NobodyIsSeenBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

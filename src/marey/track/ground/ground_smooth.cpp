@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
@@ -305,4 +305,4 @@ GroundMoment between(const GroundMoment& earlier, double since, const GroundMome
   return moment;
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -22,7 +22,7 @@
 #include "marey/core/time.h"
 #include "marey/track/ground/ground_tracklet.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 struct GroundMotion {
   double acceleration = 1.5;   ///< by which velocity strays in a second, m/s: root of the density of slow changes, m/s^1.5
@@ -76,4 +76,4 @@ GroundState last_state(std::span<const GroundSample> samples, std::span<const Ti
 GroundMoment between(const GroundMoment& earlier, double since, const GroundMoment& later, double until,
                      const GroundMotion& motion);
 
-}  // namespace marey
+}  // namespace marey::track::ground

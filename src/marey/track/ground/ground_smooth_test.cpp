@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 struct Scene {
@@ -202,4 +202,4 @@ TEST(GroundSmooth, MoreFramesOfErrorsThatPersistAreNoMoreEvidence) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

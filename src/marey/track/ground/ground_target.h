@@ -14,6 +14,7 @@
 
 #include <Eigen/LU>
 
+#include "marey/core/geometry.h"
 #include "marey/core/observation.h"
 #include "marey/core/perceived.h"
 #include "marey/core/track.h"
@@ -21,7 +22,7 @@
 #include "marey/track/ground/ground_presence.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// One person who is followed. A value: hypotheses copy it.
 template <typename F>
@@ -57,7 +58,7 @@ class GroundRules {
   GroundRules(const GroundTrackerOptions& options, const typename F::Options& filter, int cameras)
       : options_(options),
         filter_(filter),
-        gate_(chi_square_quantile(2, options.gate_probability)),
+        gate_(geometry::chi_square_quantile(2, options.gate_probability)),
         disagreement_(cameras > 1 ? options.disagreement * options.disagreement : 0) {}
 
   const GroundTrackerOptions& options() const { return options_; }
@@ -220,4 +221,4 @@ class GroundRules {
   double disagreement_;  // m², per axis
 };
 
-}  // namespace marey
+}  // namespace marey::track::ground

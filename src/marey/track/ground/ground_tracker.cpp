@@ -5,7 +5,7 @@
 #include "marey/track/ground/ground_jpda.h"
 #include "marey/track/ground/ground_mht.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 void check(bool good, const char* name, double value, const char* domain) {
@@ -47,4 +47,4 @@ std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& o
   return make_ground_gnn(options, std::move(views));
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

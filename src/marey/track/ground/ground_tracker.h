@@ -18,23 +18,24 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/core/observation.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 #include "marey/filter/filters.h"
 #include "marey/geometry/ground_view.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// What one camera saw of the ground in one frame.
-struct GroundLook {
+struct CameraObservations {
   CameraId camera{};
   Timestamp time{};                           ///< of the frame, by the rig's clock: near the instant's, seldom equal
   std::span<const Observation<2>> seen = {};  ///< world's ground, m; `box` in px of this camera
 };
 
 /// Whose an observation of the last step was.
-struct GroundClaim {
+struct ObservationMatch {
   TrackId track{};
   int look = 0;         ///< index into the looks given
   int observation = 0;  ///< index into that look's `seen`
@@ -43,8 +44,8 @@ struct GroundClaim {
 /// What a tracker has decided about an instant, never to be changed.
 struct GroundDecision {
   Timestamp now{};
-  std::span<const Track<2>> tracks = {};     ///< by id
-  std::span<const GroundClaim> claims = {};  ///< of the looks of that instant
+  std::span<const Track<2>> tracks = {};          ///< by id
+  std::span<const ObservationMatch> claims = {};  ///< of the looks of that instant
 };
 
 /// What `step` and `claims` tell at once is the best guess of the moment. Who follows live takes that. Who records takes `decided`:
@@ -58,10 +59,10 @@ class GroundTracker {
   /// marked so; `Track::cameras` are those that saw it now, `observation` and `box` stay empty. Valid until the next call. A camera
   /// without a look has no frame for this instant: nobody is missed for it. Throws Error where `now` is not later than the last
   /// call's, or an observation is not finite.
-  virtual std::span<const Track<2>> step(Timestamp now, std::span<const GroundLook> looks) = 0;
+  virtual std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations> looks) = 0;
 
   /// Who was seen where in the last step; only what belongs to a reported track. Valid until the next call.
-  virtual std::span<const GroundClaim> claims() const = 0;
+  virtual std::span<const ObservationMatch> claims() const = 0;
 
   /// The instants that were decided in the last step. Valid until the next call of any kind.
   virtual std::span<const GroundDecision> decided() = 0;
@@ -82,7 +83,7 @@ GroundAssociation ground_association_named(std::string_view name);
 /// Lengths in m, times in s. What is not said of a person's motion comes from football and athletics.
 struct GroundTrackerOptions {
   GroundAssociation associate = GroundAssociation::gnn;
-  FilterOptions filter = KalmanOptions{.acceleration_noise = 2, .initial_speed = 3, .gate_sigmas = 3.5};
+  filter::FilterOptions filter = filter::KalmanOptions{.acceleration_noise = 2, .initial_speed = 3, .gate_sigmas = 3.5};
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 12;            ///< m/s; nobody runs faster
   double detected = 0.9;            ///< probability that somebody in view of a camera is seen in one of its frames
@@ -102,4 +103,4 @@ struct GroundTrackerOptions {
 /// option is out of its domain. Camera i of the looks is views[i].
 std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::vector<GroundView> views);
 
-}  // namespace marey
+}  // namespace marey::track::ground

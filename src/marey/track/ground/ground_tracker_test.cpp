@@ -10,7 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/track/ground/ground_scene_test.h"
 
-namespace marey {
+namespace marey::track::ground {
 namespace {
 
 using namespace ground_scene;
@@ -154,7 +154,7 @@ TEST_P(EveryAssociation, LooksOfOtherTimesAreBroughtToTheInstant) {
   for (int frame = 0; frame < 125; ++frame) {
     const double time = frame / rate;
     std::vector<std::vector<Observation<2>>> seen(2);
-    std::vector<GroundLook> looks;
+    std::vector<CameraObservations> looks;
     for (int c = 0; c < 2; ++c) {
       const double taken = time + (c == 0 ? 0 : 0.019);
       seen[c].push_back(seen_at(views[c], c, place_at(taken)));
@@ -206,13 +206,13 @@ TEST_P(EveryAssociation, NobodyJumps) {
 TEST_P(EveryAssociation, RefusesWhatCannotBe) {
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
-  const GroundLook stranger{CameraId{4}, timestamp_from_seconds(0), {}};
+  const CameraObservations stranger{CameraId{4}, timestamp_from_seconds(0), {}};
   EXPECT_THROW(tracker->step(timestamp_from_seconds(0), {&stranger, 1}), Error);
   tracker->step(timestamp_from_seconds(1), {});
   EXPECT_THROW(tracker->step(timestamp_from_seconds(1), {}), Error);
   Observation<2> broken = seen_at(views[0], 0, {30, 30});
   broken.value.x() = std::nan("");
-  const GroundLook look{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};
+  const CameraObservations look{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};
   EXPECT_THROW(tracker->step(timestamp_from_seconds(2), {&look, 1}), Error);
 }
 
@@ -233,4 +233,4 @@ TEST(GroundTracker, RefusesOptionsOutOfTheirDomain) {
 }
 
 }  // namespace
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace marey {
+namespace marey::track::ground {
 
 GroundTracklet split(GroundTracklet& tracklet, std::size_t from) {
   assert(from > 0 && from < tracklet.samples.size() && "both parts hold something");
@@ -23,4 +23,4 @@ void append(GroundTracklet& tracklet, const GroundTracklet& later) {
   tracklet.samples.insert(tracklet.samples.end(), later.samples.begin(), later.samples.end());
 }
 
-}  // namespace marey
+}  // namespace marey::track::ground

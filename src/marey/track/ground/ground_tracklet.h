@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
+#include "marey/core/geometry.h"
 #include "marey/core/ids.h"
-#include "marey/geometry/vector.h"
 
-namespace marey {
+namespace marey::track::ground {
 
 /// What all cameras together saw of one target at one instant.
 struct GroundSample {
@@ -49,4 +49,4 @@ GroundTracklet split(GroundTracklet& tracklet, std::size_t from);
 /// Puts `later`, whose samples are all later, at the end.
 void append(GroundTracklet& tracklet, const GroundTracklet& later);
 
-}  // namespace marey
+}  // namespace marey::track::ground

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/core/geometry.h"
+
+namespace marey::calibrate::board {
+
+/// A flat calibration board. Its corners are the places where four squares meet: they lie in the plane z = 0 of the board's
+/// frame, corner 0 at the origin, numbered along x first; x runs along a row, y from row to row, and z away from who looks at it.
+struct Board {
+  enum class Kind { chess, charuco };
+
+  Kind kind = Kind::chess;
+  cv::Size corners;        ///< inner corners: how many in a row, and how many rows; at least 2 of each
+  double square_m = 0;     ///< side of a square
+  double marker_m = 0;     ///< charuco: side of a marker
+  std::string dictionary;  ///< charuco: of its markers, "4X4_50", …
+  bool inverted = false;   ///< black and white are exchanged
+
+  int corner_count() const { return corners.width * corners.height; }
+  /// Where corner `id` lies in the board's frame, m.
+  Vector<3> corner(int id) const {
+    const int row = id / corners.width, column = id % corners.width;
+    return {column * square_m, row * square_m, 0.0};
+  }
+};
+
+/// `chess:9x6:0.025` (inner corners, side of a square in m) or `charuco:COLSxROWS:SQUARE:MARKER:DICTIONARY` (squares, sides in m,
+/// a dictionary of OpenCV's such as 4X4_50); either with `:inverted` behind it. Throws Error, one sentence, where it is neither.
+Board parse_board(const std::string& text);
+
+/// The names of dictionaries that parse_board takes.
+std::vector<std::string> board_dictionaries();
+
+/// As parse_board reads it.
+std::string to_string(const Board& board);
+
+}  // namespace marey::calibrate::board

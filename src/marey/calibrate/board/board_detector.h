@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "marey/calibrate/board/board.h"
+#include "marey/core/picture.h"
+
+namespace marey::calibrate::board {
+
+/// One corner of a board, seen.
+struct BoardCorner {
+  int id = 0;  ///< which: Board::corner
+  Vector<2> pixel = Vector<2>::Zero();
+};
+
+/// A board in one picture: corners by rising id. A chess board is seen whole or not at all.
+struct BoardView {
+  std::vector<BoardCorner> corners;
+};
+
+/// Finds a board in pictures.
+class BoardDetector {
+ public:
+  explicit BoardDetector(const Board& board);
+  ~BoardDetector();
+  BoardDetector(const BoardDetector&) = delete;
+  BoardDetector& operator=(const BoardDetector&) = delete;
+
+  const Board& board() const { return board_; }
+
+  /// Nothing where the board is not in the picture or fewer than four of its corners are seen. Corners are refined to a fraction of
+  /// a pixel.
+  std::optional<BoardView> detect(const Picture& picture) const;
+
+ private:
+  std::optional<BoardView> chess(const cv::Mat& grey) const;
+  std::optional<BoardView> charuco(const cv::Mat& grey) const;
+
+  Board board_;
+  struct Markers;
+  std::unique_ptr<Markers> markers_;
+};
+
+}  // namespace marey::calibrate::board

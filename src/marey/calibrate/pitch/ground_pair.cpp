@@ -1,0 +1,304 @@
+#include "marey/calibrate/pitch/ground_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace marey::calibrate::pitch {
+namespace {
+
+constexpr double kSegment_s = 2;                    // long enough to show how somebody moves, short enough to be one person's
+constexpr double kStride_s = 1;                     // from one segment to the next: they overlap,
+constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
+constexpr double kSample_s = 0.2;                   // between the places that are compared
+constexpr int kSamples = 10;                        // of a segment,
+constexpr std::size_t kLeastSamples = 5;            // where one of both was not seen throughout
+constexpr double kMemory_s = 0.5;                   // errors hang together for about so long
+constexpr double kFloor_m = 0.05;                   // noise that a smoothed place has at least
+constexpr double kStrangers_m = 1.0;                // how much the distance of two different people changes within a segment
+constexpr double kDensity = 0.01;                   // other people per m²
+constexpr double kFarthest_m = 4;                   // who is farther apart is not one person
+constexpr double kPaired = 2;                       // nats above which a pair takes part in the fine search
+constexpr double kBlock_s = 6;                      // the systematic part of a pair is taken to stay for so long
+constexpr double kStep_s = 0.15;                    // of the coarse search
+constexpr std::size_t kPeaks = 4;                   // that are refined
+constexpr int kIterations = 10;                     // of the fine search
+constexpr double kStandsOut = 4;                    // times what peaks differ by chance
+constexpr double kExplained = 0.2;                  // of who walks before both cameras, that must be seen by both
+constexpr double kOptimism = 1.5;     // by which errors that hang together for longer make the answer worse than least squares say
+constexpr double kLeastFree = 20;     // degrees of freedom that tell how large the noise is
+constexpr double kLeastNoise = 0.02;  // and by how much less, or more, than covariances say
+constexpr int kNoiseRounds = 2;
+constexpr double kBeside_s = 0.5;      // a peak so near is the same one
+constexpr double kWalks_m = 1;         // who gets no farther within a segment stands
+constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that can tell anything
+constexpr double kLeastMeeting_s = 3;  // person-seconds in places that both see, that make an overlap
+constexpr double kCell_m = 4;
+constexpr double kTick_s = SmoothPath::kStep_s;
+constexpr std::size_t kMostSegments = 600;
+
+double log_det(const Matrix<2>& m) {
+  return std::log(m.determinant());
+}
+
+std::pair<int, int> cell_of(const Vector<2>& place) {
+  return {static_cast<int>(std::floor(place.x() / kCell_m)), static_cast<int>(std::floor(place.y() / kCell_m))};
+}
+
+std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
+  double begin = 1e300, end = -1e300;
+  for (const SmoothPath& path : paths) begin = std::min(begin, path.begin_s()), end = std::max(end, path.end_s());
+  return {begin, end};
+}
+
+}  // namespace
+
+GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options)
+    : b_(&b), options_(options) {
+  if (a.empty() || b.empty()) return;
+  const auto [a_begin, a_end] = span_of(a);
+  std::tie(b_begin_, b_end_) = span_of(b);
+  first_s_ = std::max(-options.most_offset_s, a_begin + options.least_common_s - b_end_);
+  last_s_ = std::min(options.most_offset_s, a_end - options.least_common_s - b_begin_);
+  present_.resize(static_cast<std::size_t>((b_end_ - b_begin_) / kTick_s) + 2);
+  std::set<std::pair<int, int>> cells;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    for (double t = std::ceil((b[j].begin_s() - b_begin_) / kTick_s) * kTick_s + b_begin_; t < b[j].end_s(); t += kTick_s) {
+      const auto state = b[j].at(t);
+      if (!state) continue;
+      present_[static_cast<std::size_t>(std::lround((t - b_begin_) / kTick_s))].push_back({j, state->place});
+      cells.insert(cell_of(state->place));
+    }
+  }
+  cut(a, cells);
+}
+
+/// Cuts ways into segments, and keeps of those that can tell something so many as are enough.
+void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<int, int>>& cells) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (double begin = a[i].begin_s(); begin < a[i].end_s(); begin += kStride_s) {
+      Segment segment{i, {}, {}};
+      for (int k = 0; k < kSamples; ++k) {
+        const double time = begin + kSample_s * k;
+        if (const auto state = a[i].at(time)) segment.times_s.push_back(time), segment.states.push_back(*state);
+      }
+      if (segment.states.size() < kLeastSamples) continue;
+      const auto common = std::count_if(segment.states.begin(), segment.states.end(),
+                                        [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.place)); });
+      const double common_s = kWeight * kSample_s * static_cast<double>(common);
+      meeting_s_ += common_s;
+      if (common == 0 || (segment.states.back().place - segment.states.front().place).norm() < kWalks_m) continue;
+      moving_s_ += common_s;
+      segments_.push_back(std::move(segment));
+    }
+  }
+  if (segments_.size() <= kMostSegments) return;
+  std::vector<Segment> some;
+  for (std::size_t i = 0; i < kMostSegments; ++i) some.push_back(std::move(segments_[i * segments_.size() / kMostSegments]));
+  segments_ = std::move(some);
+}
+
+/// Of the segment being the same person's as `other` against another's; nothing where they are not to be compared.
+std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const {
+  double count = 0;
+  Vector<2> mean = Vector<2>::Zero();
+  Matrix<2> square = Matrix<2>::Zero(), noise = Matrix<2>::Zero();
+  for (std::size_t k = 0; k < segment.states.size(); ++k) {
+    const auto there = other.at(segment.times_s[k] - shift_s);
+    if (!there) continue;
+    const Vector<2> apart = segment.states[k].place - there->place;
+    count += 1;
+    mean += apart;
+    square += apart * apart.transpose();
+    noise += noise_scale_ * (segment.states[k].noise + there->noise);
+  }
+  if (count < kLeastSamples) return std::nullopt;
+  mean /= count;
+  noise = noise / count + kFloor_m * kFloor_m * Matrix<2>::Identity();
+  const Matrix<2> spread = square / count - mean * mean.transpose();
+  const double worth = count * kSample_s / kMemory_s;  // independent samples
+  const double systematic = options_.systematic_m * options_.systematic_m;
+  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / worth;
+  const Matrix<2> strangers = noise + kStrangers_m * kStrangers_m * Matrix<2>::Identity();
+  const double same_mean =
+      -0.5 * mean.dot(of_mean.inverse() * mean) - std::log(2 * std::numbers::pi) - 0.5 * log_det(of_mean) - std::log(kDensity);
+  const double same_motion =
+      -0.5 * (worth - 1) *
+      ((noise.inverse() * spread).trace() + log_det(noise) - (strangers.inverse() * spread).trace() - log_det(strangers));
+  return same_mean + same_motion;
+}
+
+/// Who of the other camera's people it most likely is.
+std::optional<GroundPair::Match> GroundPair::match(const Segment& segment, double shift_s) const {
+  const std::size_t middle = segment.states.size() / 2;
+  const double tick = std::round((segment.times_s[middle] - shift_s - b_begin_) / kTick_s);
+  if (!(tick >= 0) || tick >= static_cast<double>(present_.size())) return std::nullopt;
+  std::optional<Match> best;
+  for (const auto& [path, place] : present_[static_cast<std::size_t>(tick)]) {
+    if ((place - segment.states[middle].place).squaredNorm() > kFarthest_m * kFarthest_m) continue;
+    const auto ratio = likelihood_ratio(segment, (*b_)[path], shift_s);
+    if (ratio && (!best || *ratio > best->score)) best = Match{path, *ratio};
+  }
+  return best;
+}
+
+double GroundPair::score(double shift_s) const {
+  double sum = 0;
+  for (const Segment& segment : segments_) {
+    const auto found = match(segment, shift_s);
+    // As likely as not the other camera did not see the person at all: what speaks against costs little.
+    if (found)
+      sum += kWeight * (found->score > 0 ? found->score + std::log1p(std::exp(-found->score)) : std::log1p(std::exp(found->score)));
+  }
+  return sum;
+}
+
+/// Shifts that are better than those beside, and by how much peaks differ by chance.
+GroundPair::Peaks GroundPair::peaks() const {
+  std::vector<double> scores;
+  for (double shift = first_s_; shift <= last_s_; shift += kStep_s) scores.push_back(score(shift));
+  std::vector<std::pair<double, double>> found;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (scores[i] <= 0 || (i > 0 && scores[i - 1] >= scores[i]) || (i + 1 < scores.size() && scores[i + 1] > scores[i])) continue;
+    found.emplace_back(-scores[i], first_s_ + kStep_s * static_cast<double>(i));
+  }
+  std::sort(found.begin(), found.end());
+  Peaks result;
+  for (const auto& peak : found) {
+    if (result.shifts_s.size() < kPeaks) result.shifts_s.push_back(peak.second);
+  }
+  // The best may be the true one; of the others half lie below the second quarter's end.
+  if (found.size() >= 5) {
+    const auto others = std::span(found).subspan(1);
+    result.chance = others[others.size() / 2].first - others[others.size() / 8].first;
+  }
+  return result;
+}
+
+/// One step of least squares: the shift, the systematic part of all pairs, and that of each, which is eliminated.
+std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
+  struct Block {
+    Matrix<2> own;
+    Eigen::Matrix<double, 2, 3> shared = Eigen::Matrix<double, 2, 3>::Zero();
+    Vector<2> right = Vector<2>::Zero();
+  };
+  const double prior = 1 / (options_.systematic_m * options_.systematic_m);
+  std::map<std::array<std::int64_t, 3>, Block> blocks;
+  Matrix<3> normal = Eigen::Vector3d(0, prior, prior).asDiagonal();
+  Vector<3> right = Vector<3>::Zero();
+  double cost = 0, samples = 0;
+  for (const Segment& segment : segments_) {
+    const auto found = match(segment, shift_s);
+    if (!found || found->score < kPaired) continue;
+    const auto when = static_cast<std::int64_t>(std::floor(segment.times_s[0] / kBlock_s));
+    auto& block = blocks
+                      .try_emplace({static_cast<std::int64_t>(segment.path), static_cast<std::int64_t>(found->path), when},
+                                   Block{prior * Matrix<2>::Identity()})
+                      .first->second;
+    for (std::size_t k = 0; k < segment.states.size(); ++k) {
+      const auto there = (*b_)[found->path].at(segment.times_s[k] - shift_s);
+      if (!there) continue;
+      const Matrix<2> noise = noise_scale_ * (segment.states[k].noise + there->noise) + kFloor_m * kFloor_m * Matrix<2>::Identity();
+      const Matrix<2> weight = kWeight * kSample_s / kMemory_s * noise.inverse();
+      // apart + velocity · shift = systematic of all + of the pair + noise
+      const Vector<2> apart = segment.states[k].place - there->place;
+      Eigen::Matrix<double, 2, 3> shared;
+      shared << there->velocity, -Matrix<2>::Identity();
+      normal += shared.transpose() * weight * shared;
+      right -= shared.transpose() * weight * apart;
+      block.own += weight;
+      block.shared -= weight * shared;
+      block.right += weight * apart;
+      cost += apart.dot(weight * apart);
+      samples += kWeight * kSample_s / kMemory_s;
+    }
+  }
+  for (const auto& [key, block] : blocks) {
+    const Matrix<2> inverse = block.own.inverse();
+    normal -= block.shared.transpose() * inverse * block.shared;
+    right -= block.shared.transpose() * inverse * block.right;
+    cost -= block.right.dot(inverse * block.right);
+  }
+  const Eigen::LDLT<Matrix<3>> solver(normal);
+  if (blocks.empty() || solver.info() != Eigen::Success || !solver.isPositive() || !(normal(0, 0) > 1e-9)) return std::nullopt;
+  const Vector<3> by = solver.solve(right);
+  const double variance = solver.solve(Vector<3>::UnitX()).x();
+  if (!(variance > 0) || !std::isfinite(by.x())) return std::nullopt;
+  const double free = 2 * samples - 2 * static_cast<double>(blocks.size()) - 1;
+  const double misfit = free > kLeastFree ? std::max(0.0, cost - right.dot(by)) / free : 1;
+  return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0, misfit};
+}
+
+std::optional<GroundPair::Fit> GroundPair::refine(double shift_s) const {
+  std::optional<Fit> fit;
+  for (int i = 0; i < kIterations; ++i) {
+    const double from = fit ? fit->shift_s : shift_s;
+    fit = step(from);
+    if (!fit) return std::nullopt;
+    if (std::abs(fit->shift_s - from) < 1e-4) break;
+  }
+  fit->score = score(fit->shift_s);
+  return fit;
+}
+
+/// Of those who walk where the other camera sees people, and while it films, the share that it sees walk there too.
+double GroundPair::explained(double shift_s) const {
+  double all = 0, matched = 0;
+  for (const Segment& segment : segments_) {
+    if (segment.times_s.front() - shift_s < b_begin_ || segment.times_s.back() - shift_s > b_end_) continue;
+    all += 1;
+    const auto found = match(segment, shift_s);
+    if (found && found->score > kPaired) matched += 1;
+  }
+  return all > 0 ? matched / all : 0;
+}
+
+/// Peaks, refined, the best first.
+std::vector<GroundPair::Fit> GroundPair::fits(const std::vector<double>& peaks) const {
+  std::vector<Fit> fits;
+  for (const double peak : peaks) {
+    if (const auto fit = refine(peak); fit && fit->shift_s >= first_s_ - kStep_s && fit->shift_s <= last_s_ + kStep_s)
+      fits.push_back(*fit);
+  }
+  std::stable_sort(fits.begin(), fits.end(), [](const Fit& x, const Fit& y) { return x.score > y.score; });
+  return fits;
+}
+
+GroundOffset GroundPair::find(std::optional<double> near) {
+  GroundOffset result;
+  if (meeting_s_ < kLeastMeeting_s) return result;
+  result.verdict = moving_s_ < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
+  if (result.verdict == OffsetVerdict::nobody_moves) return result;
+  const Peaks coarse = near ? Peaks{{*near}, 0} : peaks();
+  std::vector<Fit> fits = this->fits(coarse.shifts_s);
+  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the ways tell.
+  for (int i = 0; i < kNoiseRounds && !fits.empty(); ++i) {
+    noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kLeastNoise, 1 / kLeastNoise);
+    std::vector<double> again;
+    for (const Fit& fit : fits) again.push_back(fit.shift_s);
+    fits = this->fits(again);
+  }
+  if (fits.empty()) return result;
+  const Fit& best = fits[0];
+  const auto rival =
+      std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kBeside_s; });
+  const double gap = best.score - (rival == fits.end() ? 0 : rival->score);
+  result.offset_s = best.shift_s;
+  result.deviation_s = best.deviation_s;
+  if (gap >= std::max(options_.least_score, kStandsOut * coarse.chance) && explained(best.shift_s) >= kExplained &&
+      best.deviation_s <= options_.most_deviation_s)
+    result.verdict = OffsetVerdict::found;
+  return result;
+}
+
+}  // namespace marey::calibrate::pitch

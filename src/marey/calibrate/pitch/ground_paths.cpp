@@ -1,0 +1,74 @@
+#include "marey/calibrate/pitch/ground_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <Eigen/Cholesky>
+
+namespace marey::calibrate::pitch {
+namespace {
+
+constexpr double kReach_s = 0.5;    // of the parabola, to both sides
+constexpr double kNear_s = 0.25;    // something must have been seen so near on both sides
+constexpr std::size_t kLeast = 4;   // samples that make a parabola
+constexpr double kIndependent = 2;  // errors of a second's samples hang together: they are worth so many
+
+/// The parabola through `samples` about `time_s`; nothing where they do not hold it.
+std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples, double time_s) {
+  if (samples.size() < kLeast || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
+    return std::nullopt;
+  Matrix<3> normal = Matrix<3>::Zero();
+  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
+  Matrix<2> noise = Matrix<2>::Zero();
+  double total = 0;
+  for (const GroundPath::Sample& sample : samples) {
+    const double u = (sample.time_s - time_s) / kReach_s;
+    const double bell = 1 - u * u;
+    const double weight = bell / std::max(sample.covariance.trace(), 1e-6);
+    const Vector<3> basis(1, u, u * u);
+    normal += weight * basis * basis.transpose();
+    right += weight * basis * sample.place.transpose();
+    noise += bell * sample.covariance;
+    total += bell;
+  }
+  if (!(total > 0)) return std::nullopt;
+  const Eigen::LLT<Matrix<3>> solver(normal);
+  if (solver.info() != Eigen::Success || solver.rcond() < 1e-9) return std::nullopt;
+  const Eigen::Matrix<double, 3, 2> found = solver.solve(right);
+  return SmoothPath::State{found.row(0), found.row(1) / kReach_s, noise / total / kIndependent};
+}
+
+}  // namespace
+
+SmoothPath::SmoothPath(const GroundPath& path) {
+  const auto& samples = path.samples;
+  if (samples.size() < kLeast) return;
+  begin_s_ = samples.front().time_s;
+  const auto steps = static_cast<std::size_t>((samples.back().time_s - begin_s_) / kStep_s) + 1;
+  std::size_t first = 0, end = 0;
+  for (std::size_t i = 0; i < steps; ++i) {
+    const double time = begin_s_ + kStep_s * static_cast<double>(i);
+    while (first < samples.size() && samples[first].time_s <= time - kReach_s) ++first;
+    while (end < samples.size() && samples[end].time_s < time + kReach_s) ++end;
+    states_.push_back(fit(std::span(samples).subspan(first, end - first), time));
+  }
+}
+
+std::optional<SmoothPath::State> SmoothPath::at(double time_s) const {
+  const double place = (time_s - begin_s_) / kStep_s;
+  if (!(place >= 0) || place >= static_cast<double>(states_.size()) - 1) return std::nullopt;
+  const auto i = static_cast<std::size_t>(place);
+  const auto &a = states_[i], &b = states_[i + 1];
+  if (!a || !b) return std::nullopt;
+  // Hermite's cubic: velocities are known too.
+  const double u = place - static_cast<double>(i), w = 1 - u;
+  State result;
+  result.place = w * w * (1 + 2 * u) * a->place + u * u * (1 + 2 * w) * b->place +
+                 kStep_s * (u * w * w * a->velocity - u * u * w * b->velocity);
+  result.velocity = w * a->velocity + u * b->velocity;
+  result.noise = w * a->noise + u * b->noise;
+  return result;
+}
+
+}  // namespace marey::calibrate::pitch

@@ -1,0 +1,174 @@
+#include "marey/calibrate/pitch/pitch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "marey/calibrate/pitch/pitch_sightings.h"
+#include "marey/core/error.h"
+#include "marey/core/geometry.h"
+#include "marey/geometry/ground_view.h"
+
+namespace marey::calibrate::pitch {
+namespace {
+
+// The search narrows as the camera gets better (units of `find_lines`, for a picture of 3,072 px; more or less for others).
+constexpr double kReaches[] = {14, 12, 10, 10, 8};
+constexpr double kReferenceWidth = 3072;
+constexpr double kSampleStep = 0.25;   // m
+constexpr double kFarthestClick = 50;  // px: what is clicked further off its line is no click on it
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// Frames with their origin in the middle of the pitch have negative coordinates within half a pitch.
+Vector<2> corner_of(const std::vector<PitchView>& views, const geometry::PitchSize& size) {
+  Vector<2> low = Vector<2>::Zero(), high = Vector<2>::Zero();
+  for (const PitchView& view : views) {
+    for (const PitchPoint& point : view.points) low = low.cwiseMin(point.ground), high = high.cwiseMax(point.ground);
+  }
+  const Vector<2> half(size.length / 2, size.width / 2);
+  const bool centred =
+      (low.array() < -1).any() && (low.array() > -half.array() - 1).all() && (high.array() < half.array() + 1).all();
+  return centred ? Vector<2>(-half) : Vector<2>::Zero();
+}
+
+/// The model's lines, in the world.
+std::vector<geometry::PitchLine> lines_in_world(const geometry::PitchSize& size, const Vector<2>& corner,
+                                                const Matrix<3>& world_from_ground) {
+  std::vector<geometry::PitchLine> lines = geometry::pitch_lines(size, kSampleStep);
+  for (geometry::PitchLine& line : lines) {
+    for (Vector<2>& point : line.points) point = (world_from_ground * (point + corner).homogeneous()).hnormalized();
+    for (Vector<2>& tangent : line.tangents) tangent = world_from_ground.topLeftCorner<2, 2>() * tangent;
+  }
+  return lines;
+}
+
+void measure_lines(PitchViewResult& result) {
+  const GroundView view(result.camera);
+  std::vector<double> pixels, metres;
+  for (const LineSighting& seen : result.lines) {
+    const auto expected = view.pixel(seen.ground);
+    if (!expected) continue;
+    const double off = seen.normal.dot(seen.pixel - *expected);
+    pixels.push_back(std::abs(off));
+    metres.push_back(std::abs(off) / seen.pixels_per_metre);
+  }
+  result.line_median_px = quantile(pixels, 0.5);
+  result.line_95_px = quantile(pixels, 0.95);
+  result.line_median_m = quantile(metres, 0.5);
+  result.line_95_m = quantile(metres, 0.95);
+}
+
+/// Clicks against the camera; an outlier that another name on the pitch would suit is told so.
+void measure_points(const std::vector<PitchPoint>& points, const Matrix<3>& ground_from_world, PitchViewResult& result) {
+  const GroundView view(result.camera);
+  result.error_px.clear();
+  for (const PitchPoint& point : points) {
+    const auto pixel = view.pixel(point.ground);
+    const auto place = view.place(point.pixel);
+    result.error_px.push_back(pixel ? (*pixel - point.pixel).norm()
+                                    : std::hypot(result.camera.size().width, result.camera.size().height));
+    result.error_m.push_back(place ? std::optional((place->ground - point.ground).norm()) : std::nullopt);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    auto& better = result.better_name.emplace_back();
+    if (result.inlier[i]) continue;
+    double nearest = result.error_px[i] / 3;
+    // Its neighbours' coordinates, exchanged one by one: whoever names a point wrong takes one number of the next.
+    for (const PitchPoint& x_of : points) {
+      for (const PitchPoint& y_of : points) {
+        const Vector<2> place(x_of.ground.x(), y_of.ground.y());
+        const auto pixel = view.pixel(place);
+        if (!pixel || (*pixel - points[i].pixel).norm() >= nearest) continue;
+        nearest = (*pixel - points[i].pixel).norm();
+        better = (ground_from_world * place.homogeneous()).hnormalized();
+      }
+    }
+  }
+}
+
+constexpr double kClickSigma = 3;  // px
+
+/// Clicks along a line, each against the piece of the line that it is nearest to.
+std::vector<LineSighting> sightings_of(const std::vector<PitchClickedLine>& clicked, const Matrix<3>& world_from_ground,
+                                       const Camera& camera) {
+  constexpr int pieces = 400;
+  std::vector<LineSighting> result;
+  const GroundView view(camera);
+  for (const PitchClickedLine& line : clicked) {
+    const Vector<2> from = (world_from_ground * line.from.homogeneous()).hnormalized();
+    const Vector<2> to = (world_from_ground * line.to.homogeneous()).hnormalized();
+    for (const Vector<2>& pixel : line.pixels) {
+      double nearest = kFarthestClick;
+      std::optional<LineSighting> best;
+      for (int i = 0; i <= pieces; ++i) {
+        const Vector<2> place = from + (to - from) * i / pieces;
+        const auto here = camera.project_with_jacobian({place.x(), place.y(), 0});
+        if (!here || (here->pixel - pixel).norm() >= nearest) continue;
+        nearest = (here->pixel - pixel).norm();
+        const Vector<2> along = here->by_world.leftCols<2>() * (to - from).normalized();
+        const Vector<2> normal = Vector<2>(-along.y(), along.x()).normalized();
+        const Vector<2> aside = here->by_world.leftCols<2>() * Vector<2>(from.y() - to.y(), to.x() - from.x()).normalized();
+        best = LineSighting{place, pixel, normal, std::abs(normal.dot(aside)), kClickSigma, -1};
+      }
+      if (best) result.push_back(*best);
+    }
+  }
+  return result;
+}
+
+PitchViewResult calibrate_view(const PitchView& view, const std::vector<PitchPoint>& points, const Matrix<3>& world_from_ground,
+                               const std::vector<geometry::PitchLine>& lines) {
+  const PitchCamera start = camera_from_points(view.name, points, view.size);
+  PitchViewResult result{start.camera, start.inlier, start.error_px, {}, {}, {}, 0, 0, 0, 0};
+  const auto refine_on = [&](const std::vector<LineSighting>& painted) {
+    std::vector<LineSighting> all = sightings_of(view.lines, world_from_ground, result.camera);
+    all.insert(all.end(), painted.begin(), painted.end());
+    if (!all.empty()) result.camera = refine(result.camera, points, result.inlier, all, !painted.empty());
+  };
+  refine_on({});
+  if (view.empty_ground.empty()) return result;
+  for (const double reach : kReaches) {
+    result.lines = find_lines(view.empty_ground, result.camera, lines, reach * view.size.width / kReferenceWidth);
+    if (result.lines.empty()) return result;
+    refine_on(result.lines);
+  }
+  result.inlier = points_near(result.camera, points);
+  return result;
+}
+
+}  // namespace
+
+PitchCalibration calibrate_pitch(const std::vector<PitchView>& views, const PitchCalibrationOptions& options) {
+  if (views.empty()) throw Error("no camera's points on the pitch are given");
+  PitchCalibration result;
+  result.corner = corner_of(views, options.size);
+  const bool reflected = is_left_handed(views.front().name, views.front().points, views.front().size);
+  for (const PitchView& view : views) {
+    if (is_left_handed(view.name, view.points, view.size) != reflected)
+      throw Error(
+          "cameras \"{}\" and \"{}\" contradict each other: by the points of one the pitch is mirrored; are left and right, or "
+          "near and far, "
+          "exchanged in one of them?",
+          views.front().name, view.name);
+  }
+  if (reflected) result.ground_from_world(1, 1) = -1;
+  const Matrix<3> world_from_ground = result.ground_from_world.inverse();
+  const auto lines = lines_in_world(options.size, result.corner, world_from_ground);
+  for (const PitchView& view : views) {
+    std::vector<PitchPoint> points = view.points;
+    for (PitchPoint& point : points) point.ground = (world_from_ground * point.ground.homogeneous()).hnormalized();
+    PitchViewResult& one = result.views.emplace_back(calibrate_view(view, points, world_from_ground, lines));
+    measure_lines(one);
+    measure_points(points, result.ground_from_world, one);
+  }
+  return result;
+}
+
+}  // namespace marey::calibrate::pitch

@@ -1,0 +1,354 @@
+#include "marey/calibrate/pitch/pitch_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include <Eigen/Dense>
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include "marey/core/error.h"
+
+namespace marey::calibrate::pitch {
+namespace {
+
+// --- The start: straighten, then a homography by consensus -------------------------------------------------------------
+
+constexpr int kSamples = 400;    // of four points, per strength of distortion
+constexpr double kReach = 0.02;  // half picture widths: beyond, a point says nothing (30 px in a picture of 3,072)
+constexpr double kStrongest = -1.2, kWeakest = 0.3;  // division model, per half picture width squared
+constexpr int kStrengths = 31;
+
+struct Start {
+  Matrix<3> image_from_ground = Matrix<3>::Identity();  // image: straightened, in half picture widths about the middle
+  double strength = 0;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+Vector<2> middle_of(cv::Size size) {
+  return {(size.width - 1) / 2.0, (size.height - 1) / 2.0};
+}
+
+/// Least squares with both sides scaled about their middle (Hartley); nothing where the points do not decide it.
+std::optional<Matrix<3>> homography(const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to,
+                                    const std::vector<int>& which) {
+  Vector<2> middle = Vector<2>::Zero();
+  for (const int i : which) middle += from[i];
+  middle /= static_cast<double>(which.size());
+  double spread = 0;
+  for (const int i : which) spread += (from[i] - middle).squaredNorm();
+  spread = std::sqrt(spread / static_cast<double>(which.size()));
+  if (!(spread > 0)) return std::nullopt;
+  Eigen::MatrixXd A(2 * which.size(), 9);
+  for (std::size_t row = 0; row < which.size(); ++row) {
+    const Vector<3> p = ((from[which[row]] - middle) / spread).homogeneous();
+    const Vector<2>& q = to[which[row]];
+    A.row(2 * row) << p.transpose(), Eigen::RowVector3d::Zero(), -q.x() * p.transpose();
+    A.row(2 * row + 1) << Eigen::RowVector3d::Zero(), p.transpose(), -q.y() * p.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(A.transpose() * A);
+  if (!(solver.eigenvalues()(1) > 1e-10 * solver.eigenvalues()(8))) return std::nullopt;
+  Matrix<3> normalise = Matrix<3>::Identity();
+  normalise.topLeftCorner<2, 2>() /= spread;
+  normalise.topRightCorner<2, 1>() = -middle / spread;
+  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  return Matrix<3>(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(h.data()) * normalise);
+}
+
+double cost_of(const Matrix<3>& H, const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to) {
+  double cost = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Vector<3> at = H * from[i].homogeneous();
+    cost += std::abs(at.z()) < 1e-12 ? kReach : std::min((at.hnormalized() - to[i]).norm(), kReach);
+  }
+  return cost;
+}
+
+Start find_start(const std::vector<PitchPoint>& points, cv::Size size) {
+  std::vector<Vector<2>> ground, straight(points.size());
+  for (const PitchPoint& point : points) ground.push_back(point.ground);
+  const int count = static_cast<int>(points.size());
+  Start best;
+  std::mt19937 random(1);
+  for (int step = 0; step < kStrengths; ++step) {
+    const double strength = kStrongest + (kWeakest - kStrongest) * step / (kStrengths - 1);
+    bool folds = false;
+    for (int i = 0; i < count; ++i) {
+      const Vector<2> at = (points[i].pixel - middle_of(size)) / (size.width / 2.0);
+      const double weight = 1 + strength * at.squaredNorm();
+      folds |= weight < 0.1;
+      straight[i] = at / std::max(weight, 0.1);
+    }
+    if (folds) continue;
+    std::vector<int> four(4);
+    for (int sample = 0; sample < kSamples; ++sample) {
+      for (int& i : four) i = static_cast<int>(random() % static_cast<unsigned>(count));
+      std::vector<int> sorted = four;
+      std::sort(sorted.begin(), sorted.end());
+      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) continue;
+      const auto H = homography(ground, straight, sorted);
+      if (!H) continue;
+      const double cost = cost_of(*H, ground, straight);
+      if (cost < best.cost) best = {*H, strength, cost};
+    }
+  }
+  if (!std::isfinite(best.cost)) return best;
+  // The sign that puts the pitch before the camera, by the majority of the points.
+  const auto ahead = std::count_if(ground.begin(), ground.end(),
+                                   [&](const Vector<2>& p) { return best.image_from_ground.row(2).dot(p.homogeneous()) > 0; });
+  if (2 * ahead < count) best.image_from_ground = -best.image_from_ground;
+  return best;
+}
+
+void check(const std::string& name, const std::vector<PitchPoint>& points) {
+  if (points.size() < 4)
+    throw Error("{}: {} {} on the pitch {} given; at least 4 are needed, not all on one line", name, points.size(),
+                points.size() == 1 ? "point" : "points", points.size() == 1 ? "is" : "are");
+  for (const bool in_picture : {false, true}) {
+    Vector<2> middle = Vector<2>::Zero();
+    for (const PitchPoint& point : points) middle += in_picture ? point.pixel : point.ground;
+    middle /= static_cast<double>(points.size());
+    Matrix<2> spread = Matrix<2>::Zero();
+    for (const PitchPoint& point : points) {
+      const Vector<2> off = (in_picture ? point.pixel : point.ground) - middle;
+      spread += off * off.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix<2>> axes(spread);
+    if (axes.eigenvalues()(0) < 1e-5 * axes.eigenvalues()(1) || !(axes.eigenvalues()(1) > 0))
+      throw Error("{}: all {} points lie on one line {}; click points on at least two lines of the pitch", name, points.size(),
+                  in_picture ? "of the picture" : "of the pitch");
+  }
+}
+
+// --- Lens and pose together ----------------------------------------------------------------------------------------------
+
+// focal, principal 2, distortion 8, angle-axis 3, translation 3
+constexpr int kFocal = 0, kPrincipal = 1, kDistortion = 3, kRotation = 11, kTranslation = 14, kNumbers = 17;
+using Numbers = std::array<double, kNumbers>;
+
+constexpr double kNearest = 0.5;  // m before the camera
+
+Numbers numbers_of(const Camera& camera) {
+  const auto& lens = std::get<geometry::BrownLens>(camera.lens());
+  Numbers p{};
+  p[kFocal] = lens.focal.x();
+  p[kPrincipal] = lens.principal.x();
+  p[kPrincipal + 1] = lens.principal.y();
+  std::copy(lens.distortion.begin(), lens.distortion.end(), p.begin() + kDistortion);
+  const Vector<3> rotation = geometry::angle_axis_of(camera.camera_from_world().rotation);
+  std::copy_n(rotation.data(), 3, p.begin() + kRotation);
+  std::copy_n(camera.camera_from_world().translation.data(), 3, p.begin() + kTranslation);
+  return p;
+}
+
+Camera camera_of(const Numbers& p, cv::Size size) {
+  geometry::BrownLens lens{{p[kFocal], p[kFocal]}, {p[kPrincipal], p[kPrincipal + 1]}, {}};
+  std::copy_n(p.begin() + kDistortion, 8, lens.distortion.begin());
+  return {lens,
+          {geometry::rotation_from({p[kRotation], p[kRotation + 1], p[kRotation + 2]}),
+           {p[kTranslation], p[kTranslation + 1], p[kTranslation + 2]}},
+          size};
+}
+
+/// What would come to lie behind the camera is held before it, so that every step of the solver has a cost.
+template <typename T>
+Eigen::Matrix<T, 2, 1> project(const T* p, const Vector<2>& ground) {
+  const T place[3] = {T(ground.x()), T(ground.y()), T(0)};
+  Eigen::Matrix<T, 3, 1> at;
+  ceres::AngleAxisRotatePoint(p + kRotation, place, at.data());
+  for (int i = 0; i < 3; ++i) at(i) += p[kTranslation + i];
+  if (!(at.z() > T(kNearest))) at.z() = T(kNearest);
+  const Eigen::Matrix<T, 2, 1> plane = geometry::BrownLens::distort(at, p + kDistortion);
+  return {p[kFocal] * plane.x() + p[kPrincipal], p[kFocal] * plane.y() + p[kPrincipal + 1]};
+}
+
+struct PointError {
+  PitchPoint point;
+  double sigma;
+
+  template <typename T>
+  bool operator()(const T* p, T* error) const {
+    const Eigen::Matrix<T, 2, 1> pixel = project(p, point.ground);
+    error[0] = (pixel.x() - point.pixel.x()) / sigma;
+    error[1] = (pixel.y() - point.pixel.y()) / sigma;
+    return true;
+  }
+};
+
+struct LineError {
+  LineSighting seen;
+  double sigma;
+
+  template <typename T>
+  bool operator()(const T* p, T* error) const {
+    const Eigen::Matrix<T, 2, 1> pixel = project(p, seen.ground);
+    error[0] = ((pixel.x() - seen.pixel.x()) * seen.normal.x() + (pixel.y() - seen.pixel.y()) * seen.normal.y()) / sigma;
+    return true;
+  }
+};
+
+/// What is known of any lens before anything is seen; deviation 0 holds the number.
+struct LensPrior {
+  Numbers middle{}, sigma{};
+
+  template <typename T>
+  bool operator()(const T* p, T* error) const {
+    for (int i = kPrincipal; i < kRotation; ++i) error[i - kPrincipal] = sigma[i] > 0 ? (p[i] - middle[i]) / sigma[i] : T(0);
+    return true;
+  }
+};
+
+LensPrior prior_of(cv::Size size, bool free_lens) {
+  LensPrior prior;
+  prior.middle[kPrincipal] = middle_of(size).x();
+  prior.middle[kPrincipal + 1] = middle_of(size).y();
+  const double off_centre = (free_lens ? 0.05 : 0.02) * size.width;
+  prior.sigma[kPrincipal] = prior.sigma[kPrincipal + 1] = off_centre;
+  const double tangential = free_lens ? 0.02 : 0.002;
+  const double rational = free_lens ? 0.3 : 0;
+  const std::array<double, 8> distortion = {0.5, 0.5, tangential, tangential, 0.3, rational, rational, rational};
+  std::copy(distortion.begin(), distortion.end(), prior.sigma.begin() + kDistortion);
+  return prior;
+}
+
+constexpr double kClickSigma = 3;              // px: how well people click
+constexpr double kClickSigmaBesideLines = 15;  // px: where lines are seen, clicks only keep the whole in place
+constexpr double kPaintSigma = 0.04;           // m: how well it was laid, and how level the ground is
+
+double solve(Numbers& p, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
+             const std::vector<LineSighting>& sightings, bool free_lens) {
+  ceres::Problem problem;
+  const double click = sightings.empty() ? kClickSigma : kClickSigmaBesideLines;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!inlier[i]) continue;
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, kNumbers>(new PointError{points[i], click}),
+                             new ceres::SoftLOneLoss(1), p.data());
+  }
+  for (const LineSighting& seen : sightings) {
+    const double sigma = std::hypot(seen.sigma_px, kPaintSigma * seen.pixels_per_metre);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LineError, 1, kNumbers>(new LineError{seen, sigma}),
+                             new ceres::CauchyLoss(1), p.data());
+  }
+  const LensPrior prior = prior_of(size, free_lens);
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LensPrior, kRotation - kPrincipal, kNumbers>(new LensPrior(prior)),
+                           nullptr, p.data());
+  std::vector<int> held;
+  for (int i = kPrincipal; i < kRotation; ++i) {
+    if (prior.sigma[i] == 0) held.push_back(i);
+  }
+  if (!held.empty()) problem.SetManifold(p.data(), new ceres::SubsetManifold(kNumbers, held));
+  problem.SetParameterLowerBound(p.data(), kFocal, 0.1 * size.width);
+  problem.SetParameterUpperBound(p.data(), kFocal, 100.0 * size.width);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  options.num_threads = 1;  // so that sums are made in one order
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
+}
+
+/// Focal lengths, in half picture widths, for which the homography's columns are those of a rotation; usual ones besides.
+std::vector<double> focal_candidates(const Matrix<3>& H) {
+  const Vector<3> a = H.col(0), b = H.col(1);
+  std::vector<double> result = {0.8, 1.4, 2.5, 5};
+  for (const double square : {-(a.x() * b.x() + a.y() * b.y()) / (a.z() * b.z()),
+                              -(a.head<2>().squaredNorm() - b.head<2>().squaredNorm()) / (a.z() * a.z() - b.z() * b.z())}) {
+    if (std::isfinite(square) && square > 0.05 && square < 1e4) result.push_back(std::sqrt(square));
+  }
+  return result;
+}
+
+Camera camera_at(const Start& start, double focal, cv::Size size) {
+  Matrix<3> M = Vector<3>(1 / focal, 1 / focal, 1).asDiagonal() * start.image_from_ground;
+  M /= std::sqrt(M.col(0).norm() * M.col(1).norm());
+  Matrix<3> columns;
+  columns << M.col(0), M.col(1), M.col(0).cross(M.col(1));
+  const Eigen::JacobiSVD<Matrix<3>> svd(columns, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix<3> rotation = svd.matrixU() * svd.matrixV().transpose();
+  const double pixels = focal * size.width / 2;
+  // The division model bends by 1 + λ r² where Brown's bends by 1 + k r²: to first order k = λ f².
+  return {geometry::BrownLens{{pixels, pixels}, middle_of(size), {start.strength * focal * focal}}, {rotation, M.col(2)}, size};
+}
+
+std::vector<double> errors_of(const Camera& camera, const std::vector<PitchPoint>& points) {
+  std::vector<double> errors;
+  for (const PitchPoint& point : points) {
+    const auto pixel = camera.project({point.ground.x(), point.ground.y(), 0});
+    errors.push_back(pixel ? (*pixel - point.pixel).norm() : std::numeric_limits<double>::infinity());
+  }
+  return errors;
+}
+
+constexpr double kLeastOutlier = 6;  // px: nobody clicks better than this always
+constexpr double kOutlierSigmas = 4;
+
+std::vector<char> inliers_of(const std::vector<double>& errors) {
+  std::vector<double> sorted = errors;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const double reach = std::max(kLeastOutlier, kOutlierSigmas * 1.2 * sorted[sorted.size() / 2]);
+  std::vector<char> inlier;
+  for (const double error : errors) inlier.push_back(error < reach);
+  return inlier;
+}
+
+}  // namespace
+
+bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
+  check(name, points);
+  const Start start = find_start(points, size);
+  if (!std::isfinite(start.cost))
+    throw Error("{}: the points do not fit any camera; are four of them in general position, and is each with its place?", name);
+  // Seen from above, with the image's y down, a right-handed ground is turned over: a negative determinant before the camera.
+  return start.image_from_ground.determinant() > 0;
+}
+
+PitchCamera camera_from_points(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
+  check(name, points);
+  const Start start = find_start(points, size);
+  if (!std::isfinite(start.cost)) throw Error("{}: the points do not fit any camera; is each with its place on the pitch?", name);
+  std::vector<char> agree;
+  for (const PitchPoint& point : points) {
+    const Vector<2> at = (point.pixel - middle_of(size)) / (size.width / 2.0);
+    const Vector<2> straight = at / (1 + start.strength * at.squaredNorm());
+    agree.push_back(((start.image_from_ground * point.ground.homogeneous()).hnormalized() - straight).norm() < kReach);
+  }
+  double best = std::numeric_limits<double>::infinity();
+  Numbers numbers{};
+  for (const double focal : focal_candidates(start.image_from_ground)) {
+    Numbers p = numbers_of(camera_at(start, focal, size));
+    const double cost = solve(p, size, points, agree, {}, false);
+    if (cost < best) best = cost, numbers = p;
+  }
+  if (!std::isfinite(best)) throw Error("{}: no camera over a level pitch fits the points; is each with its place on it?", name);
+  for (int round = 0; round < 4; ++round) {
+    agree = inliers_of(errors_of(camera_of(numbers, size), points));
+    solve(numbers, size, points, agree, {}, false);
+  }
+  PitchCamera result{camera_of(numbers, size), {}, {}};
+  result.error_px = errors_of(result.camera, points);
+  result.inlier = inliers_of(result.error_px);
+  const auto good = std::count(result.inlier.begin(), result.inlier.end(), 1);
+  if (good < 4 || 2 * good <= static_cast<std::ptrdiff_t>(points.size()))
+    throw Error("{}: only {} of {} points agree on one camera; most are clicked or named wrong, or left and right are exchanged",
+                name, good, points.size());
+  return result;
+}
+
+std::vector<char> points_near(const Camera& camera, const std::vector<PitchPoint>& points) {
+  return inliers_of(errors_of(camera, points));
+}
+
+Camera refine(const Camera& start, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
+              const std::vector<LineSighting>& sightings, bool free_lens) {
+  Numbers numbers = numbers_of(start);
+  solve(numbers, start.size(), points, inlier, sightings, free_lens);
+  return camera_of(numbers, start.size());
+}
+
+}  // namespace marey::calibrate::pitch

@@ -1,0 +1,178 @@
+#include "marey/calibrate/pitch/pitch.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "marey/calibrate/pitch/pitch_sightings.h"
+#include "marey/core/error.h"
+#include "marey/core/geometry.h"
+#include "marey/geometry/ground_view.h"
+
+namespace marey::calibrate::pitch {
+namespace {
+
+constexpr geometry::PitchSize kPitch{105, 68};
+const cv::Size kSize(1536, 864);
+
+/// On a stand at the half-way line, 15 m off, 8 m up, turned towards one goal; the world's y points away from the stand.
+Camera on_the_stand(double turn) {
+  const double tilt = 0.12;
+  const Vector<3> ahead(std::sin(turn) * std::cos(tilt), std::cos(turn) * std::cos(tilt), -std::sin(tilt));
+  const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
+  Matrix<3> rotation;
+  rotation << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
+  const geometry::BrownLens lens{{1050, 1050}, {772, 428}, {-0.33, 0.12, 0, 0, -0.015}};
+  return {lens, {rotation, -rotation * Vector<3>(52, -15, 8)}, kSize};
+}
+
+/// What a user clicks: corners and crossings in view, `sigma` px off. `left_handed`: his y grows towards the camera.
+std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_handed, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, sigma);
+  std::vector<PitchPoint> points;
+  for (const double x : {0.0, 5.5, 11.0, 16.5, 44.0, 52.5, 61.0, 88.5, 99.5, 105.0}) {
+    for (const double y : {0.0, 13.84, 24.84, 34.0, 43.16, 54.16, 68.0}) {
+      const auto pixel = camera.project({x, y, 0});
+      if (!pixel || !camera.in_picture(*pixel)) continue;
+      points.push_back(
+          {{x, left_handed ? 68 - y : y}, *pixel + Vector<2>(noise(random), noise(random)), fmt::format("({},{})", x, y)});
+    }
+  }
+  return points;
+}
+
+/// Grass with the lines painted on it: every pixel looks at its own place on the ground, 4 × 4 times.
+cv::Mat painted(const Camera& camera) {
+  cv::Mat picture(kSize, CV_8UC1, cv::Scalar(90));
+  const GroundView view(camera);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const auto middle = view.place({static_cast<double>(x), static_cast<double>(y)});
+      if (!middle) continue;
+      const double pixel = std::max(middle->by_pixel.col(0).norm(), middle->by_pixel.col(1).norm());
+      if (pixel > 5 || geometry::distance_to_line(kPitch, middle->ground) > 0.06 + pixel) continue;
+      int white = 0;
+      for (int i = 0; i < 16; ++i) {
+        const auto place = view.place({x - 0.375 + i % 4 * 0.25, y - 0.375 + i / 4 * 0.25});
+        if (place) white += geometry::distance_to_line(kPitch, place->ground) < 0.06;
+      }
+      picture.at<unsigned char>(y, x) = static_cast<unsigned char>(90 + 110 * white / 16);
+    }
+  }
+  cv::GaussianBlur(picture, picture, {}, 0.7);
+  return picture;
+}
+
+double worst_on_the_ground(const Camera& found, const Camera& truth, const Matrix<3>& ground_from_world, bool left_handed) {
+  const GroundView seen(found);
+  double worst = 0;
+  for (double x = 0; x <= 52; x += 4) {
+    for (double y = 0; y <= 60; y += 4) {
+      const auto pixel = truth.project({x, y, 0});
+      if (!pixel || !truth.in_picture(*pixel)) continue;
+      const auto place = seen.place(*pixel);
+      if (!place) return 1e9;
+      const Vector<2> ground = (ground_from_world * place->ground.homogeneous()).hnormalized();
+      worst = std::max(worst, (ground - Vector<2>(x, left_handed ? 68 - y : y)).norm());
+    }
+  }
+  return worst;
+}
+
+TEST(PitchCalibration, PerfectClicksGiveTheCameraBack) {
+  const Camera truth = on_the_stand(-0.45);
+  for (const bool left_handed : {false, true}) {
+    const auto result = calibrate_pitch({{"left", kSize, clicks(truth, 0, left_handed, 1), {}, {}}}, {kPitch});
+    EXPECT_EQ(result.ground_from_world(1, 1), left_handed ? -1 : 1);
+    EXPECT_LT(worst_on_the_ground(result.views[0].camera, truth, result.ground_from_world, left_handed), 0.15);
+    EXPECT_GT(result.views[0].camera.centre().z(), 0) << "the camera looks down upon the pitch";
+  }
+}
+
+TEST(PitchCalibration, LinesCorrectWhatClicksGetWrong) {
+  const Camera truth = on_the_stand(-0.45);
+  const cv::Mat ground = painted(truth);
+  const auto points = clicks(truth, 2, true, 3);
+  const auto clicked = calibrate_pitch({{"left", kSize, points, {}, {}}}, {kPitch});
+  const auto refined = calibrate_pitch({{"left", kSize, points, {}, ground}}, {kPitch});
+  const double before = worst_on_the_ground(clicked.views[0].camera, truth, clicked.ground_from_world, true);
+  const double after = worst_on_the_ground(refined.views[0].camera, truth, refined.ground_from_world, true);
+  EXPECT_LT(after, 0.3);
+  EXPECT_LT(after, before);
+  EXPECT_GT(refined.views[0].lines.size(), 500u);
+  EXPECT_LT(refined.views[0].line_median_m, 0.03);
+}
+
+TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
+  const Camera truth = on_the_stand(-0.45);
+  std::vector<PitchPoint> few;
+  for (const PitchPoint& point : clicks(truth, 1.5, true, 7)) {
+    if (few.size() < 8) few.push_back(point);
+  }
+  std::vector<PitchClickedLine> lines;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1.5);
+  for (const auto& [from, to] :
+       {std::pair<Vector<2>, Vector<2>>{{0, 0}, {105, 0}}, {{0, 68}, {105, 68}}, {{52.5, 0}, {52.5, 68}}}) {
+    PitchClickedLine& line = lines.emplace_back(PitchClickedLine{from, to, {}});
+    for (double t = 0; t <= 1; t += 0.05) {
+      const Vector<2> place = from + t * (to - from);
+      const auto pixel = truth.project({place.x(), 68 - place.y(), 0});
+      if (pixel && truth.in_picture(*pixel)) line.pixels.push_back(*pixel + Vector<2>(noise(random), noise(random)));
+    }
+  }
+  const auto without = calibrate_pitch({{"left", kSize, few, {}, {}}}, {kPitch});
+  const auto with = calibrate_pitch({{"left", kSize, few, lines, {}}}, {kPitch});
+  EXPECT_LT(worst_on_the_ground(with.views[0].camera, truth, with.ground_from_world, true),
+            0.5 * worst_on_the_ground(without.views[0].camera, truth, without.ground_from_world, true));
+}
+
+TEST(PitchCalibration, WrongNamesAreFoundAndNamed) {
+  const Camera truth = on_the_stand(-0.45);
+  auto points = clicks(truth, 1, true, 5);
+  ASSERT_GT(points.size(), 15u);
+  const Vector<2> right_place = points[3].ground;
+  points[3].ground.y() = 68 - points[3].ground.y() == points[3].ground.y() ? 0 : 68 - points[3].ground.y();
+  points[9].pixel += Vector<2>(60, -40);
+  const auto result = calibrate_pitch({{"left", kSize, points, {}, {}}}, {kPitch});
+  const auto& view = result.views[0];
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(view.inlier[i] != 0, i != 3 && i != 9) << i << " " << view.error_px[i];
+  ASSERT_TRUE(view.better_name[3]);
+  EXPECT_LT((*view.better_name[3] - right_place).norm(), 1e-9);
+}
+
+std::string error_of(const std::vector<PitchView>& views) {
+  try {
+    calibrate_pitch(views, {kPitch});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PitchCalibration, WhatCannotBeCalibratedIsRefusedWithItsCause) {
+  const Camera left = on_the_stand(-0.45), right = on_the_stand(0.45);
+  auto three = clicks(left, 0, true, 1);
+  three.resize(3);
+  EXPECT_NE(error_of({{"left", kSize, three, {}, {}}}).find("at least 4"), std::string::npos);
+  std::vector<PitchPoint> line;
+  for (const PitchPoint& point : clicks(left, 0, true, 1)) {
+    if (point.ground.x() == 0) line.push_back(point);
+  }
+  EXPECT_NE(error_of({{"left", kSize, line, {}, {}}}).find("on one line"), std::string::npos);
+  auto mirrored = clicks(right, 0, true, 1);
+  for (PitchPoint& point : mirrored) point.ground.x() = 105 - point.ground.x();
+  EXPECT_NE(error_of({{"left", kSize, clicks(left, 0, true, 1), {}, {}}, {"right", kSize, mirrored, {}, {}}}).find("mirrored"),
+            std::string::npos);
+  EXPECT_EQ(error_of({{"left", kSize, clicks(left, 0, true, 1), {}, {}}, {"right", kSize, clicks(right, 0, true, 1), {}, {}}}), "");
+  std::vector<PitchPoint> nonsense = clicks(left, 0, true, 1);
+  std::mt19937 random(11);
+  for (PitchPoint& point : nonsense) point.pixel = Vector<2>(random() % 1536, random() % 864);
+  EXPECT_NE(error_of({{"left", kSize, nonsense, {}, {}}}), "");
+}
+
+}  // namespace
+}  // namespace marey::calibrate::pitch

@@ -1,0 +1,128 @@
+#include "marey/calibrate/wand/wand_placement.h"
+
+#include <cmath>
+
+#include "marey/core/geometry.h"
+#include "marey/geometry/camera.h"
+
+namespace marey::calibrate::wand {
+namespace {
+
+constexpr double kAgree = 5;         // sigmas within which rays meet
+constexpr double kLengthOff = 0.15;  // relative, by which a placed wand may be too long or too short
+
+}  // namespace
+
+WandPlacement::WandPlacement(std::vector<WandCamera> cameras, WandShape wand, const WandTable& table)
+    : poses(cameras.size()),
+      bodies(table.size()),
+      turned(table.size(), std::vector<char>(cameras.size(), 0)),
+      cameras_(std::move(cameras)),
+      wand_(std::move(wand)),
+      table_(table),
+      bearings_(table.size(), std::vector<std::optional<MarkerPlaces>>(cameras_.size())) {
+  for (std::size_t c = 0; c < cameras_.size(); ++c) measure(c);
+}
+
+double WandPlacement::sigma(std::size_t c) const {
+  return cameras_[c].sigma_px / geometry::focal_of(cameras_[c].lens).x();
+}
+
+void WandPlacement::set_lens(std::size_t c, const geometry::Lens& lens) {
+  cameras_[c].lens = lens;
+  measure(c);
+}
+
+void WandPlacement::measure(std::size_t c) {
+  const Camera camera(cameras_[c].lens, {}, cameras_[c].size);
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    bearings_[i][c].reset();
+    const auto& marks = table_[i][c];
+    if (!marks) continue;
+    MarkerPlaces places{};
+    bool whole = true;
+    for (std::size_t m = 0; m < wand_.markers(); ++m) {
+      const auto bearing = (*marks)[m] ? camera.bearing(*(*marks)[m]) : std::nullopt;
+      whole &= bearing.has_value();
+      if (bearing) places[m] = *bearing;
+    }
+    if (whole) bearings_[i][c] = places;
+  }
+}
+
+Vector<2> WandPlacement::pixel(std::size_t i, std::size_t c, std::size_t marker) const {
+  return *(*table_[i][c])[turned[i][c] ? wand_.markers() - 1 - marker : marker];
+}
+
+Vector<3> WandPlacement::marker_at(const bundle::Body& body, std::size_t marker) const {
+  if (const auto* point = std::get_if<Vector<3>>(&body)) return *point;
+  const auto& wand = std::get<bundle::WandPose>(body);
+  return wand.origin + wand_.distances[marker] * wand.direction;
+}
+
+SightLine WandPlacement::line(std::size_t i, std::size_t c, std::size_t marker) const {
+  const Rigid3 world_from_camera = poses[c]->inverse();
+  const std::size_t seen = turned[i][c] ? wand_.markers() - 1 - marker : marker;
+  return {{world_from_camera.translation, world_from_camera.rotation * (*bearings_[i][c])[seen]}, sigma(c)};
+}
+
+void WandPlacement::turn_to_fit(std::size_t i, std::size_t first, std::size_t other) {
+  constexpr double never = 1e6;
+  std::array<double, 2> off{};
+  const char before = turned[i][other];
+  for (const char turn : {0, 1}) {
+    turned[i][other] = turn;
+    for (std::size_t m = 0; m < wand_.markers(); ++m) {
+      const std::array lines = {line(i, first, m), line(i, other, m)};
+      const auto point = meeting_point(lines);
+      off[static_cast<std::size_t>(turn)] +=
+          point ? std::pow(angle_off(lines[0], *point), 2) + std::pow(angle_off(lines[1], *point), 2) : never;
+    }
+  }
+  turned[i][other] = off[0] == off[1] ? before : static_cast<char>(off[1] < off[0]);
+}
+
+std::optional<MarkerPlaces> WandPlacement::markers(std::size_t i) {
+  std::vector<std::size_t> seeing;
+  for (std::size_t c = 0; c < poses.size(); ++c) {
+    if (poses[c] && bearings_[i][c]) seeing.push_back(c);
+  }
+  if (seeing.size() < 2) return std::nullopt;
+  if (wand_.reversible()) {
+    for (std::size_t k = 1; k < seeing.size(); ++k) turn_to_fit(i, seeing[0], seeing[k]);
+  }
+  MarkerPlaces places{};
+  std::vector<SightLine> lines;
+  for (std::size_t m = 0; m < wand_.markers(); ++m) {
+    lines.clear();
+    for (const std::size_t c : seeing) lines.push_back(line(i, c, m));
+    const auto point = agreed_point(lines, kAgree);
+    if (!point) return std::nullopt;
+    places[m] = *point;
+  }
+  return places;
+}
+
+void WandPlacement::place(std::size_t i) {
+  const auto places = markers(i);
+  if (!places) return;
+  if (wand_.markers() == 1) {
+    bodies[i] = bundle::Body((*places)[0]);
+    return;
+  }
+  const Vector<3> along = (*places)[wand_.markers() - 1] - (*places)[0];
+  if (std::abs(along.norm() / wand_.length() - 1) > kLengthOff) return;
+  bundle::WandPose pose{Vector<3>::Zero(), along.normalized()};
+  for (std::size_t m = 0; m < wand_.markers(); ++m) {
+    pose.origin += ((*places)[m] - wand_.distances[m] * pose.direction) / static_cast<double>(wand_.markers());
+  }
+  bodies[i] = bundle::Body(pose);
+}
+
+void WandPlacement::place_all() {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i]) place(i);
+  }
+}
+
+}  // namespace marey::calibrate::wand

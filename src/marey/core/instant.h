@@ -1,0 +1,75 @@
+// The words in which one moment of a recording is told, whatever was recorded: people in a picture, people on a ground, markers in
+// space. A stage makes instants, a sink takes them, a recording holds them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/frame.h"
+#include "marey/core/geometry.h"
+#include "marey/core/ids.h"
+#include "marey/core/outline.h"
+#include "marey/core/time.h"
+
+namespace marey {
+
+/// How a sample came to be where it is.
+enum class Provenance : std::uint8_t {
+  measured,   ///< from what cameras saw at this instant
+  filled,     ///< within a gap, from what was seen before and after it
+  predicted,  ///< by the tracker's model of motion, from what was seen before it
+  solved,     ///< from a body or a skeleton that was fitted to what was seen
+};
+
+/// What one camera saw at one instant: a blob's centre.
+struct SeenPoint {
+  CameraId camera{};
+  Vector<2> pixel = Vector<2>::Zero();  ///< px
+  std::optional<double> sigma;          ///< standard deviation of each coordinate, px
+  std::optional<double> area;           ///< px²
+  std::optional<TrackId> track;         ///< whose it was found to be; nothing for a ghost, or before reconstruction
+
+  bool operator==(const SeenPoint&) const = default;
+};
+
+/// One target at one instant. Units are those of the recording's frame of reference: px in a picture, m elsewhere. Where that has
+/// two dimensions the third coordinate is 0. What is not known is absent.
+struct Sample {
+  TrackId track{};
+  Vector<3> position = Vector<3>::Zero();
+  std::optional<Vector<3>> velocity;    ///< a second
+  std::optional<Matrix<3>> covariance;  ///< of `position`
+  Provenance provenance = Provenance::measured;
+  CameraMask cameras = 0;                            ///< who saw it at this instant; none where that is not known
+  std::optional<double> score;                       ///< confidence, in [0, 1]
+  std::optional<Box> box;                            ///< px, in the picture
+  std::optional<double> residual_px;                 ///< RMS distance between the position's projections and what was seen
+  std::optional<double> residual_m;                  ///< the same in space, as other systems' files have it
+  std::shared_ptr<const Outline> outline = nullptr;  ///< px, where outlines are followed and this one has one
+
+  bool measured() const { return provenance == Provenance::measured; }
+};
+
+/// What a track is called. Its label and its team are empty where none was given.
+struct TrackName {
+  TrackId id{};
+  std::string label;
+  std::string team;
+
+  bool operator==(const TrackName&) const = default;
+};
+
+/// What is known of one moment.
+struct Instant {
+  std::int64_t index = 0;        ///< counts from 0 at the beginning of the recording; some may be left out
+  Timestamp time{};              ///< by the recording's clock
+  std::vector<Sample> samples;   ///< by track, each at most once
+  std::vector<SeenPoint> seen;   ///< what the cameras saw, where the recording keeps it
+  std::vector<TrackName> named;  ///< tracks whose label or team is new, or another than before
+  std::vector<Frame> frames;     ///< the pictures of this moment, by camera, where a sink asked for them; never stored
+};
+
+}  // namespace marey

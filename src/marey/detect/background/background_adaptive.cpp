@@ -1,0 +1,344 @@
+// Marey's own model of the empty scene.
+//
+// Each pixel has a mean and the spread of its noise, and from them a band of levels that belong to the scene; chroma has the same
+// at half size. A frame is compared with the bands, a pixel stands by the vote of its 3 × 3 round, and a connected region counts
+// where parts of it lie far outside the bands (hysteresis). What is then explained by a cast shadow, or by what was seen at the
+// pixel for long before, is taken out. Means follow background pixels by a recursive average, spreads by sigma-delta steps towards
+// a quantile.
+//
+// - A change of light rescales the means at once (background_light.cpp).
+// - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
+//   half the time that the model has existed, do the two change places (background_second.cpp). Pixels in `held` boxes are not
+//   counted and not learned.
+// - A ghost, where something of the first frames has left, is a region whose border is an edge in the scene but not in the
+//   frame (background_regions.h); it is believed to be scene after a second.
+// - Where most of a picture does not fit the scene for seconds (the camera was moved), the model begins anew.
+//
+// Cost: about five bytes read a pixel and frame; a frame teaches one eighth of the rows, in turn. All else grows with what moves.
+// References: Stauffer & Grimson 1999 (modes that change places); Manzanera & Richefeu 2007 (sigma-delta); Cucchiara et al. 2003
+// (ghosts and shadows); Barnich & Van Droogenbroeck, ViBe, 2011 (a pixel may look as its neighbours do).
+#include "marey/detect/background/background_adaptive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "marey/core/picture.h"
+#include "marey/detect/background/background_fringe.h"
+#include "marey/detect/background/background_kernels.h"
+#include "marey/detect/background/background_light.h"
+#include "marey/detect/background/background_plane.h"
+#include "marey/detect/background/background_regions.h"
+#include "marey/detect/background/background_second.h"
+#include "marey/detect/background/background_shadow.h"
+#include "marey/detect/runs.h"
+#include "marey/detect/silhouette.h"
+
+namespace marey::detect::background {
+namespace {
+
+constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
+constexpr int kChromaFloor = 6;  // levels
+constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
+constexpr int kQuorum = 4;       // of 9
+constexpr int kTurns = 8;        // frames until each row was taught once
+constexpr int kRowsATurn = 16;
+constexpr int kFringe = 3;  // px round a region that are not learned: its blurred rim
+constexpr double kStartAnew_s = 2;
+constexpr double kTooMuch = 0.6;  // of the picture
+
+int shift_of(double time_constant, double step) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(std::max(time_constant / step, 1.0)))), 1, 7);
+}
+
+class AdaptiveBackground final : public Background {
+ public:
+  explicit AdaptiveBackground(const AdaptiveOptions& options) : options_(options), second_(options.absorb_after_s) {}
+
+  void prime(std::span<const Frame> samples) override {
+    std::vector<cv::Mat> luma, cb, cr;
+    for (const Frame& sample : samples) {
+      if (sample.picture.empty() || (!luma.empty() && sample.picture.size() != luma.front().size())) continue;
+      const FramePlanes planes = planes_of(sample.picture);
+      if (!luma.empty() && planes.cb.empty() != cb.empty()) continue;
+      luma.push_back(planes.luma);
+      if (!planes.cb.empty()) {
+        cb.push_back(planes.cb);
+        cr.push_back(planes.cr);
+      }
+      black_ = black_of(sample.picture);
+    }
+    if (luma.empty()) return;
+    luma_.begin(luma);
+    if (!cb.empty()) {
+      cb_.begin(cb);
+      cr_.begin(cr);
+    }
+    make_room(luma.front().size(), !cb.empty());
+    age_s_ = std::max(0.0, seconds(samples.back().time - samples.front().time));
+  }
+
+  Foreground apply(const Frame& frame, std::span<const Box> held) override {
+    const FramePlanes planes = planes_of(frame.picture);
+    black_ = black_of(frame.picture);
+    if (planes.luma.empty()) return {};
+    if (planes.luma.size() != size_ || planes.cb.empty() == colour_) begin(planes);
+    keep_time(frame.time);
+
+    mark(planes);
+    if (follow_light(planes)) mark(planes);
+    regions_.choose(marked_, size_.height);
+    regions_.compare_borders(planes.luma, luma_);
+    draw_mask(planes);
+    if (start_anew_if_lost(planes)) return {mask_, covered_};
+    learn(planes, held);
+    ++frames_;
+    return {mask_, covered_};
+  }
+
+ private:
+  static int black_of(const Picture& picture) { return picture.range() == Picture::Range::limited ? 16 : 0; }
+
+  static FramePlanes planes_of(const Picture& picture) {
+    FramePlanes planes{picture.luma(), picture.cb(), picture.cr()};
+    if (planes.luma.depth() == CV_16U) {
+      cv::Mat eight_bit;
+      planes.luma.convertTo(eight_bit, CV_8U, 1.0 / 257.0);
+      planes.luma = eight_bit;
+    }
+    return planes;
+  }
+
+  void begin(const FramePlanes& planes) {
+    luma_.begin(planes.luma);
+    if (!planes.cb.empty()) {
+      cb_.begin(planes.cb);
+      cr_.begin(planes.cr);
+    }
+    make_room(planes.luma.size(), !planes.cb.empty());
+    age_s_ = 0;
+  }
+
+  void make_room(cv::Size size, bool colour) {
+    size_ = size;
+    colour_ = colour;
+    mask_ = cv::Mat::zeros(size, CV_8UC1);
+    covered_ = cv::Mat::zeros(size, CV_8UC1);
+    second_.begin(size);
+    shadows_.begin(size);
+    drawn_.clear();
+    const std::size_t padded = static_cast<std::size_t>(size.width) + 4;
+    for (auto& row : marks_) row.assign(padded, 0);
+    chroma_mark_.assign(padded, 0);
+    vote_.assign(padded, 0);
+    frozen_.assign(padded, 0);
+    held_row_.assign(padded, 0);
+    half_frozen_.assign(padded, 0);
+    lost_s_ = 0;
+    usual_share_ = 0;
+    frames_ = 0;
+  }
+
+  /// `step_s_` is the time since the last frame; odd clocks are kept within reason.
+  void keep_time(Timestamp now) {
+    step_s_ = last_time_ ? std::clamp(seconds(now - *last_time_), 1e-3, 2.0) : 0.04;
+    last_time_ = now;
+    age_s_ += step_s_;
+    mean_step_s_ = mean_step_s_ > 0 ? mean_step_s_ + (step_s_ - mean_step_s_) / 16 : step_s_;
+  }
+
+  // ---- compare -----------------------------------------------------------------------------------------------------------
+
+  void mark_row(const FramePlanes& planes, int y) {
+    std::uint8_t* mark = marks_[y % 3].data() + 1;
+    kernels_.classify(planes.luma.ptr<std::uint8_t>(y), luma_.low(y), luma_.high(y), size_.width, mark);
+    if (!colour_) return;
+    const int half = y / 2;
+    if (y % 2 == 0) {
+      const std::uint8_t* const pixels[2] = {planes.cb.ptr<std::uint8_t>(half), planes.cr.ptr<std::uint8_t>(half)};
+      const std::uint8_t* const low[2] = {cb_.low(half), cr_.low(half)};
+      const std::uint8_t* const high[2] = {cb_.high(half), cr_.high(half)};
+      kernels_.classify_chroma(pixels, low, high, planes.cb.cols, chroma_mark_.data());
+    }
+    kernels_.unite(chroma_mark_.data(), size_.width, mark);
+  }
+
+  void mark(const FramePlanes& planes) {
+    marked_.runs.clear();
+    marked_.strong.clear();
+    marked_.pixels = 0;
+    std::fill(marks_[2].begin(), marks_[2].end(), std::uint8_t{0});
+    mark_row(planes, 0);
+    for (int y = 0; y < size_.height; ++y) {
+      if (y + 1 < size_.height) {
+        mark_row(planes, y + 1);
+      } else {
+        std::fill(marks_[(y + 1) % 3].begin(), marks_[(y + 1) % 3].end(), std::uint8_t{0});
+      }
+      const std::uint8_t* const rows[3] = {marks_[(y + 2) % 3].data() + 1, marks_[y % 3].data() + 1,
+                                           marks_[(y + 1) % 3].data() + 1};
+      kernels_.vote(rows, kQuorum, size_.width, vote_.data());
+      append_runs(vote_.data(), y, size_.width, marked_.runs);
+      for (std::size_t i = marked_.strong.size(); i < marked_.runs.size(); ++i) {
+        const PixelRun& run = marked_.runs[i];
+        marked_.strong.push_back(static_cast<int>(std::count(vote_.begin() + run.begin, vote_.begin() + run.end, std::uint8_t{3})));
+        marked_.pixels += run.end - run.begin;
+      }
+    }
+  }
+
+  /// Rescales the scene where the light has changed. True where it did.
+  bool follow_light(const FramePlanes& planes) {
+    const double share = marked_.pixels / static_cast<double>(size_.area());
+    const bool jumped = share > usual_share_ + 0.03;
+    usual_share_ += (share - usual_share_) * 0.1;
+    if (!jumped && frames_ % kTurns != 0) return false;
+    const std::optional<LightChange> change = meter_.measure(planes.luma, luma_, black_);
+    if (!change || !change->explained) return false;
+    luma_.scale(change->gains, black_);
+    if (colour_) {
+      cb_.shift(median_difference(planes.cb, cb_));
+      cr_.shift(median_difference(planes.cr, cr_));
+    }
+    return true;
+  }
+
+  // ---- clean -------------------------------------------------------------------------------------------------------------
+
+  void draw_mask(const FramePlanes& planes) {
+    for (const PixelRun& run : drawn_) {
+      for (cv::Mat* mask : {&mask_, &covered_})
+        std::fill_n(mask->ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{0});
+    }
+    if (options_.suppress_shadows) shadows_.judge(regions_.runs(), planes, {luma_, cb_, cr_, black_});
+    for (const PixelRun& run : regions_.runs()) {
+      const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
+      const std::int16_t* means = luma_.mean(run.row);
+      auto* mask = mask_.ptr<std::uint8_t>(run.row);
+      for (int x = run.begin; x < run.end; ++x) {
+        const int scene = ((means[x] + 64) >> 7) - black_;
+        const bool shadow = options_.suppress_shadows && (shadows_.is_shadow(run.row, x, pixels[x] - black_, scene) ||
+                                                          has_shadowed_colour(planes, run.row, x, pixels[x] - black_, scene));
+        mask[x] = shadow || second_.knows(run.row, x, pixels[x]) ? 0 : 255;
+      }
+    }
+    trim_fringe(mask_, regions_.runs(), planes, {luma_, cb_, cr_, black_}, covered_);
+    drawn_ = regions_.runs();
+  }
+
+  bool has_shadowed_colour(const FramePlanes& planes, int row, int column, int level, int scene) const {
+    if (planes.cb.empty()) return false;
+    const int y = row / 2, x = column / 2;
+    return ShadowFinder::is_coloured_shadow(level, scene, planes.cb.at<std::uint8_t>(y, x) - 128,
+                                            planes.cr.at<std::uint8_t>(y, x) - 128, cb_.level(y, x) - 128, cr_.level(y, x) - 128);
+  }
+
+  /// After most of the picture did not fit the scene for a while.
+  bool start_anew_if_lost(const FramePlanes& planes) {
+    lost_s_ = marked_.pixels > kTooMuch * size_.area() ? lost_s_ + step_s_ : 0;
+    if (lost_s_ < kStartAnew_s) return false;
+    begin(planes);
+    return true;
+  }
+
+  // ---- learn -------------------------------------------------------------------------------------------------------------
+
+  void learn(const FramePlanes& planes, std::span<const Box> held) {
+    const double turn_s = mean_step_s_ * kTurns;
+    const int shift = shift_of(std::min(options_.memory_s, std::max(age_s_, 1.0)), turn_s);
+    const int ticks = second_.ticks_between(age_s_ - turn_s, age_s_);
+    const int turn = static_cast<int>(frames_ % kTurns);
+    for (int first = turn * kRowsATurn; first < size_.height; first += kTurns * kRowsATurn) {
+      const int last = std::min(first + kRowsATurn, size_.height);
+      for (int y = first; y < last; ++y) count_still(planes, held, y, ticks);
+      luma_.learn(planes.luma, first, last, shift, [&](int y) { return freeze(held, y, y, frozen_); });
+      if (!colour_) continue;
+      const int half_last = std::min(last / 2 + (last == size_.height ? last % 2 : 0), planes.cb.rows);
+      const auto half_frozen = [&](int y) {
+        const std::uint8_t* full = freeze(held, 2 * y, std::min(2 * y + 1, size_.height - 1), frozen_);
+        for (int x = 0; x < planes.cb.cols; ++x) half_frozen_[x] = full[2 * x] | full[2 * x + 1];
+        return half_frozen_.data();
+      };
+      cb_.learn(planes.cb, first / 2, half_last, shift, half_frozen);
+      cr_.learn(planes.cr, first / 2, half_last, shift, half_frozen);
+    }
+  }
+
+  /// Marks the pixels of rows [top, bottom] that must not be learned: regions with their rims, and held boxes.
+  const std::uint8_t* freeze(std::span<const Box> held, int top, int bottom, std::vector<std::uint8_t>& row) const {
+    std::fill(row.begin(), row.end(), std::uint8_t{0});
+    const int above = std::max(0, top - kFringe);
+    const int below = std::min(size_.height, bottom + kFringe + 1);
+    for (std::size_t i = regions_.begin_of(above); i < regions_.begin_of(below); ++i) {
+      const int begin = std::max(0, regions_.runs()[i].begin - kFringe);
+      const int end = std::min(size_.width, regions_.runs()[i].end + kFringe);
+      std::fill(row.begin() + begin, row.begin() + end, std::uint8_t{1});
+    }
+    mark_held(held, top, bottom, row);
+    return row.data();
+  }
+
+  void mark_held(std::span<const Box> held, int top, int bottom, std::vector<std::uint8_t>& row) const {
+    for (const Box& box : held) {
+      if (box.top > bottom || box.bottom() <= top) continue;
+      const int begin = static_cast<int>(std::clamp(std::floor(box.left), 0.0, static_cast<double>(size_.width)));
+      const int end = static_cast<int>(std::clamp(std::ceil(box.right()), 0.0, static_cast<double>(size_.width)));
+      if (begin < end) std::fill(row.begin() + begin, row.begin() + end, std::uint8_t{1});
+    }
+  }
+
+  /// What has stood still for long enough becomes scene; its chroma is taken from the frame.
+  void count_still(const FramePlanes& planes, std::span<const Box> held, int y, int ticks) {
+    second_.forget(y, ticks, regions_);
+    if (regions_.begin_of(y) == regions_.begin_of(y + 1)) return;
+    std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
+    mark_held(held, y, y, held_row_);
+    const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
+    second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
+    for (const int x : taken_) {
+      luma_.believe(y, x, pixels[x]);
+      if (!colour_) continue;
+      cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
+      cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
+    }
+  }
+
+  AdaptiveOptions options_;
+  const BackgroundKernels& kernels_ = background_kernels();
+  int black_ = 0;
+  cv::Size size_;
+  bool colour_ = false;
+
+  ScenePlane luma_{scaled(kLumaFloor), scaled(kGate)};
+  ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};
+  ScenePlane cr_{scaled(kChromaFloor), scaled(kGate)};
+  SecondScene second_;
+  LightMeter meter_;
+  ShadowFinder shadows_;
+
+  std::optional<Timestamp> last_time_;
+  double step_s_ = 0, mean_step_s_ = 0, age_s_ = 0, lost_s_ = 0;
+  double usual_share_ = 0;
+  std::int64_t frames_ = 0;
+
+  // Room for one frame's work.
+  std::array<std::vector<std::uint8_t>, 3> marks_;
+  std::vector<std::uint8_t> chroma_mark_, vote_, frozen_, half_frozen_, held_row_;
+  MarkedRuns marked_;
+  ForegroundRegions regions_;
+  std::vector<PixelRun> drawn_;  ///< into the mask, for the frame before
+  std::vector<int> taken_;
+  cv::Mat mask_, covered_;
+
+  int scaled(int threshold) const { return std::clamp(static_cast<int>(std::lround(threshold / options_.sensitivity)), 1, 64); }
+};
+
+}  // namespace
+
+std::unique_ptr<Background> make_adaptive(const AdaptiveOptions& options) {
+  return std::make_unique<AdaptiveBackground>(options);
+}
+
+}  // namespace marey::detect::background

@@ -1,0 +1,83 @@
+#include "marey/detect/background/background_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace marey::detect::background {
+namespace {
+
+constexpr std::uint8_t kFirstSpread = 8;  // 1 level, until the noise is known
+
+std::int16_t clamp_level(float mean) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(mean, 0.0F, 255.0F * 128.0F)));
+}
+
+}  // namespace
+
+void ScenePlane::make_room(cv::Size size) {
+  mean_.create(size, CV_16SC1);
+  spread_.create(size, CV_8UC1);
+  low_.create(size, CV_8UC1);
+  high_.create(size, CV_8UC1);
+}
+
+void ScenePlane::begin(const cv::Mat& picture) {
+  begin(std::span(&picture, 1));
+}
+
+void ScenePlane::begin(std::span<const cv::Mat> samples) {
+  const cv::Size size = samples.front().size();
+  make_room(size);
+  int log2_count = 0;
+  while ((std::size_t{2} << log2_count) <= samples.size()) ++log2_count;
+  const int count = 1 << log2_count;
+  const int stride = (size.width + 31) / 32 * 32;
+  std::vector<std::uint8_t> rows(static_cast<std::size_t>(count) * stride, 0);
+  std::vector<std::uint8_t> middle(stride), spread(stride);
+  for (int y = 0; y < size.height; ++y) {
+    for (int i = 0; i < count; ++i) {
+      const std::size_t which = i * samples.size() / count;
+      std::memcpy(&rows[static_cast<std::size_t>(i) * stride], samples[which].ptr<std::uint8_t>(y), size.width);
+    }
+    kernels_.sort(rows.data(), log2_count, stride, stride);
+    kernels_.shortest_half(rows.data(), count, stride, stride, middle.data(), spread.data());
+    for (int x = 0; x < size.width; ++x) {
+      believe(y, x, middle[x]);
+      spread_.at<std::uint8_t>(y, x) = std::max(spread[x], kFirstSpread);
+    }
+  }
+  renew_bands(0, size.height);
+}
+
+void ScenePlane::renew_bands(int first, int last) {
+  const int bottom = mean_.rows - 1;
+  for (int row = first; row < last; ++row) {
+    const std::int16_t* const rows[3] = {mean(std::max(row - 1, 0)), mean(row), mean(std::min(row + 1, bottom))};
+    kernels_.band(rows, spread_.ptr<std::uint8_t>(row), mean_.cols, gate_, floor_, low_.ptr<std::uint8_t>(row),
+                  high_.ptr<std::uint8_t>(row));
+  }
+}
+
+void ScenePlane::scale(const cv::Mat& gains, int origin) {
+  const float zero = static_cast<float>(origin) * 128.0F;
+  for (int y = 0; y < mean_.rows; ++y) {
+    std::int16_t* means = mean_.ptr<std::int16_t>(y);
+    const float* gain = gains.ptr<float>(y / kBlock);
+    for (int x = 0; x < mean_.cols; ++x) {
+      means[x] = clamp_level(zero + (static_cast<float>(means[x]) - zero) * gain[x / kBlock]);
+    }
+  }
+  renew_bands(0, mean_.rows);
+}
+
+void ScenePlane::shift(double levels) {
+  const auto step = static_cast<float>(levels * 128);
+  for (int y = 0; y < mean_.rows; ++y) {
+    std::int16_t* means = mean_.ptr<std::int16_t>(y);
+    for (int x = 0; x < mean_.cols; ++x) means[x] = clamp_level(static_cast<float>(means[x]) + step);
+  }
+  renew_bands(0, mean_.rows);
+}
+
+}  // namespace marey::detect::background

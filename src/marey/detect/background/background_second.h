@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/detect/background/background_plane.h"
+#include "marey/detect/background/background_regions.h"
+
+namespace marey::detect::background {
+
+/// What is seen in front of the scene and stays: each pixel's second mean, and for how long it was seen. What has stayed for long
+/// enough becomes the scene, and what was the scene is remembered in its place. Counts in ticks, a 200th of the time after which
+/// what stands still is absorbed.
+class SecondScene {
+ public:
+  explicit SecondScene(double absorb_after_s);
+
+  void begin(cv::Size size);
+
+  /// Whole ticks between two ages of the model, s.
+  int ticks_between(double earlier_s, double later_s) const;
+
+  /// Whether a pixel of this level was seen there for so long before that it is no news.
+  bool knows(int row, int column, std::uint8_t level) const;
+
+  /// Where a row shows the scene, what was seen in front of it fades, and is noted (in the level's last bit) to be away.
+  void forget(int row, int ticks, const ForegroundRegions& regions);
+
+  /// Counts, for the foreground pixels of a row of a model of this age, how long they have looked the same; those that `held` marks
+  /// are left alone, but for ghosts. `taken` gets the columns where the frame has become scene, whose means the caller then
+  /// changes.
+  void count(int row, const std::uint8_t* pixels, const std::uint8_t* held, const ForegroundRegions& regions, int ticks,
+             double age_s, ScenePlane& scene, std::vector<int>& taken);
+
+ private:
+  double tick_s_;
+  cv::Mat level_;  ///< CV_8UC1: the level seen at a pixel while it was foreground, or scene before
+  cv::Mat seen_;   ///< CV_8UC1: for how long, in ticks
+};
+
+}  // namespace marey::detect::background

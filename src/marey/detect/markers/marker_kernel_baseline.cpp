@@ -1,0 +1,3 @@
+#define MAREY_KERNEL_LEVEL marker_kernels_baseline
+#define MAREY_KERNEL_NAME "baseline"
+#include "marey/detect/markers/marker_kernel.inl"

@@ -1,0 +1,279 @@
+#include "marey/format/match/ground_exchange.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+
+#include "support/data.h"
+#include "support/files.h"
+
+namespace marey::format::match {
+namespace {
+
+using test::read_file;
+using test::TemporaryFolder;
+using test::write_file;
+
+/// Two teams of three with numbered shirts and a referee, in two halves; not everyone is always there.
+GroundMatch made_up(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); };
+  GroundMatch match;
+  match.pitch = {100, 64};
+  match.periods = {{1, 3, 30}, {2, 90, 99}};
+  for (int id = 1; id <= 7; ++id)
+    match.recording.people.push_back({id, id == 7 ? "" : std::to_string(id + 10), id == 7 ? "referee" : id <= 3 ? "red" : "green"});
+  for (const GroundPeriod& period : match.periods) {
+    for (std::int32_t frame = period.first_frame; frame <= period.last_frame; ++frame) {
+      for (std::int32_t person = 0; person < 7; ++person) {
+        if (person > 0 && random() % 5 == 0) continue;
+        GroundRecording::Sample sample;
+        sample.frame = frame, sample.person = person, sample.time = frame / 25.0;
+        sample.place = {uniform(-1, 101), uniform(-1, 65)};
+        match.recording.samples.push_back(sample);
+      }
+    }
+  }
+  return match;
+}
+
+using Key = std::tuple<std::int32_t, std::string, std::string>;  // frame, team, label
+
+std::map<Key, Vector<2>> places_of(const GroundMatch& match) {
+  std::map<Key, Vector<2>> places;
+  for (const auto& sample : match.recording.samples) {
+    const auto& person = match.recording.people[static_cast<std::size_t>(sample.person)];
+    EXPECT_NEAR(sample.time, sample.frame / match.rate_hz, 1e-4);
+    places[{sample.frame, person.team, person.label}] = sample.place;
+  }
+  return places;
+}
+
+/// The same people in the same frames, to 1 cm.
+void expect_same(const std::map<Key, Vector<2>>& found, const std::map<Key, Vector<2>>& wanted, std::string_view what) {
+  EXPECT_EQ(found.size(), wanted.size()) << what;
+  for (const auto& [key, place] : wanted) {
+    const auto theirs = found.find(key);
+    ASSERT_NE(theirs, found.end()) << what << ": " << std::get<2>(key) << " of " << std::get<1>(key) << " in frame "
+                                   << std::get<0>(key);
+    EXPECT_LT((theirs->second - place).cwiseAbs().maxCoeff(), 0.01) << what;
+  }
+}
+
+struct Case {
+  GroundFormat format;
+  const char* name;
+  bool referee, teams, halves;  ///< what it can hold
+};
+
+const std::vector<Case> kWritten = {{GroundFormat::tracab, "m.dat", false, true, true},
+                                    {GroundFormat::metrica, "m_home.csv", false, true, true},
+                                    {GroundFormat::epts, "m.xml", false, true, true}};
+
+/// Without the referee, whom only some formats hold.
+std::map<Key, Vector<2>> players_of(const GroundMatch& match) {
+  auto places = places_of(match);
+  std::erase_if(places,
+                [](const auto& entry) { return std::get<1>(entry.first) == "referee" || std::get<1>(entry.first).empty(); });
+  return places;
+}
+
+TEST(GroundExchange, MatchesComeBackFromEveryFormat) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const GroundMatch match = made_up(seed);
+    for (const Case& one : kWritten) {
+      const TemporaryFolder folder;
+      const std::string what = fmt::format("{}, seed {}", ground_format_name(one.format), seed);
+      write_ground_as(match, folder / one.name, one.format);
+      ASSERT_EQ(ground_format_of_content(folder / one.name), one.format) << what;
+      const GroundMatch back = read_ground_any(folder / one.name, {{}, match.pitch, 25});
+      expect_same(players_of(back), players_of(match), what);
+      EXPECT_EQ(back.home, "red") << what;
+      EXPECT_EQ(back.away, "green") << what;
+      EXPECT_DOUBLE_EQ(back.rate_hz, 25) << what;
+      EXPECT_DOUBLE_EQ(back.pitch.length, 100) << what;
+      ASSERT_EQ(back.periods.size(), 2U) << what;
+      EXPECT_EQ(back.periods[1].first_frame, 90) << what;
+      EXPECT_EQ(back.periods[1].last_frame, 99) << what;
+    }
+  }
+}
+
+TEST(GroundExchange, SoccerNetAndMotKeepIds) {
+  const TemporaryFolder folder;
+  const GroundMatch match = made_up(3);
+  const auto by_id = [](const GroundMatch& one) {
+    std::map<std::pair<std::int32_t, int>, Vector<2>> places;
+    for (const auto& sample : one.recording.samples)
+      places[{sample.frame, one.recording.people[static_cast<std::size_t>(sample.person)].id}] = sample.place;
+    return places;
+  };
+  for (const auto& [name, format] :
+       {std::pair("m.json", GroundFormat::soccernet), std::pair("Labels-GameState.json", GroundFormat::soccernet),
+        std::pair("m.txt", GroundFormat::mot)}) {
+    write_ground_as(match, folder / name, format);
+    ASSERT_EQ(ground_format_of_content(folder / name), format) << name;
+    const GroundMatch back = read_ground_any(folder / name, {{}, match.pitch, 25});
+    const auto found = by_id(back), wanted = by_id(match);
+    ASSERT_EQ(found.size(), wanted.size()) << name;
+    for (const auto& [key, place] : wanted) EXPECT_LT((found.at(key) - place).norm(), 0.002) << name;
+  }
+}
+
+TEST(GroundExchange, OneFormatAfterTheOtherChangesNothing) {
+  const TemporaryFolder folder;
+  const GroundMatch match = made_up(11);
+  write_ground_as(match, folder / "a.dat", GroundFormat::tracab);
+  const GroundMatch first = read_ground_any(folder / "a.dat");
+  write_ground_as(first, folder / "b.xml", GroundFormat::epts);
+  write_ground_as(read_ground_any(folder / "b.xml"), folder / "c_home.csv", GroundFormat::metrica);
+  const GroundMatch last = read_ground_any(folder / "c_away.csv", {{}, match.pitch, 25});
+  expect_same(players_of(last), players_of(first), "TRACAB, EPTS, Metrica");
+}
+
+TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
+  const TemporaryFolder folder;
+  GroundMatch match;
+  match.recording.people = {{1, "1", "red"}, {2, "2", "green"}};
+  match.recording.samples = {{0, 0, 0, {0, 0}, {0, 0}, 0, true}, {0, 1, 0, {105, 68}, {0, 0}, 0, true}};
+  write_ground_as(match, folder / "m.dat", GroundFormat::tracab);
+  EXPECT_EQ(read_file(folder / "m.dat"), "0:1,1,1,-5250,-3400,0.00;0,2,2,5250,3400,0.00;:0,0,0,0.00,H,Dead;:\n");
+  write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  EXPECT_EQ(read_file(folder / "m_home.csv"),
+            ",,,red,,,\n,,,1,,,\nPeriod,Frame,Time [s],Player1,,Ball,\n1,1,0.04000,0.00000,1.00000,NaN,NaN\n");
+  write_ground_as(match, folder / "e.xml", GroundFormat::epts);
+  EXPECT_EQ(read_file(folder / "e.txt"), "0:0.00000,1.00000;1.00000,0.00000:NaN,NaN\n");
+  write_ground_as(match, folder / "m.json", GroundFormat::soccernet);
+  EXPECT_NE(read_file(folder / "m.json").find("\"x_bottom_middle\":-52.500,\"y_bottom_middle\":34.000"), std::string::npos);
+  to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
+  EXPECT_EQ(match.recording.samples[0].place.y(), 68);
+  from_corner(match.recording, match.pitch, {.y_down = true, .centred = true});
+  EXPECT_EQ(match.recording.samples[0].place, Vector<2>(-52.5, -34));
+}
+
+TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
+  const TemporaryFolder folder;
+  GroundMatch match = made_up(2);
+  for (auto& person : match.recording.people) person.team.clear(), person.label.clear();
+  const auto warnings = write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  ASSERT_EQ(warnings.size(), 1U);
+  const GroundMatch back = read_ground_any(folder / "m_home.csv", {{}, match.pitch, 25});
+  EXPECT_EQ(back.recording.samples.size(), match.recording.samples.size());
+  match.home = "white";
+  EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
+}
+
+TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
+  const TemporaryFolder folder;
+  GroundMatch match = made_up(1);
+  match.rate_hz = 12.5;
+  EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
+  EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::epts), Error);
+  EXPECT_THROW(write_ground_as({}, folder / "m.dat", GroundFormat::tracab), Error);
+  EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::sportec), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "what failed left something behind";
+  EXPECT_NO_THROW(write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica));
+  EXPECT_NEAR(read_ground_any(folder / "m_home.csv").rate_hz, 12.5, 1e-9);
+}
+
+/// Ends in a recording or in one Error of one line.
+bool survives(const std::function<void()>& read) {
+  try {
+    read();
+    return true;
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();
+    return false;
+  }
+}
+
+TEST(GroundExchange, TornAndScrambledFilesEndInOneSentence) {
+  for (const Case& one : std::vector<Case>{kWritten[0],
+                                           kWritten[1],
+                                           kWritten[2],
+                                           {GroundFormat::soccernet, "m.json", true, true, false},
+                                           {GroundFormat::mot, "m.txt", true, false, false}}) {
+    const TemporaryFolder folder;
+    write_ground_as(made_up(4), folder / one.name, one.format);
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) files.push_back(entry.path().string());
+    std::mt19937 random(7);
+    for (const std::string& file : files) {
+      const std::string whole = read_file(file);
+      for (int trial = 0; trial < 40; ++trial) {
+        std::string text = whole;
+        if (trial % 2 == 0)
+          text.resize(random() % whole.size());
+        else
+          for (int i = 0; i < 5; ++i) text[random() % text.size()] = static_cast<char>(random());
+        write_file(file, text);
+        survives([&] { read_ground_as(folder / one.name, one.format); });
+      }
+      write_file(file, whole);
+    }
+  }
+}
+
+TEST(GroundExchange, BadFilesAreNamed) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& name, const std::string& text) -> std::string {
+    write_file(folder / name, text);
+    try {
+      read_ground_any(folder / name);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_NE(said("alone.dat", "1:1,1,1,0,0,0.00;:0,0,0,0.00,H,Dead;:\n").find("--metadata"), std::string::npos);
+  EXPECT_NE(said("alone_home.csv", ",,,a,,,\n,,,1,,,\nPeriod,Frame,Time [s],Player1,,Ball,\n").find("pairs"), std::string::npos);
+  EXPECT_NE(said("none.txt", "").find("empty"), std::string::npos);
+  EXPECT_NE(said("far.txt", "1,1,-1,-1,-1,-1,1,1e7,0,0\n").find("far.txt:1"), std::string::npos);
+  EXPECT_NE(said("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
+  EXPECT_NE(said("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
+  EXPECT_NE(said("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
+  EXPECT_THROW(read_ground_any(folder / "missing.dat"), Error);
+  EXPECT_THROW(read_ground_any(folder.path()), Error);
+}
+
+TEST(GroundExchange, FilesOfVendors) {
+  const std::string folder = test::data("football_files/");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
+  struct Expected {
+    const char* name;
+    GroundFormat format;
+    std::size_t samples, people, periods;
+    Vector<2> first;
+  };
+  // By hand: of TRACAB the first target, -4.72 m of its second shirt; of the others the first line's first person.
+  for (const Expected& one :
+       {Expected{"tracab_raw.dat", GroundFormat::tracab, 505, 0, 2, {52.56, 24.87}},
+        Expected{"epts_metrica_tracking.txt", GroundFormat::epts, 1900, 22, 2, {105 * 0.30602, 68 * (1 - 0.97029)}},
+        Expected{"metrica_away.csv", GroundFormat::metrica, 132, 28, 2, {105 * 0.00082, 68 * (1 - 0.48238)}},
+        Expected{"sportec_positional.xml", GroundFormat::sportec, 288, 3, 2, {0, 0}},
+        Expected{"statsperform_tracking_ma25.txt", GroundFormat::statsperform, 2025, 0, 2, {52.803, 68 - 23.617}}}) {
+    ASSERT_EQ(ground_format_of_content(folder + one.name), one.format) << one.name;
+    const GroundMatch match = read_ground_any(folder + one.name);
+    EXPECT_EQ(match.recording.samples.size(), one.samples) << one.name;
+    if (one.people > 0) {
+      EXPECT_EQ(match.recording.people.size(), one.people) << one.name;
+    }
+    EXPECT_EQ(match.periods.size(), one.periods) << one.name;
+    if (one.first != Vector<2>::Zero()) {
+      EXPECT_LT((match.recording.samples[0].place - one.first).norm(), 1e-6) << one.name;
+    }
+  }
+  const GroundMatch pets = read_ground_any(test::data("pets2009/gt_001_300.txt"));
+  EXPECT_EQ(pets.recording.people.front().id, 9);
+  EXPECT_LT((pets.recording.samples.front().place - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace marey::format::match

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "marey/format/match/ground_exchange.h"
+
+namespace marey::format::match {
+
+/// Where someone belongs in the formats of matches, which know two teams.
+enum class Side { home, away, referee, other };
+
+/// Who is who in a file of a match.
+struct LineUps {
+  struct Member {
+    Side side = Side::other;
+    int number = 0;    ///< of the shirt, unique in the team: the label where it is one, else the id or what is free
+    std::string name;  ///< the label, or "Player No.7"; never a bare number, which some readers choke on
+  };
+  std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" where there are none
+  std::vector<Member> members;        ///< one a person, in the recording's order
+  std::vector<std::string> warnings;  ///< one sentence each
+
+  std::vector<std::int32_t> of(Side side) const;  ///< indices of the people, in their order
+};
+
+/// Home and away are those that `match` names, else the two teams with the most places, in the order of their first people. Without
+/// any team everyone is at home. Throws Error where a named team has nobody.
+LineUps line_ups_of(const GroundMatch& match);
+
+/// The match's periods; one from the first frame to the last where it has none.
+std::vector<GroundPeriod> periods_of(const GroundMatch& match);
+
+/// Whether velocities are known: they are all 0 where a file had none.
+bool has_velocities(const GroundRecording& recording);
+
+/// Calls `instant(frame, samples of it)` for each frame that has any, in order.
+template <typename Instant>
+void for_each_instant(const GroundRecording& recording, Instant&& instant) {
+  const auto& samples = recording.samples;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    while (end < samples.size() && samples[end].frame == samples[begin].frame) ++end;
+    instant(samples[begin].frame, std::span(samples).subspan(begin, end - begin));
+  }
+}
+
+/// Frames a second as a whole number, which some formats ask for. Throws Error, with the format's name, where the rate is more than
+/// 0.5 % off.
+int whole_rate(double rate_hz, std::string_view format);
+
+/// A path with its ending, from the last dot on, replaced.
+std::string with_ending(const std::string& path, std::string_view ending);
+
+}  // namespace marey::format::match

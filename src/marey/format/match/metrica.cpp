@@ -1,0 +1,201 @@
+// Metrica's CSV: a file of the home team and one of the guests, `Period,Frame,Time [s],x,y,...` below three lines of heads, the
+// ball in the last two columns; 0 to 1 from the corner above on the left, y downwards; NaN where someone is missing. Frames count
+// from 1, and the first is at one frame's time.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/line_ups.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::match {
+namespace {
+
+constexpr std::size_t kFirstPlayer = 3;  // columns before it
+constexpr std::size_t kBall = 2;         // columns of it
+
+struct Column {
+  std::size_t at = 0;
+  std::int32_t person = 0;
+};
+
+class Reader {
+ public:
+  Reader(const std::string& name, const geometry::PitchSize& pitch) : builder_(name) { match_.pitch = pitch; }
+
+  void read(std::string_view text, const std::string& name, const char* otherwise, std::string& team) {
+    name_ = name;
+    learn_rate(text);
+    lines_ = TextLines(text);
+    team = otherwise;
+    if (next_fields() && fields_.size() > kFirstPlayer && !fields_[kFirstPlayer].empty()) team = unquoted(fields_[kFirstPlayer]);
+    const bool numbered = next_fields();
+    std::vector<std::string> numbers;
+    for (const std::string_view field : fields_) numbers.emplace_back(field);
+    if (!numbered || !next_fields() || fields_.size() < kFirstPlayer + kBall || fields_[0] != "Period" || fields_[1] != "Frame")
+      throw Error("{}:3: must read Period,Frame,Time [s],Player...; it is no tracking file of Metrica", name_);
+    std::vector<Column> columns;
+    for (std::size_t at = kFirstPlayer; at + kBall < fields_.size(); at += 2) {
+      const auto number = at < numbers.size() ? whole_number_of(numbers[at]) : std::nullopt;
+      if (!number || *number < 0 || *number > 100'000) throw Error("{}:2: column {} must hold a shirt's number", name_, at + 1);
+      const int shirt = static_cast<int>(*number);
+      columns.push_back(
+          {at, builder_.person(fmt::format("{} {}", otherwise, shirt), 0, label_of(unquoted(fields_[at]), shirt), team)});
+    }
+    const std::size_t width = fields_.size();
+    while (next_fields()) {
+      if (fields_.size() == 1 && fields_[0].empty()) continue;
+      if (fields_.size() != width)
+        throw Error("{}: has {} columns, the head {}; the file may be cut off", where(), fields_.size(), width);
+      read_row(columns);
+    }
+  }
+
+  GroundMatch finish() {
+    match_.recording = builder_.finish();
+    return std::move(match_);
+  }
+
+ private:
+  std::string where() const { return fmt::format("{}:{}", name_, lines_.number()); }
+
+  bool next_fields() {
+    std::string_view line;
+    if (!lines_.next(line)) return false;
+    split_fields(line, ',', fields_);
+    return true;
+  }
+
+  double number(std::size_t column, double least, double most) const {
+    const auto value = number_of(fields_[column]);
+    if (!value || !(*value >= least && *value <= most))
+      throw Error("{}: column {} is {}; a number from {:g} to {:g} is wanted", where(), column + 1, shown(fields_[column]), least,
+                  most);
+    return *value;
+  }
+
+  void read_row(const std::vector<Column>& columns) {
+    const int period = static_cast<int>(number(0, 1, 9));
+    const auto frame = static_cast<std::int32_t>(number(1, 1, 1e9)) - 1;
+    number(2, -1e7, 1e7);
+    auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == period; });
+    if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
+    known->first_frame = std::min(known->first_frame, frame);
+    known->last_frame = std::max(known->last_frame, frame);
+    for (const Column& column : columns) {
+      const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
+      if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
+      builder_.add(frame, frame / match_.rate_hz, column.person, match_.pitch.length * number(column.at, -1e3, 1e3),
+                   match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)), where());
+    }
+  }
+
+  /// The head does not tell the rate; the last row's frame and time do, the most exactly.
+  void learn_rate(std::string_view text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
+    split_fields(text.substr(text.rfind('\n') + 1), ',', fields_);
+    const auto frame = fields_.size() > 2 ? number_of(fields_[1]) : std::nullopt;
+    const auto time = fields_.size() > 2 ? number_of(fields_[2]) : std::nullopt;
+    if (!frame || !time) return;  // the reading of that row tells what is wrong, or there is none
+    const double rate = std::round(1000 * *frame / *time) / 1000;
+    if (!(*time > 0 && rate >= 0.1 && rate <= 10'000))
+      throw Error("{}: its last frame is {:g} at {:g} s, which makes no rate; the match begins with frame 1", name_, *frame, *time);
+    match_.rate_hz = rate;
+  }
+
+  std::string name_;
+  TextLines lines_{""};
+  GroundBuilder builder_;
+  GroundMatch match_;
+  std::vector<std::string_view> fields_;
+};
+
+/// Readers take the heads for ASCII.
+std::string plain(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) >= 0x80 && (static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;  // goes on with a letter
+    result += c < ' ' || c > '~' || c == ',' || c == '"' ? '?' : c;
+  }
+  return result;
+}
+
+std::string heads(const LineUps& squads, Side side, const std::vector<std::int32_t>& people) {
+  std::string teams = ",,", numbers = ",,", names = "Period,Frame,Time [s]";
+  for (const std::int32_t person : people) {
+    const int number = squads.members[static_cast<std::size_t>(person)].number;
+    teams += fmt::format(",{},", plain(squads.teams[side == Side::home ? 0 : 1]));
+    numbers += fmt::format(",{},", number);
+    names += fmt::format(",Player{},", number);
+  }
+  return fmt::format("{},,\n{},,\n{},Ball,\n", teams, numbers, names);
+}
+
+void write_team(const GroundMatch& match, const LineUps& squads, Side side, const std::vector<GroundPeriod>& periods,
+                WholeFile& file) {
+  const std::vector<std::int32_t> people = squads.of(side);
+  std::string text = heads(squads, side, people);
+  std::vector<std::optional<Vector<2>>> places(match.recording.people.size());
+  for_each_instant(match.recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample> samples) {
+    const auto period = std::find_if(periods.begin(), periods.end(),
+                                     [&](const auto& one) { return one.first_frame <= frame && frame <= one.last_frame; });
+    if (period == periods.end()) return;
+    std::fill(places.begin(), places.end(), std::nullopt);
+    for (const auto& sample : samples) places[static_cast<std::size_t>(sample.person)] = sample.place;
+    fmt::format_to(std::back_inserter(text), "{},{},{:.5f}", period->number, frame + 1, (frame + 1) / match.rate_hz);
+    for (const std::int32_t person : people) {
+      const auto& place = places[static_cast<std::size_t>(person)];
+      if (place) {
+        fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", place->x() / match.pitch.length,
+                       1 - place->y() / match.pitch.width);
+      } else {
+        text += ",NaN,NaN";
+      }
+    }
+    text += ",NaN,NaN\n";
+    if (text.size() < (std::size_t{1} << 20)) return;
+    file.write(text);
+    text.clear();
+  });
+  file.write(text);
+}
+
+}  // namespace
+
+GroundMatch parse_metrica(std::string_view home, const std::string& home_name, std::string_view away, const std::string& away_name,
+                          const geometry::PitchSize& pitch) {
+  Reader reader(home_name, pitch);
+  std::string home_team, away_team;
+  reader.read(home, home_name, "Home", home_team);
+  reader.read(away, away_name, "Away", away_team);
+  GroundMatch match = reader.finish();
+  match.home = home_team, match.away = away_team;
+  return match;
+}
+
+std::vector<std::string> write_metrica(const GroundMatch& match, const std::string& path) {
+  LineUps squads = line_ups_of(match);
+  const std::vector<GroundPeriod> periods = periods_of(match);
+  std::string stem = with_ending(path, "");
+  for (const std::string_view side : {"_home", "_away"}) {
+    if (stem.ends_with(side)) stem.resize(stem.size() - side.size());
+  }
+  WholeFile home(stem + "_home.csv"), away(stem + "_away.csv");
+  write_team(match, squads, Side::home, periods, home);
+  write_team(match, squads, Side::away, periods, away);
+  home.finish();
+  away.finish();
+  const auto left_out = squads.of(Side::referee).size() + squads.of(Side::other).size();
+  if (left_out > 0)
+    squads.warnings.push_back(fmt::format("{} people of neither team were left out: Metrica's files hold two teams", left_out));
+  return squads.warnings;
+}
+
+}  // namespace marey::format::match

@@ -1,0 +1,66 @@
+// MOTChallenge text with world coordinates: frame,id,left,top,width,height,score,X,Y[,Z], frames from 1, m. Where only the ground
+// is known the box is -1, as in the benchmark's 3D part.
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::match {
+
+GroundMatch parse_mot_world(std::string_view text, const std::string& name, double rate_hz) {
+  constexpr std::array needed = {0, 1, 7, 8};  // frame, id, X, Y
+  constexpr std::array<std::string_view, 4> names = {"frame", "id", "X", "Y"};
+  GroundMatch match;
+  match.rate_hz = rate_hz;
+  GroundBuilder builder(name);
+  TextLines lines(text);
+  std::string_view line;
+  std::vector<std::string_view> fields;
+  while (lines.next(line)) {
+    if (line.empty()) continue;
+    const std::string where = fmt::format("{}:{}", name, lines.number());
+    split_fields(line, line.find(',') == std::string_view::npos ? ' ' : ',', fields);
+    if (fields.size() < 9) throw Error("{}: has {} columns; world coordinates are in the eighth and ninth", where, fields.size());
+    std::array<double, 4> values{};
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      const std::string_view field = fields[static_cast<std::size_t>(needed[i])];
+      const auto value = number_of(field);
+      if (!value) throw Error("{}: {} is {}; it must be a number", where, names[i], shown(field));
+      values[i] = *value;
+    }
+    if (values[0] < 1 || values[0] > 1e9 || values[0] != std::floor(values[0]))
+      throw Error("{}: frame is {:g}; frames are whole numbers from 1", where, values[0]);
+    if (values[1] < 0 || values[1] > 1e9 || values[1] != std::floor(values[1]))
+      throw Error("{}: id is {:g}; ids are whole numbers from 0", where, values[1]);
+    if (values[2] == -1 && values[3] == -1)
+      throw Error("{}: has no world coordinates (-1, -1); such boxes are placed on the ground by `marey track --ground`", where);
+    const auto frame = static_cast<std::int32_t>(values[0]) - 1;
+    const int id = static_cast<int>(values[1]);
+    builder.add(frame, frame / rate_hz, builder.person(std::to_string(id), id, {}, {}), values[2], values[3], where);
+  }
+  match.recording = builder.finish();
+  return match;
+}
+
+void write_mot_world(const GroundMatch& match, const std::string& path) {
+  WholeFile file(path);
+  std::string text;
+  for (const auto& sample : match.recording.samples) {
+    fmt::format_to(std::back_inserter(text), "{},{},-1,-1,-1,-1,1,{:.3f},{:.3f},0\n", sample.frame + 1,
+                   match.recording.people[static_cast<std::size_t>(sample.person)].id, sample.place.x(), sample.place.y());
+    if (text.size() < (std::size_t{1} << 20)) continue;
+    file.write(text);
+    text.clear();
+  }
+  file.write(text);
+  file.finish();
+}
+
+}  // namespace marey::format::match

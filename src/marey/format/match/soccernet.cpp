@@ -1,0 +1,182 @@
+// SoccerNet's game state: JSON with a list of people seen in pictures, each with its place on the pitch, m from the centre spot, x
+// to the right and y downwards. The truth lists them as "annotations" (the file is named Labels-GameState.json), a tracker's result
+// as "predictions"; both are read, and the name decides which is written. The last six digits of an image_id count pictures from 1.
+// Teams are "left" and "right", shirts' numbers are strings or null.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/line_ups.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::match {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kImages = 1'000'000;              // image ids of one clip
+constexpr std::int64_t kFirstClip = 1000 * 1'000'000LL;  // what ours begin with
+
+class Reader {
+ public:
+  Reader(const std::string& name, const GroundReadOptions& options) : name_(name), builder_(name) {
+    match_.pitch = options.pitch;
+    match_.rate_hz = options.rate_hz;
+  }
+
+  GroundMatch read(std::string_view text) {
+    const json root = json::parse(text);
+    if (!root.is_object()) throw Error("{}: is no game state of SoccerNet: it must be an object", name_);
+    if (const auto info = root.find("info"); info != root.end() && info->is_object()) {
+      const double rate = number_or(*info, "frame_rate", match_.rate_hz);
+      if (rate >= 0.1 && rate <= 10'000) match_.rate_hz = rate;
+    }
+    const auto list = root.contains("predictions") ? root.find("predictions") : root.find("annotations");
+    if (list == root.end() || !list->is_array())
+      throw Error("{}: is no game state of SoccerNet: \"predictions\" or \"annotations\" is missing", name_);
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      where_ = fmt::format("{}: person {} of the list", name_, i + 1);
+      add((*list)[i]);
+    }
+    match_.home = "left", match_.away = "right";
+    match_.recording = builder_.finish();
+    return std::move(match_);
+  }
+
+ private:
+  static double number_or(const json& object, const char* key, double otherwise) {
+    const auto value = object.find(key);
+    return value != object.end() && value->is_number() ? value->get<double>() : otherwise;
+  }
+
+  static std::string text_of(const json& object, const char* key) {
+    const auto value = object.find(key);
+    if (value == object.end()) return {};
+    if (value->is_string()) return value->get<std::string>();
+    return value->is_number_integer() ? std::to_string(value->get<std::int64_t>()) : std::string();
+  }
+
+  /// Lines and cameras are in the list too; so are people whose place is not known.
+  void add(const json& one) {
+    if (!one.is_object()) throw Error("{} is no object", where_);
+    const auto box = one.find("bbox_pitch");
+    if (text_of(one, "supercategory") != "object" || box == one.end() || !box->is_object()) return;
+    const json& attributes = one.contains("attributes") && one["attributes"].is_object() ? one["attributes"] : json::object();
+    const std::string role = text_of(attributes, "role");
+    if (role == "ball") return;
+    const auto image = whole_number_of(text_of(one, "image_id"));
+    if (!image || *image % kImages < 1) throw Error("{}: image_id is no number that ends in a picture's, counted from 1", where_);
+    const auto track = whole_number_of(text_of(one, "track_id"));
+    if (!track || *track < 0 || *track > 1'000'000'000) throw Error("{}: track_id is no number from 0", where_);
+    const auto place = [&](const char* key) {
+      const auto value = box->find(key);
+      if (value == box->end() || !value->is_number()) throw Error("{}: bbox_pitch has no number {}", where_, key);
+      return value->get<double>();
+    };
+    const auto frame = static_cast<std::int32_t>(*image % kImages - 1);
+    const std::string team = role == "referee" ? role : text_of(attributes, "team");
+    const std::string jersey = text_of(attributes, "jersey");
+    const std::string label = jersey.empty() && role == "goalkeeper" ? "keeper" : jersey;
+    const std::int32_t person = builder_.person(std::to_string(*track), static_cast<int>(*track), label, team);
+    builder_.add(frame, frame / match_.rate_hz, person, match_.pitch.length / 2 + place("x_bottom_middle"),
+                 match_.pitch.width / 2 - place("y_bottom_middle"), where_);
+  }
+
+  const std::string& name_;
+  GroundBuilder builder_;
+  GroundMatch match_;
+  std::string where_;
+};
+
+std::int64_t image_id(std::int32_t frame) {
+  return kFirstClip + frame + 1;
+}
+
+bool is_keeper(const GroundRecording::Person& person) {
+  return person.label == "keeper" || person.label == "goalkeeper";
+}
+
+std::string attributes_of(const LineUps::Member& member, const GroundRecording::Person& person) {
+  const bool plays = member.side == Side::home || member.side == Side::away;
+  const char* role = plays && is_keeper(person)     ? "goalkeeper"
+                     : plays                        ? "player"
+                     : member.side == Side::referee ? "referee"
+                                                    : "other";
+  const bool shirt = plays && whole_number_of(person.label) && member.number <= 99;
+  return fmt::format(R"({{"role":"{}","jersey":{},"team":{}}})", role, shirt ? fmt::format("\"{}\"", member.number) : "null",
+                     !plays                      ? "null"
+                     : member.side == Side::home ? "\"left\""
+                                                 : "\"right\"");
+}
+
+int category_of(Side side, const GroundRecording::Person& person) {
+  return side == Side::referee ? 3 : side == Side::other ? 7 : is_keeper(person) ? 2 : 1;
+}
+
+std::string images_of(const GroundRecording& recording) {
+  std::string text;
+  for_each_instant(recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample>) {
+    fmt::format_to(std::back_inserter(text),
+                   "{}\n{{\"is_labeled\":true,\"image_id\":\"{}\",\"file_name\":\"{:06}.jpg\",\"has_labeled_person\":true,"
+                   "\"has_labeled_pitch\":true,\"has_labeled_camera\":true}}",
+                   text.empty() ? "" : ",", image_id(frame), frame + 1);
+  });
+  return text;
+}
+
+}  // namespace
+
+GroundMatch parse_soccernet(std::string_view text, const std::string& name, const GroundReadOptions& options) {
+  try {
+    return Reader(name, options).read(text);
+  } catch (const json::exception& error) {
+    std::string what = error.what();
+    for (char& c : what) c = c < ' ' || c > '~' ? '?' : c;
+    throw Error("{}: is no JSON ({})", name, what);
+  }
+}
+
+std::vector<std::string> write_soccernet(const GroundMatch& match, const std::string& path) {
+  const GroundRecording& recording = match.recording;
+  const std::int32_t last = recording.samples.empty() ? 0 : recording.samples.back().frame;
+  if (last + 1 >= kImages) throw Error("SoccerNet's image ids count to {}, and the recording has frame {}", kImages - 1, last);
+  const LineUps squads = line_ups_of(match);
+  const bool labels = std::filesystem::path(path).filename().string().find("Labels") != std::string::npos;
+  WholeFile file(path);
+  file.write(
+      fmt::format("{{\"info\":{{\"version\":\"1.3\",\"name\":\"marey\",\"im_dir\":\"img1\",\"im_ext\":\".jpg\",\"frame_rate\":{:g},"
+                  "\"seq_length\":{}}},\n\"categories\":[{{\"id\":1,\"name\":\"player\",\"supercategory\":\"object\"}},"
+                  "{{\"id\":2,\"name\":\"goalkeeper\",\"supercategory\":\"object\"}},"
+                  "{{\"id\":3,\"name\":\"referee\",\"supercategory\":\"object\"}},"
+                  "{{\"id\":7,\"name\":\"other\",\"supercategory\":\"object\"}}],\n\"images\":[",
+                  match.rate_hz, last + 1));
+  file.write(images_of(recording));
+  file.write(fmt::format("],\n\"{}\":[", labels ? "annotations" : "predictions"));
+  std::string text;
+  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
+    const auto& sample = recording.samples[i];
+    const auto person = static_cast<std::size_t>(sample.person);
+    const LineUps::Member& member = squads.members[person];
+    const double x = sample.place.x() - match.pitch.length / 2, y = match.pitch.width / 2 - sample.place.y();
+    fmt::format_to(std::back_inserter(text),
+                   "{}\n{{\"id\":\"{}\",\"image_id\":\"{}\",\"track_id\":{},\"supercategory\":\"object\",\"category_id\":{},"
+                   "\"attributes\":{},\"bbox_pitch\":{{\"x_bottom_left\":{:.3f},\"y_bottom_left\":{:.3f},\"x_bottom_right\":{:.3f},"
+                   "\"y_bottom_right\":{:.3f},\"x_bottom_middle\":{:.3f},\"y_bottom_middle\":{:.3f}}}}}",
+                   i == 0 ? "" : ",", i + 1, image_id(sample.frame), recording.people[person].id,
+                   category_of(member.side, recording.people[person]), attributes_of(member, recording.people[person]), x, y, x, y,
+                   x, y);
+    if (text.size() < (std::size_t{1} << 20)) continue;
+    file.write(text);
+    text.clear();
+  }
+  file.write(text + "]}\n");
+  file.finish();
+  return squads.warnings;
+}
+
+}  // namespace marey::format::match

@@ -1,0 +1,129 @@
+// DFL's positional data (Sportec): XML with a set of frames for each person and half, m from the centre spot, y upwards. Frames of
+// the first half count from 10,000, those of the second from 100,000. Names of people and teams are in the match's information, an
+// XML of its own, which may be missing.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/xml_text.h"
+
+namespace marey::format::match {
+namespace {
+
+constexpr std::array<std::string_view, 4> kSections = {"firstHalf", "secondHalf", "firstHalfExtra", "secondHalfExtra"};
+
+struct Who {
+  std::string label, team;
+};
+
+/// Seconds since midnight of 2020-06-05T20:29:57.840+02:00.
+std::optional<double> seconds_of_day(std::string_view time) {
+  const std::size_t begin = time.find('T');
+  if (begin == std::string_view::npos || time.size() < begin + 9) return std::nullopt;
+  const auto hours = number_of(time.substr(begin + 1, 2)), minutes = number_of(time.substr(begin + 4, 2));
+  const std::string_view rest = time.substr(begin + 7);
+  const auto seconds = number_of(rest.substr(0, rest.find_first_of("+-Z")));
+  if (!hours || !minutes || !seconds) return std::nullopt;
+  return 3600 * *hours + 60 * *minutes + *seconds;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& name, const std::string& metadata_name) : name_(name), metadata_name_(metadata_name), builder_(name) {}
+
+  GroundMatch read(std::string_view text, std::string_view metadata) {
+    if (!metadata.empty()) read_people(metadata);
+    const pugi::xml_document document = parse_xml(text, name_);
+    const pugi::xml_node positions = document.document_element().child("Positions");
+    if (!positions) throw Error("{}: is no positional data of DFL: <Positions> is missing", name_);
+    if (const pugi::xml_node size = positions.child("MetaData").child("PitchSize")) {
+      match_.pitch.length = number(size, "X", 1, 1000);
+      match_.pitch.width = number(size, "Y", 1, 1000);
+    }
+    for (const pugi::xml_node set : positions.children("FrameSet")) learn_rate(set);
+    for (const pugi::xml_node set : positions.children("FrameSet")) read_set(set);
+    std::sort(match_.periods.begin(), match_.periods.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+    match_.recording = builder_.finish();
+    return std::move(match_);
+  }
+
+ private:
+  void read_people(std::string_view metadata) {
+    const pugi::xml_document document = parse_xml(metadata, metadata_name_);
+    for (const pugi::xml_node team : document.document_element().child("MatchInformation").child("Teams").children("Team")) {
+      const std::string name = team.attribute("TeamName").as_string();
+      (std::string_view(team.attribute("Role").as_string()) == "home" ? match_.home : match_.away) = name;
+      for (const pugi::xml_node player : team.child("Players").children("Player"))
+        people_[player.attribute("PersonId").as_string()] = {player.attribute("Shortname").as_string(), name};
+    }
+  }
+
+  double number(const pugi::xml_node& node, const char* attribute, double least, double most) const {
+    const std::string_view text = node.attribute(attribute).as_string();
+    const auto value = number_of(text);
+    if (!value || !(*value >= least && *value <= most))
+      throw Error("{}: {} of a <{}> is {}; a number from {:g} to {:g} is wanted", name_, attribute, node.name(), shown(text), least,
+                  most);
+    return *value;
+  }
+
+  void learn_rate(const pugi::xml_node& set) {
+    const pugi::xml_node first = set.child("Frame"), last = set.last_child();
+    const auto begin = seconds_of_day(first.attribute("T").as_string()), end = seconds_of_day(last.attribute("T").as_string());
+    if (rate_known_ || !begin || !end || !(*end > *begin)) return;
+    const double rate = (number(last, "N", 0, 1e9) - number(first, "N", 0, 1e9)) / (*end - *begin);
+    if (rate < 0.1 || rate > 10'000) return;
+    match_.rate_hz = std::round(rate * 100) / 100;
+    rate_known_ = true;
+  }
+
+  void read_set(const pugi::xml_node& set) {
+    const std::string team = set.attribute("TeamId").as_string(), id = set.attribute("PersonId").as_string();
+    if (team == "BALL") return;
+    const std::string_view section = set.attribute("GameSection").as_string();
+    const auto known = std::find(kSections.begin(), kSections.end(), section);
+    if (known == kSections.end())
+      throw Error("{}: a <FrameSet> has the section {}; firstHalf, secondHalf, ... are known", name_, shown(section));
+    const int period = static_cast<int>(known - kSections.begin()) + 1;
+    const auto who = people_.find(id);
+    const std::int32_t person = who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
+                                                     : builder_.person(id, 0, who->second.label, who->second.team);
+    for (const pugi::xml_node node : set.children("Frame")) {
+      const auto frame = static_cast<std::int32_t>(number(node, "N", 0, 1e9));
+      extend(period, frame);
+      builder_.add(frame, frame / match_.rate_hz, person, match_.pitch.length / 2 + number(node, "X", -1e5, 1e5),
+                   match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5), name_);
+    }
+  }
+
+  void extend(int number, std::int32_t frame) {
+    auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == number; });
+    if (known == match_.periods.end()) known = match_.periods.insert(known, {number, frame, frame});
+    known->first_frame = std::min(known->first_frame, frame);
+    known->last_frame = std::max(known->last_frame, frame);
+  }
+
+  const std::string& name_;
+  const std::string& metadata_name_;
+  GroundBuilder builder_;
+  GroundMatch match_;
+  bool rate_known_ = false;
+  std::map<std::string, Who> people_;
+};
+
+}  // namespace
+
+GroundMatch parse_sportec(std::string_view text, const std::string& name, std::string_view metadata,
+                          const std::string& metadata_name) {
+  return Reader(name, metadata_name).read(text, metadata);
+}
+
+}  // namespace marey::format::match

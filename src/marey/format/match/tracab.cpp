@@ -1,0 +1,232 @@
+// TRACAB: one line an instant, `frame:target;target;...;:ball;:`, a target being team,target id,shirt,x,y,speed; cm from the centre
+// spot, y upwards, m/s. Team 1 is at home, 0 is the guest, 3 a referee, -1 is not known and 4 is a target that is not used. The
+// metadata's XML comes with attributes of <match> or flat, lengths then in cm.
+//
+// The ball that we do not have is written dead on the centre spot, for readers insist on one.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/line_ups.h"
+#include "marey/format/text_rows.h"
+#include "marey/format/whole_file.h"
+#include "marey/format/xml_text.h"
+
+namespace marey::format::match {
+namespace {
+
+constexpr double kMetre = 100;  // of TRACAB's units
+constexpr std::int64_t kMostFrames = 1'000'000'000;
+
+/// A number with a dot or, as some exports have it, a comma.
+std::optional<double> decimal(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  return number_of(text);
+}
+
+class Reader {
+ public:
+  Reader(const std::string& name, const std::string& metadata_name) : name_(name), metadata_name_(metadata_name), builder_(name) {}
+
+  GroundMatch read(std::string_view text, std::string_view metadata) {
+    read_metadata(metadata);
+    for_each_line(text, name_, [this](std::string_view line, std::string where) {
+      where_ = std::move(where);
+      read_line(line);
+    });
+    match_.recording = builder_.finish();
+    return std::move(match_);
+  }
+
+ private:
+  double metadata_number(const std::string& text, const char* what, double least, double most) const {
+    const auto value = decimal(text);
+    if (!value || !(*value >= least && *value <= most))
+      throw Error("{}: {} is {}; a number from {:g} to {:g} is wanted", metadata_name_, what, shown(text), least, most);
+    return *value;
+  }
+
+  void add_period(int number, double first, double last) {
+    if (first == 0 && last == 0) return;
+    match_.periods.push_back({number, static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)});
+  }
+
+  void read_metadata(std::string_view text) {
+    const pugi::xml_document document = parse_xml(text, metadata_name_);
+    const pugi::xml_node root = document.document_element();
+    if (const pugi::xml_node head = root.child("match")) {
+      match_.rate_hz = metadata_number(head.attribute("iFrameRateFps").as_string(), "iFrameRateFps", 1, 1000);
+      match_.pitch.length = metadata_number(head.attribute("fPitchXSizeMeters").as_string(), "fPitchXSizeMeters", 1, 1000);
+      match_.pitch.width = metadata_number(head.attribute("fPitchYSizeMeters").as_string(), "fPitchYSizeMeters", 1, 1000);
+      for (const pugi::xml_node period : head.children("period")) {
+        add_period(period.attribute("iId").as_int(),
+                   metadata_number(period.attribute("iStartFrame").as_string(), "iStartFrame", 0, kMostFrames),
+                   metadata_number(period.attribute("iEndFrame").as_string(), "iEndFrame", 0, kMostFrames));
+      }
+    } else if (root.child("FrameRate")) {
+      match_.rate_hz = metadata_number(root.child_value("FrameRate"), "FrameRate", 1, 1000);
+      match_.pitch.length = metadata_number(root.child_value("PitchLongSide"), "PitchLongSide", 100, 1e5) / kMetre;
+      match_.pitch.width = metadata_number(root.child_value("PitchShortSide"), "PitchShortSide", 100, 1e5) / kMetre;
+      for (int phase = 1; phase <= 5; ++phase) {
+        const std::string start = fmt::format("Phase{}StartFrame", phase), end = fmt::format("Phase{}EndFrame", phase);
+        if (!root.child(start.c_str())) continue;
+        add_period(phase, metadata_number(root.child_value(start.c_str()), start.c_str(), 0, kMostFrames),
+                   metadata_number(root.child_value(end.c_str()), end.c_str(), 0, kMostFrames));
+      }
+    } else {
+      throw Error("{}: is no metadata of TRACAB: neither <match> nor <FrameRate> is in it", metadata_name_);
+    }
+    read_team(root.child("HomeTeam"), 1, "Home", match_.home);
+    read_team(root.child("AwayTeam"), 0, "Away", match_.away);
+  }
+
+  void read_team(const pugi::xml_node& team, int side, const char* otherwise, std::string& name) {
+    name = team.child_value("ShortName");
+    if (name.empty()) name = otherwise;
+    for (const pugi::xml_node player : team.child("Players").children()) {
+      const std::string first = player.child_value("FirstName"), last = player.child_value("LastName");
+      const int number = player.child("JerseyNo").text().as_int(-1);
+      names_[{side, number}] = fmt::format("{}{}{}", first, first.empty() || last.empty() ? "" : " ", last);
+    }
+  }
+
+  void read_line(std::string_view line) {
+    const std::size_t head = line.find(':');
+    const auto frame = whole_number_of(line.substr(0, head));
+    const std::size_t end = head == std::string_view::npos ? head : line.find(':', head + 1);
+    if (!frame || *frame < 0 || *frame > kMostFrames || end == std::string_view::npos)
+      throw Error("{}: is no instant of TRACAB; it must read frame:targets:ball:", where_);
+    split_fields(line.substr(head + 1, end - head - 1), ';', targets_);
+    for (const std::string_view target : targets_) {
+      if (!target.empty()) read_target(target, static_cast<std::int32_t>(*frame));
+    }
+  }
+
+  void read_target(std::string_view target, std::int32_t frame) {
+    split_fields(target, ',', fields_);
+    std::array<double, 5> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto value = i < fields_.size() ? number_of(fields_[i]) : std::nullopt;
+      if (!value || std::abs(*value) > 1e9)
+        throw Error("{}: {} is no target; it must read team,target,shirt,x,y,speed", where_, shown(target));
+      values[i] = *value;
+    }
+    const int team = static_cast<int>(values[0]), id = static_cast<int>(values[1]), number = static_cast<int>(values[2]);
+    if (team == 4) return;
+    const bool plays = team == 0 || team == 1;
+    const std::string key = fmt::format("{} {} {}", team, plays ? number : -1, plays ? -1 : id);
+    const auto named = names_.find({team, number});
+    const std::string label = plays ? label_of(named == names_.end() ? std::string() : named->second, number) : std::string();
+    const std::string whose = team == 1 ? match_.home : team == 0 ? match_.away : team == 3 ? "referee" : "";
+    builder_.add(frame, frame / match_.rate_hz, builder_.person(key, id, label, whose),
+                 values[3] / kMetre + match_.pitch.length / 2, values[4] / kMetre + match_.pitch.width / 2, where_);
+  }
+
+  const std::string& name_;
+  const std::string& metadata_name_;
+  GroundBuilder builder_;
+  GroundMatch match_;
+  std::string where_;
+  std::map<std::pair<int, int>, std::string> names_;  // by team and shirt
+  std::vector<std::string_view> targets_, fields_;
+};
+
+void add_team(pugi::xml_node& root, const char* element, int id, const LineUps& squads, Side side, const GroundRecording& recording,
+              const std::vector<GroundPeriod>& periods) {
+  pugi::xml_node team = root.append_child(element);
+  const std::string& name = squads.teams[side == Side::home ? 0 : 1];
+  // Readers take a bare number for a number, and fail.
+  const std::string shown_name = number_of(name) ? "Team " + name : name;
+  add_text(team, "LongName", shown_name);
+  add_text(team, "ShortName", shown_name);
+  add_text(team, "TeamId", std::to_string(id));
+  pugi::xml_node players = team.append_child("Players");
+  for (const std::int32_t person : squads.of(side)) {
+    const LineUps::Member& member = squads.members[static_cast<std::size_t>(person)];
+    pugi::xml_node player = players.append_child("Player");
+    const std::size_t space = member.name.rfind(' ');
+    const bool two =
+        space != std::string::npos && !number_of(member.name.substr(space + 1)) && !number_of(member.name.substr(0, space));
+    add_text(player, "PlayerId", std::to_string(recording.people[static_cast<std::size_t>(person)].id));
+    add_text(player, "FirstName", two ? member.name.substr(0, space) : "");
+    add_text(player, "LastName", two ? member.name.substr(space + 1) : member.name);
+    add_text(player, "JerseyNo", std::to_string(member.number));
+    add_text(player, "StartFrameCount", std::to_string(periods.front().first_frame));
+    add_text(player, "EndFrameCount", std::to_string(periods.back().last_frame));
+  }
+}
+
+void write_metadata(const GroundMatch& match, const LineUps& squads, const std::string& path) {
+  const std::vector<GroundPeriod> periods = periods_of(match);
+  pugi::xml_document document;
+  pugi::xml_node root = document.append_child("TracabMetaData");
+  root.append_attribute("sVersion") = "1.0";
+  pugi::xml_node head = root.append_child("match");
+  head.append_attribute("iId") = "1";
+  head.append_attribute("dtDate") = "1970-01-01 00:00:00";
+  head.append_attribute("iFrameRateFps") = whole_rate(match.rate_hz, "TRACAB");
+  head.append_attribute("fPitchXSizeMeters") = fmt::format("{:.2f}", match.pitch.length).c_str();
+  head.append_attribute("fPitchYSizeMeters") = fmt::format("{:.2f}", match.pitch.width).c_str();
+  head.append_attribute("fTrackingAreaXSizeMeters") = "unknown";
+  head.append_attribute("fTrackingAreaYSizeMeters") = "unknown";
+  for (int number = 1; number <= 5; ++number) {
+    pugi::xml_node node = head.append_child("period");
+    const auto period = std::find_if(periods.begin(), periods.end(), [&](const GroundPeriod& one) { return one.number == number; });
+    node.append_attribute("iId") = number;
+    node.append_attribute("iStartFrame") = period == periods.end() ? 0 : period->first_frame;
+    node.append_attribute("iEndFrame") = period == periods.end() ? 0 : period->last_frame;
+  }
+  // Readers take teams without players for broken.
+  if (!squads.of(Side::home).empty() && !squads.of(Side::away).empty()) {
+    add_team(root, "HomeTeam", 1, squads, Side::home, match.recording, periods);
+    add_team(root, "AwayTeam", 2, squads, Side::away, match.recording, periods);
+  }
+  WholeFile file(path);
+  file.write(to_text(document));
+  file.finish();
+}
+
+constexpr int code_of(Side side) {
+  return side == Side::home ? 1 : side == Side::away ? 0 : side == Side::referee ? 3 : -1;
+}
+
+}  // namespace
+
+GroundMatch parse_tracab(std::string_view text, const std::string& name, std::string_view metadata,
+                         const std::string& metadata_name) {
+  return Reader(name, metadata_name).read(text, metadata);
+}
+
+std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {
+  if (match.recording.samples.empty()) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
+  const LineUps squads = line_ups_of(match);
+  WholeFile file(path);
+  std::string text;
+  for_each_instant(match.recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample> samples) {
+    fmt::format_to(std::back_inserter(text), "{}:", frame);
+    for (const auto& sample : samples) {
+      const auto person = static_cast<std::size_t>(sample.person);
+      const LineUps::Member& member = squads.members[person];
+      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.2f};", code_of(member.side), match.recording.people[person].id,
+                     member.side == Side::other ? -1 : member.number,
+                     std::lround(kMetre * (sample.place.x() - match.pitch.length / 2)),
+                     std::lround(kMetre * (sample.place.y() - match.pitch.width / 2)), sample.velocity.norm());
+    }
+    text += ":0,0,0,0.00,H,Dead;:\n";
+    if (text.size() < (std::size_t{1} << 20)) return;
+    file.write(text);
+    text.clear();
+  });
+  file.write(text);
+  write_metadata(match, squads, with_ending(path, ".xml"));
+  file.finish();
+  return squads.warnings;
+}
+
+}  // namespace marey::format::match

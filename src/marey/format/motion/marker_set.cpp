@@ -1,0 +1,78 @@
+#include "marey/format/motion/marker_set.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "marey/core/error.h"
+
+namespace marey::format::motion {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const auto comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+std::optional<double> number_in(std::string_view text) {
+  double value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+Vector<3> place_in(const std::vector<std::string_view>& cells, const std::string& path, int line) {
+  if (cells.size() != 4) throw Error("{}:{}: {} values where label,x,y,z are due", path, line, cells.size());
+  Vector<3> place;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto value = number_in(cells[static_cast<std::size_t>(axis) + 1]);
+    if (!value) throw Error("{}:{}: \"{}\" is no length in m", path, line, cells[static_cast<std::size_t>(axis) + 1]);
+    place[axis] = *value;
+  }
+  return place;
+}
+
+}  // namespace
+
+MarkerSet read_marker_set(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error("{}: cannot be read; give a text file with one name a line, or CSV with the header label,x,y,z", path);
+  MarkerSet set;
+  std::set<std::string> known;
+  bool with_places = false;
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.front() == '#') continue;
+    const auto cells = cells_of(text);
+    if (set.labels.empty() && !with_places && cells == std::vector<std::string_view>{"label", "x", "y", "z"}) {
+      with_places = true;
+      continue;
+    }
+    if (with_places) set.places.push_back(place_in(cells, path, number));
+    const std::string label(with_places ? cells.front() : text);
+    if (label.empty()) throw Error("{}:{}: a marker without a name; give it one", path, number);
+    if (!known.insert(label).second)
+      throw Error("{}:{}: the name \"{}\" occurs twice; every marker needs its own", path, number, label);
+    set.labels.push_back(label);
+  }
+  if (set.labels.empty()) throw Error("{}: holds no name; write one a line, or CSV with the header label,x,y,z", path);
+  return set;
+}
+
+}  // namespace marey::format::motion

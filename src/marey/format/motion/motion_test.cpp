@@ -1,0 +1,340 @@
+#include "marey/format/motion/motion.h"
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/format/motion/c3d.h"
+#include "marey/format/motion/motion_csv.h"
+#include "marey/format/motion/trc.h"
+#include "marey/format/take/take_file.h"
+
+#include "support/data.h"
+#include "support/files.h"
+
+namespace marey::format::motion {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string error_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A take with gaps, whose values are floats of whole micrometres.
+Take walk(int markers = 5, int frames = 40, int first = 3) {
+  Take take;
+  take.header.name = "walk";
+  take.header.rate_hz = 120;
+  for (int m = 1; m <= markers; ++m) take.tracks.push_back({TrackId(m), fmt::format("marker, \"{}\"", m)});
+  for (int i = 0; i < frames; ++i) {
+    TakeFrame frame;
+    frame.index = first + i;
+    frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / 120);
+    for (int m = 1; m <= markers; ++m) {
+      if ((i + m) % 7 == 0) continue;
+      TakePoint point;
+      point.track = TrackId(m);
+      point.position = {0.25 * m, -0.5 + 0.015625 * i, 1.0 / 1024 * (i * m)};
+      point.provenance = (i + m) % 5 == 0 ? Provenance::filled : Provenance::measured;
+      if (point.provenance == Provenance::measured) {
+        point.cameras = static_cast<CameraMask>(1 + (i + m) % 127);
+        point.residual_m = 0.0005;
+      }
+      frame.points.push_back(point);
+    }
+    take.frames.push_back(frame);
+  }
+  return take;
+}
+
+struct Read {
+  MotionInfo info;
+  std::vector<TakeFrame> frames;
+  std::vector<std::string> warnings;
+};
+
+Read read_all(MotionReader& reader) {
+  Read read;
+  while (auto frame = reader.next()) read.frames.push_back(std::move(*frame));
+  read.info = reader.info();
+  read.warnings = reader.warnings();
+  return read;
+}
+
+Read read_all(const std::string& path, UpAxis up = UpAxis::z) {
+  return read_all(*open_motion(path, motion_format_of_content(path).value(), up));
+}
+
+void convert(const std::string& from, const std::string& to, MotionFormat format, UpAxis from_up = UpAxis::z,
+             UpAxis to_up = UpAxis::z) {
+  const MotionFormat from_format = motion_format_of_content(from).value();
+  const MotionPlan plan = plan_of(*open_motion(from, from_format, from_up), from);
+  const auto reader = open_motion(from, from_format, from_up);
+  const auto writer = create_motion(to, format, plan, to_up);
+  while (const auto frame = reader->next()) writer->write(*frame);
+  writer->finish();
+}
+
+using Place = std::pair<std::int64_t, std::string>;
+std::map<Place, TakePoint> by_label(const Read& read) {
+  std::map<TrackId, std::string> labels;
+  for (const TakeTrack& track : read.info.tracks) labels[track.id] = track.label;
+  std::map<Place, TakePoint> points;
+  for (const TakeFrame& frame : read.frames) {
+    for (const TakePoint& point : frame.points) points[{frame.index, labels[point.track]}] = point;
+  }
+  return points;
+}
+
+/// The same markers at the same places, to `tolerance_m`.
+void expect_same(const Read& a, const Read& b, double tolerance_m) {
+  const auto points = by_label(a), others = by_label(b);
+  ASSERT_FALSE(points.empty());
+  ASSERT_EQ(points.size(), others.size());
+  for (const auto& [place, point] : points) {
+    const auto found = others.find(place);
+    ASSERT_NE(found, others.end()) << place.first << " " << place.second;
+    ASSERT_LE((point.position - found->second.position).cwiseAbs().maxCoeff(), tolerance_m) << place.first << " " << place.second;
+  }
+}
+
+class Motion : public testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
+  const std::string take = folder_ / "walk.marey";
+  take::write_take(take, walk());
+  const Read truth = read_all(take);
+  const std::pair<MotionFormat, const char*> formats[] = {{MotionFormat::c3d, "walk.c3d"},
+                                                          {MotionFormat::trc, "walk.trc"},
+                                                          {MotionFormat::csv, "walk.csv"},
+                                                          {MotionFormat::motive, "walk_motive.csv"},
+                                                          {MotionFormat::take, "copy.marey"}};
+  for (const auto& [format, name] : formats) {
+    SCOPED_TRACE(name);
+    const std::string path = folder_ / name;
+    convert(take, path, format);
+    ASSERT_EQ(motion_format_of_content(path), format);
+    const Read read = read_all(path);
+    EXPECT_TRUE(read.warnings.empty()) << read.warnings.front();
+    EXPECT_DOUBLE_EQ(read.info.header.rate_hz, 120);
+    ASSERT_EQ(read.info.tracks.size(), 5U);
+    EXPECT_EQ(read.info.tracks[1].label, "marker, \"2\"");
+    expect_same(truth, read, 1e-9);
+    EXPECT_EQ(read.frames.front().index, 3);
+    EXPECT_EQ(read.frames.back().index, 42);
+    EXPECT_NEAR(seconds(read.frames.front().time), 3.0 / 120, 1e-6);
+    // And on from there, with the other axis up.
+    const std::string turned = folder_ / (std::string("turned_") + name), back = folder_ / "back.csv";
+    if (format == MotionFormat::take) continue;
+    convert(path, turned, format, UpAxis::z, UpAxis::y);
+    const auto first = read_all(turned).frames.front().points.front().position;
+    const auto plain = read.frames.front().points.front().position;
+    EXPECT_NEAR(first.y(), plain.z(), 1e-9) << "what was up is y now";
+    EXPECT_NEAR(first.z(), -plain.y(), 1e-9);
+    convert(turned, back, MotionFormat::csv, UpAxis::y, UpAxis::z);
+    expect_same(truth, read_all(back), 1e-9);
+  }
+}
+
+TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
+  const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
+  take::write_take(take, walk());
+  convert(take, path, MotionFormat::c3d);
+  const auto truth = by_label(read_all(take)), read = by_label(read_all(path));
+  for (const auto& [place, point] : truth) {
+    const TakePoint& found = read.at(place);
+    EXPECT_EQ(found.provenance, point.provenance);
+    EXPECT_EQ(found.cameras, point.cameras);
+    ASSERT_EQ(found.residual_m.has_value(), point.residual_m.has_value());
+    EXPECT_NEAR(found.residual_m.value_or(0), point.residual_m.value_or(0), 0.00003);
+  }
+}
+
+TEST_F(Motion, C3dHoldsMoreThan255Markers) {
+  const std::string take = folder_ / "many.marey", path = folder_ / "many.c3d";
+  take::write_take(take, walk(600, 5));
+  convert(take, path, MotionFormat::c3d);
+  const Read read = read_all(path);
+  ASSERT_EQ(read.info.tracks.size(), 600U);
+  EXPECT_EQ(read.info.tracks[599].label, "marker, \"600\"");
+  expect_same(read_all(take), read, 1e-9);
+}
+
+TEST_F(Motion, C3dHoldsMoreThan65535Frames) {
+  const std::string take = folder_ / "long.marey", path = folder_ / "long.c3d";
+  for (const int first : {0, 70'000}) {
+    take::write_take(take, walk(1, 70'001, first));
+    convert(take, path, MotionFormat::c3d);
+    const Read read = read_all(path);
+    EXPECT_EQ(read.frames.size(), 70'001U);
+    EXPECT_EQ(read.frames.front().index, first);
+    expect_same(read_all(take), read, 1e-9);
+  }
+}
+
+TEST_F(Motion, C3dThatIsCutOffIsRefused) {
+  const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
+  take::write_take(take, walk());
+  convert(take, path, MotionFormat::c3d);
+  const std::string whole = test::read_file(path);
+  for (const double share : {0.0, 0.01, 0.2, 0.5, 0.99}) {
+    test::write_file(path, whole);
+    test::cut_file(path, share);
+    EXPECT_NE(error_of([&] { read_all(*open_c3d(path)); }), "no error") << share;
+  }
+}
+
+TEST_F(Motion, EmptyTakesCanBeWritten) {
+  const std::string take = folder_ / "empty.marey";
+  Take empty;
+  empty.header.rate_hz = 50;
+  take::write_take(take, empty);
+  for (const char* name : {"empty.c3d", "empty.trc", "empty.csv"}) {
+    const std::string path = folder_ / name;
+    convert(take, path, motion_format_of_name(name).value());
+    EXPECT_TRUE(read_all(path).frames.empty()) << name;
+  }
+}
+
+TEST_F(Motion, GapsOfMillionsOfFramesAreAMistake) {
+  const std::string path = folder_ / "slip.csv";
+  test::write_file(path, "frame,time,id,label,x,y,z\n0,0,1,a,1,2,3\n400000000,1,1,a,1,2,3\n");
+  EXPECT_NE(error_of([&] { plan_of(*open_motion(path, MotionFormat::csv), path); }).find("a number must be wrong"),
+            std::string::npos);
+}
+
+// ----- text
+
+TEST(Trc, ReadsWhatProgramsWrite) {
+  const std::string text =
+      "PathFileType\t4\t(X/Y/"
+      "Z)\ta.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n"
+      "50\t50\t3\t2\tm\t50\t1\t3\nFrame#\tTime\tA\t\t\tB\t\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n1\t0\t1\t2\t3\t\t\t\n2\t0."
+      "02\t1\t2\t3\t4\t5\t6\r\n3\t0.04\tNaN\tNaN\tNaN";
+  const Read read = read_all(*read_trc(text + "\t7\t8\t9", "a.trc"));
+  EXPECT_TRUE(read.warnings.empty());
+  ASSERT_EQ(read.frames.size(), 3U);
+  ASSERT_EQ(read.frames[0].points.size(), 1U);
+  EXPECT_EQ(read.frames[0].points[0].position, Vector<3>(1, 2, 3));
+  ASSERT_EQ(read.frames[2].points.size(), 1U);
+  EXPECT_EQ(read.frames[2].points[0].track, TrackId(2));
+  EXPECT_NEAR(seconds(read.frames[1].time), 0.02, 1e-12);
+  EXPECT_NE(error_of([&] { read_all(*read_trc(text, "a.trc")); }).find("a.trc:9: ends within its row"), std::string::npos);
+}
+
+TEST(Trc, SaysWhatIsWrongAndWhere) {
+  const std::string head = "PathFileType,4,(X/Y/Z),a\nDataRate,NumFrames,NumMarkers,Units\n";
+  const std::string names = "Frame#,Time,A,,\n,,X1,Y1,Z1\n";
+  EXPECT_NE(error_of([&] { read_trc("hello", "a"); }).find("a:1: begins not with PathFileType"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_trc(head, "a"); }).find("cut off"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_trc(head + "0,1,1,mm\n" + names, "a"); }).find("a:3: DataRate is \"0\""), std::string::npos);
+  const auto rows = [&](const std::string& text) {
+    return error_of([&] { read_all(*read_trc(head + "10,1,1,mm\n" + names + text, "a")); });
+  };
+  EXPECT_NE(rows("1,0,1,x,3\n").find("a:6: \"x\" in column 4 is no number"), std::string::npos);
+  EXPECT_NE(rows("1,0,1,,3\n").find("2 of its 3 coordinates"), std::string::npos);
+  EXPECT_NE(rows("2,0,1,2,3\n2,0,1,2,3\n").find("must come in order"), std::string::npos);
+  EXPECT_NE(rows("one,0,1,2,3\n").find("no number of a frame"), std::string::npos);
+}
+
+TEST(TidyCsv, TakesRowsInAnyOrderAndColumnsInAnyOrder) {
+  const Read read = read_all(*read_tidy_csv("label,z,y,x,frame,note\nb,3,2,1,1,?\na,3,2,1,0,?\nb,6,5,4,0,\"x, y\"\n", "t"));
+  ASSERT_EQ(read.frames.size(), 2U);
+  EXPECT_EQ(read.frames[0].points.size(), 2U);
+  EXPECT_EQ(read.frames[1].points[0].position, Vector<3>(1, 2, 3));
+  ASSERT_EQ(read.info.tracks.size(), 2U);
+}
+
+TEST(TidyCsv, SaysWhatIsWrongAndWhere) {
+  const auto said = [](const std::string& text) { return error_of([&] { read_all(*read_tidy_csv(text, "t")); }); };
+  EXPECT_NE(said("frame,id,x,y\n").find("t:1: has no column \"z\""), std::string::npos);
+  EXPECT_NE(said("frame,x,y,z\n").find("neither a column \"id\" nor \"label\""), std::string::npos);
+  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,oops\n").find("t:2: z is \"oops\""), std::string::npos);
+  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,3\n0,1,1,2,3\n").find("stands twice in frame 0"), std::string::npos);
+  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,3\n1,1,2").find("it is cut off"), std::string::npos);
+}
+
+TEST(MotiveCsv, PassesOverBodiesAndRotations) {
+  const Read read = read_all(*read_motive_csv(
+      "Format Version,1.23,Take Name,t,Export Frame Rate,100.0,Total Exported Frames,2,Length Units,Millimeters\n\n"
+      ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Marker,Marker,Marker\n"
+      ",Name,B,B,B,B,B,B,B,\"a\",a,a\n,ID,1,1,1,1,1,1,1,2,2,2\n"
+      ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Position,Position,Position\n"
+      "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,X,Y,Z\n0,0,1,2,3,4,5,6,7,1000,2000,3000\n1,0.01,1,2,3,4,5,6,7,,,\n",
+      "m"));
+  ASSERT_EQ(read.info.tracks.size(), 1U);
+  EXPECT_EQ(read.info.tracks[0].label, "a");
+  ASSERT_EQ(read.frames.size(), 2U);
+  EXPECT_EQ(read.frames[0].points[0].position, Vector<3>(1, 2, 3));
+  EXPECT_TRUE(read.frames[1].points.empty());
+}
+
+// ----- files of other systems
+
+Read mocap_file(const std::string& name) {
+  return read_all(test::data("mocap_files/" + name));
+}
+
+#define REQUIRE_MOCAP_FILES() \
+  if (!fs::exists(test::data("mocap_files"))) GTEST_SKIP() << test::data("mocap_files") << " is not here"
+
+TEST(MocapFiles, EveryProcessorsTwinsAreEqual) {
+  REQUIRE_MOCAP_FILES();
+  const std::string folder = "kineticstoolkit/c3d_test_suite/Sample02/";
+  const Read real = mocap_file(folder + "pc_real.c3d");
+  EXPECT_EQ(real.frames.size(), 89U);
+  EXPECT_EQ(real.info.tracks.size(), 36U);
+  EXPECT_EQ(real.info.tracks[0].label, "RFT1");
+  expect_same(real, mocap_file(folder + "dec_real.c3d"), 0);
+  expect_same(real, mocap_file(folder + "sgi_real.c3d"), 0);
+  for (const char* name : {"pc_int.c3d", "dec_int.c3d", "sgi_int.c3d"}) expect_same(real, mocap_file(folder + name), 0.00028119);
+}
+
+TEST(MocapFiles, HeadersAtOddPlacesReadTheSame) {
+  REQUIRE_MOCAP_FILES();
+  const std::string folder = "kineticstoolkit/c3d_test_suite/";
+  const Read plain = mocap_file(folder + "Sample01/Eb015pi.c3d");
+  for (const char* name : {"Sample01/Eb015vi.c3d", "Sample08/EB015PI.c3d", "Sample08/TESTAPI.c3d", "Sample08/TESTBPI.c3d",
+                           "Sample08/TESTCPI.c3d", "Sample08/TESTDPI.c3d"}) {
+    expect_same(plain, mocap_file(folder + name), 0);
+  }
+  for (const char* name : {"Sample01/Eb015pr.c3d", "Sample01/Eb015vr.c3d"})
+    expect_same(plain, mocap_file(folder + name), 0.0000834);
+}
+
+TEST(MocapFiles, TheRestReadsAsItsMakersWroteIt) {
+  REQUIRE_MOCAP_FILES();
+  const std::tuple<const char*, std::size_t, std::size_t, double> files[] = {
+      {"auto_marker_label/data/S09_KneeltoRun02.c3d", 1479, 75, 240},
+      {"kineticstoolkit/c3d_test_suite/ezc3d/BTS.c3d", 675, 22, 100},
+      {"kineticstoolkit/c3d_test_suite/ezc3d/Qualisys.c3d", 340, 55, 200},
+      {"kineticstoolkit/kinematics_racing_static.c3d", 700, 41, 69.9},
+      {"kineticstoolkit/kinematics_tennis_serve.c3d", 1092, 39, 50},
+      {"pyomeca/markers.trc", 93, 51, 100}};
+  for (const auto& [name, frames, tracks, rate] : files) {
+    const Read read = mocap_file(name);
+    EXPECT_EQ(read.frames.size(), frames) << name;
+    EXPECT_EQ(read.info.tracks.size(), tracks) << name;
+    EXPECT_NEAR(read.info.header.rate_hz, rate, 1e-5) << name;
+  }
+  // The C3D with its CSV twin, which has six digits.
+  expect_same(mocap_file("pyomeca/markers_analogs.c3d"), mocap_file("pyomeca/markers.csv"), 0.000006);
+}
+
+}  // namespace
+}  // namespace marey::format::motion

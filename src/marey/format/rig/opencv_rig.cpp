@@ -1,0 +1,226 @@
+// OpenCV has a way to keep matrices (cv::FileStorage) and no agreed names. Read are the names that its own samples and most
+// programs write: one camera (camera_matrix, distortion_coefficients), a stereo pair (M1 D1 M2 D2 with R T, in the same file or in
+// extrinsics.yml beside it), and a list `cameras` of the former, which is what is written.
+#include <array>
+#include <filesystem>
+#include <initializer_list>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+#include <opencv2/core/persistence.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::rig {
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+/// The first of these that is there.
+cv::FileNode child(const cv::FileNode& node, Names names) {
+  for (const char* name : names) {
+    if (const cv::FileNode found = node[name]; !found.empty()) return found;
+  }
+  return {};
+}
+
+/// Numbers, whether a matrix or a list of numbers (of lists).
+std::optional<std::vector<double>> numbers(const cv::FileNode& node) {
+  std::vector<double> values;
+  if (node.isMap()) {
+    cv::Mat matrix;
+    node >> matrix;
+    if (matrix.channels() != 1 || matrix.empty()) return std::nullopt;
+    matrix.convertTo(matrix, CV_64F);
+    for (int i = 0; i < matrix.rows; ++i) values.insert(values.end(), matrix.ptr<double>(i), matrix.ptr<double>(i) + matrix.cols);
+    return values;
+  }
+  if (!node.isSeq()) return std::nullopt;
+  for (const cv::FileNode& each : node) {
+    if (each.isInt() || each.isReal()) {
+      values.push_back(each.real());
+    } else if (const auto row = each.isSeq() ? numbers(each) : std::nullopt) {
+      values.insert(values.end(), row->begin(), row->end());
+    } else {
+      return std::nullopt;
+    }
+  }
+  return values;
+}
+
+std::vector<double> as_many(const cv::FileNode& node, std::size_t count, const std::string& path, const std::string& what) {
+  const auto values = numbers(node);
+  if (!values || values->size() != count) throw Error("{}: {} must hold {} numbers", path, what, count);
+  return *values;
+}
+
+Matrix<3> matrix_of(const cv::FileNode& node, const std::string& path, const std::string& what) {
+  const auto values = as_many(node, 9, path, what);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+}
+
+/// A rotation matrix or Rodrigues' vector.
+Matrix<3> rotation_at(const cv::FileNode& node, const std::string& path) {
+  const auto values = numbers(node);
+  if (values && values->size() == 3) return geometry::rotation_from({(*values)[0], (*values)[1], (*values)[2]});
+  return matrix_of(node, path, "the rotation");
+}
+
+geometry::Lens lens_at(const cv::FileNode& K_node, const cv::FileNode& D_node, bool fisheye, const std::string& path) {
+  const Matrix<3> K = matrix_of(K_node, path, "the camera matrix");
+  auto k = D_node.empty() ? std::vector<double>{} : numbers(D_node).value_or(std::vector<double>(99));
+  while (!k.empty() && k.back() == 0) k.pop_back();  // 12 and 14 coefficients, the last of which are mostly not used
+  const auto filled = [&](auto lens) -> Lens {
+    if (k.size() > lens.distortion.size()) {
+      throw Error("{}: {} coefficients of distortion; the model {} has {} (thin prisms and tilted sensors are not known)", path,
+                  k.size(), lens.name, lens.distortion.size());
+    }
+    lens.focal = {K(0, 0), K(1, 1)};
+    lens.principal = {K(0, 2), K(1, 2)};
+    std::copy(k.begin(), k.end(), lens.distortion.begin());
+    return lens;
+  };
+  return fisheye ? filled(geometry::FisheyeLens{}) : filled(geometry::BrownLens{});
+}
+
+std::optional<cv::Size> size_at(const cv::FileNode& node) {
+  const cv::FileNode width = child(node, {"image_width", "imageWidth", "width"}),
+                     height = child(node, {"image_height", "imageHeight", "height"});
+  if (!width.empty() && !height.empty()) return cv::Size(static_cast<int>(width.real()), static_cast<int>(height.real()));
+  const auto both = numbers(child(node, {"image_size", "imageSize", "size", "image_resolution"}));
+  if (!both || both->size() != 2) return std::nullopt;
+  return cv::Size(cv::saturate_cast<int>((*both)[0]), cv::saturate_cast<int>((*both)[1]));
+}
+
+RigCamera camera_at(const cv::FileNode& node, const std::string& path) {
+  RigCamera camera;
+  if (const cv::FileNode name = child(node, {"name", "camera_name"}); name.isString()) camera.name = name.string();
+  camera.size = size_at(node);
+  const std::string model = child(node, {"distortion_model", "model", "camera_model"}).isString()
+                                ? child(node, {"distortion_model", "model", "camera_model"}).string()
+                                : std::string();
+  const bool fisheye = model == "fisheye" || model == "equidistant" || !child(node, {"fisheye_model"}).empty();
+  const cv::FileNode K = child(node, {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "mtx", "intrinsic_matrix"});
+  if (!K.empty()) {
+    camera.lens =
+        lens_at(K, child(node, {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "dist"}),
+                fisheye, path);
+  }
+  const cv::FileNode R = child(node, {"rotation", "R", "rvec"}), t = child(node, {"translation", "T", "t", "tvec"});
+  if (!R.empty() && !t.empty()) {
+    const auto at = as_many(t, 3, path, "the translation");
+    camera.camera_from_world = Rigid3{rotation_at(R, path), {at[0], at[1], at[2]}};
+  }
+  if (const cv::FileNode error = child(node, {"avg_reprojection_error", "rms", "reprojection_error"}); error.isReal())
+    camera.rms_px = error.real();
+  return camera;
+}
+
+cv::FileStorage opened(const std::string& path) {
+  cv::FileStorage file;
+  if (!file.open(path, cv::FileStorage::READ)) throw Error("{}: OpenCV cannot read this file", path);
+  return file;
+}
+
+Rig stereo(const cv::FileStorage& file, const std::string& path) {
+  Rig rig;
+  rig.cameras.resize(2);
+  const cv::FileNode root = file.root();
+  const std::array<Names, 2> K{
+      {{"M1", "K1", "cameraMatrix1", "camera_matrix_1"}, {"M2", "K2", "cameraMatrix2", "camera_matrix_2"}}};
+  const std::array<Names, 2> D{{{"D1", "distCoeffs1", "dist_coeffs_1"}, {"D2", "distCoeffs2", "dist_coeffs_2"}}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    rig.cameras[i].name = i == 0 ? "left" : "right";
+    rig.cameras[i].size = size_at(root);
+    rig.cameras[i].lens = lens_at(child(root, K[i]), child(root, D[i]), false, path);
+  }
+  std::optional<cv::FileStorage> beside;
+  cv::FileNode poses = root;
+  if (child(root, {"R"}).empty()) {
+    const auto name = std::filesystem::path(path).parent_path() / ("extrinsics" + std::filesystem::path(path).extension().string());
+    if (std::filesystem::exists(name)) poses = beside.emplace(opened(name.string())).root();
+  }
+  if (child(poses, {"R"}).empty() || child(poses, {"T"}).empty()) return rig;
+  const auto t = as_many(child(poses, {"T"}), 3, path, "T");
+  rig.cameras[0].camera_from_world = Rigid3{};
+  rig.cameras[1].camera_from_world = Rigid3{rotation_at(child(poses, {"R"}), path), {t[0], t[1], t[2]}};
+  return rig;
+}
+
+cv::Mat as_mat(const Eigen::MatrixXd& m) {
+  cv::Mat result(static_cast<int>(m.rows()), static_cast<int>(m.cols()), CV_64F);
+  for (int i = 0; i < result.rows; ++i) {
+    for (int j = 0; j < result.cols; ++j) result.at<double>(i, j) = m(i, j);
+  }
+  return result;
+}
+
+void write_camera(cv::FileStorage& file, const RigCamera& camera) {
+  file << "name" << camera.name;
+  if (camera.size) file << "image_width" << camera.size->width << "image_height" << camera.size->height;
+  if (camera.lens) {
+    // OpenCV has no such lens as Tsai's.
+    geometry::Lens lens = *camera.lens;
+    if (std::holds_alternative<geometry::TsaiLens>(lens)) lens = as_brown(camera, geometry::BrownLens::coefficients, "OpenCV");
+    file << "camera_matrix"
+         << as_mat(Matrix<3>{{geometry::focal_of(lens).x(), 0, geometry::principal_of(lens).x()},
+                             {0, geometry::focal_of(lens).y(), geometry::principal_of(lens).y()},
+                             {0, 0, 1}});
+    const bool fisheye = std::holds_alternative<geometry::FisheyeLens>(lens);
+    file << "distortion_model" << (fisheye ? "fisheye" : "rational_polynomial");
+    file << "distortion_coefficients"
+         << std::visit(
+                [](const auto& model) {
+                  return as_mat(Eigen::Map<const Eigen::RowVectorXd>(model.distortion.data(), std::ssize(model.distortion)));
+                },
+                lens);
+  }
+  if (camera.camera_from_world) {
+    file << "rotation" << as_mat(camera.camera_from_world->rotation);
+    file << "translation" << as_mat(camera.camera_from_world->translation);
+  }
+}
+
+}  // namespace
+
+Rig read_opencv_rig(const std::string& path) try {
+  const cv::FileStorage file = opened(path);
+  const cv::FileNode root = file.root();
+  Rig rig;
+  if (const cv::FileNode cameras = child(root, {"cameras"}); cameras.isSeq()) {
+    for (const cv::FileNode& each : cameras) rig.cameras.push_back(camera_at(each, path));
+  } else if (!child(root, {"M1", "K1", "cameraMatrix1", "camera_matrix_1"}).empty()) {
+    rig = stereo(file, path);
+  } else {
+    rig.cameras.push_back(camera_at(root, path));
+    if (!rig.cameras.front().lens) throw Error("{}: there is no camera_matrix in it, nor M1 and M2, nor a list of cameras", path);
+  }
+  check_imported(rig, path);
+  return rig;
+} catch (const cv::Exception& error) {
+  throw Error("{}: OpenCV cannot read this file ({})", path, error.err);
+}
+
+void write_opencv_rig(const Rig& rig, const std::string& path) {
+  const bool json = path.ends_with(".json");
+  cv::FileStorage file(json ? ".json" : ".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  if (rig.cameras.size() == 1) {
+    write_camera(file, rig.cameras.front());  // as OpenCV's own calibration sample
+  } else {
+    file << "cameras"
+         << "[";
+    for (const RigCamera& camera : rig.cameras) {
+      file << "{";
+      write_camera(file, camera);
+      file << "}";
+    }
+    file << "]";
+  }
+  WholeFile whole(path);
+  whole.write(file.releaseAndGetString());
+  whole.finish();
+}
+
+}  // namespace marey::format::rig

@@ -1,0 +1,240 @@
+// A rig file is read in one walk over its parsed tables. Each problem is noted with its line and the walk goes on, so that
+// the user hears of all of them at once; only a text that is no TOML at all ends it early.
+#include "marey/format/rig/rig_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include "marey/core/error.h"
+#include "marey/format/read_file.h"
+#include "marey/format/rig/rig_section.h"
+
+namespace marey::format::rig {
+namespace {
+
+constexpr double kLargestPicture = 1e5;  // px, of either side
+
+bool whole(double value) {
+  return value == std::floor(value);
+}
+
+std::optional<cv::Size> read_size(const Section& section) {
+  const auto size = section.numbers("size", 2, 2, "[width, height] in px");
+  if (!size) return std::nullopt;
+  for (const double side : *size) {
+    if (side >= 1 && side <= kLargestPicture && whole(side)) continue;
+    section.problem("size", fmt::format("size is [{}, {}]; both must be positive whole numbers of px", (*size)[0], (*size)[1]));
+    return std::nullopt;
+  }
+  return cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1]));
+}
+
+std::optional<cv::Rect> read_region(const Section& section) {
+  const auto r = section.numbers("region", 4, 4, "[x, y, width, height] in px");
+  if (!r) return std::nullopt;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (whole((*r)[i]) && (*r)[i] >= (i < 2 ? 0 : 1) && (*r)[i] <= kLargestPicture) continue;
+    section.problem("region", fmt::format("region is [{}]; it must be whole px, the corner not negative and the sides positive",
+                                          fmt::join(*r, ", ")));
+    return std::nullopt;
+  }
+  return cv::Rect(static_cast<int>((*r)[0]), static_cast<int>((*r)[1]), static_cast<int>((*r)[2]), static_cast<int>((*r)[3]));
+}
+
+geometry::Lens blank_lens(const Section& section) {
+  const auto model = section.text("model");
+  if (!model || *model == geometry::BrownLens::name) return geometry::BrownLens{};
+  if (*model == geometry::FisheyeLens::name) return geometry::FisheyeLens{};
+  if (*model == geometry::TsaiLens::name) return geometry::TsaiLens{};
+  section.problem("model", fmt::format("model \"{}\" is unknown; there are: brown, fisheye, tsai", shown(*model)));
+  return geometry::BrownLens{};
+}
+
+std::optional<geometry::Lens> read_lens(const Section& section) {
+  if (!section.has("focal") && !section.has("principal") && !section.has("distortion")) {
+    blank_lens(section);  // a model alone says nothing, but must be one
+    return std::nullopt;
+  }
+  geometry::Lens lens = blank_lens(section);
+  const auto focal = section.numbers("focal", 2, 2, "[fx, fy] in px");
+  const auto principal = section.numbers("principal", 2, 2, "[cx, cy] in px");
+  if (!section.has("focal")) section.problem("focal", "a lens is given without its focal length; add focal = [fx, fy] in px");
+  if (!section.has("principal"))
+    section.problem("principal", "a lens is given without its principal point; add principal = [cx, cy] in px");
+  for (const double f : focal.value_or(std::vector<double>{})) {
+    if (f > 0) continue;
+    section.problem("focal", fmt::format("focal length is {}; it must be positive", f));
+    return std::nullopt;
+  }
+  return std::visit(
+      [&](auto model) -> std::optional<geometry::Lens> {
+        const auto k =
+            section.numbers("distortion", 0, model.distortion.size(),
+                            fmt::format("at most {} finite numbers for the model \"{}\"", model.distortion.size(), model.name));
+        if (!focal || !principal || (section.has("distortion") && !k)) return std::nullopt;
+        model.focal = {(*focal)[0], (*focal)[1]};
+        model.principal = {(*principal)[0], (*principal)[1]};
+        if (k) std::copy(k->begin(), k->end(), model.distortion.begin());
+        return model;
+      },
+      lens);
+}
+
+std::optional<Rigid3> read_pose(const Section& section) {
+  const auto rotation = section.rotation("rotation");
+  const auto translation = section.numbers("translation", 3, 3, "[x, y, z] in m");
+  if (section.has("rotation") != section.has("translation")) {
+    section.problem(section.has("rotation") ? "rotation" : "translation",
+                    fmt::format("{0} is missing: a pose is rotation and translation together",
+                                section.has("rotation") ? "translation" : "rotation"));
+  }
+  if (!rotation || !translation) return std::nullopt;
+  return Rigid3{*rotation, {(*translation)[0], (*translation)[1], (*translation)[2]}};
+}
+
+/// Sources lie beside the rig file. What names a protocol ("rtsp://…") is no path.
+std::string beside(const std::string& folder, const std::string& source) {
+  if (folder.empty() || source.empty() || source.find("://") != std::string::npos) return source;
+  return (std::filesystem::path(folder) / source).lexically_normal().string();
+}
+
+void check_name(const Section& section, const std::string& name) {
+  if (name.empty()) section.problem("name", "its name is missing or empty; add name = \"…\"");
+  if (std::any_of(name.begin(), name.end(), [](char c) {
+        return static_cast<unsigned char>(c) < ' ' || c == '\x7f' || std::string_view("/\\,=\"").find(c) != std::string_view::npos;
+      })) {
+    section.problem("name", "its name may hold no / \\ , = \" and no control character: it names files and stands in tables");
+  }
+}
+
+RigCamera read_camera(Section& section, int index, const std::string& folder) {
+  RigCamera camera;
+  camera.name = section.text("name").value_or("");
+  section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", shown(camera.name)));
+  section.only({"name", "source", "detections", "region", "rate", "offset_s", "size", "model", "focal", "principal", "distortion",
+                "rotation", "translation", "ground_from_image", "rms_px"});
+  check_name(section, camera.name);
+  camera.source = beside(folder, section.text("source").value_or(""));
+  camera.detections = beside(folder, section.text("detections").value_or(""));
+  if (!camera.source.empty() && !camera.detections.empty()) {
+    section.problem("detections", "it has both a source and detections; keep one of them");
+  }
+  camera.region = read_region(section);
+  camera.rate_hz = section.positive("rate");
+  camera.offset_s = section.number("offset_s");
+  camera.size = read_size(section);
+  if (camera.region && camera.size && camera.region->size() != *camera.size) {
+    section.problem("size", fmt::format("size is {} x {} and its region is {} x {}; they must agree", camera.size->width,
+                                        camera.size->height, camera.region->width, camera.region->height));
+  }
+  if (camera.region && !section.has("size")) camera.size = camera.region->size();
+  camera.lens = read_lens(section);
+  camera.camera_from_world = read_pose(section);
+  camera.ground_from_image = section.invertible("ground_from_image");
+  camera.rms_px = section.number("rms_px");
+  return camera;
+}
+
+/// World with y up from the world with z up.
+Rigid3 y_up_from_z_up() {
+  Rigid3 turn;
+  turn.rotation << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  return turn;
+}
+
+/// Reads [world]; true where y is up.
+bool read_world(const toml::node& node, Problems& problems, Rig& rig) {
+  if (!node.is_table()) {
+    problems.add(node.source(), "world must be a table: [world]");
+    return false;
+  }
+  const Section section(*node.as_table(), "world", problems);
+  section.only({"up", "ground_from_world"});
+  rig.ground_from_world = section.invertible("ground_from_world");
+  const std::string up = section.text("up").value_or("z");
+  if (up != "y" && up != "z") section.problem("up", fmt::format("up is \"{}\"; it must be \"z\" or \"y\"", shown(up)));
+  return up == "y";
+}
+
+Rig::Calibration read_calibration(const toml::node& node, Problems& problems) {
+  Rig::Calibration calibration;
+  if (!node.is_table()) {
+    problems.add(node.source(), "calibration must be a table: [calibration]");
+    return calibration;
+  }
+  const Section section(*node.as_table(), "calibration", problems);
+  section.only({"method", "mean_px", "rms_px", "inliers", "observations", "grade"});
+  calibration.method = section.text("method").value_or("");
+  calibration.mean_px = section.number("mean_px");
+  calibration.rms_px = section.number("rms_px");
+  calibration.inliers = section.count("inliers");
+  calibration.observations = section.count("observations");
+  calibration.grade = section.text("grade");
+  return calibration;
+}
+
+void read_cameras(const toml::node& node, const std::string& folder, Problems& problems, Rig& rig) {
+  const toml::array* tables = node.as_array();
+  if (tables == nullptr) return problems.add(node.source(), "camera must be written [[camera]], once for each camera");
+  std::set<std::string> names;
+  for (const toml::node& each : *tables) {
+    if (!each.is_table()) {
+      problems.add(each.source(), "camera must be written [[camera]], once for each camera");
+      continue;
+    }
+    Section section(*each.as_table(), "camera", problems);
+    RigCamera camera = read_camera(section, static_cast<int>(rig.cameras.size()), folder);
+    if (!camera.name.empty() && !names.insert(camera.name).second) {
+      section.problem("name", "another camera has this name; each needs its own");
+    }
+    rig.cameras.push_back(std::move(camera));
+  }
+}
+
+}  // namespace
+
+Rig parse_rig(std::string_view text, const std::string& name, const std::string& folder) {
+  toml::table file;
+  try {
+    file = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw Error("{}:{}: {}", name, std::max<unsigned>(1, error.source().begin.line), shown(error.description(), 200));
+  }
+  Problems problems(name);
+  Rig rig;
+  bool y_up = false;
+  for (const auto& [key, value] : file) {
+    if (key == "world") {
+      y_up = read_world(value, problems, rig);
+    } else if (key == "calibration") {
+      rig.calibration = read_calibration(value, problems);
+    } else if (key == "camera") {
+      read_cameras(value, folder, problems, rig);
+    } else {
+      problems.add(key.source(), fmt::format("unknown key \"{}\"; there are: world, calibration, camera", shown(key.str())));
+    }
+  }
+  if (!file.contains("camera")) problems.add({}, "there is no camera; add a [[camera]] for each");
+  problems.throw_if_any();
+  if (y_up) {
+    for (RigCamera& camera : rig.cameras) {
+      if (camera.camera_from_world) *camera.camera_from_world = *camera.camera_from_world * y_up_from_z_up();
+    }
+  }
+  return rig;
+}
+
+Rig read_rig(const std::string& path) {
+  const std::string text = read_file(path);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return parse_rig(text, path, folder.empty() ? "." : folder);
+}
+
+}  // namespace marey::format::rig

@@ -1,0 +1,232 @@
+#include "marey/format/rig/rig_file.h"
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/format/rig/rig_sources.h"
+
+#include "support/files.h"
+
+namespace marey::format::rig {
+namespace {
+
+const std::string kExample = R"([world]
+up = "z"                                   # metres, right-handed
+[[camera]]
+name = "left"
+source = "left_camera.mp4"                 # or detections = "left.txt"; region = [x, y, width, height]; rate = 25.0
+offset_s = 0.25                            # add to this camera's times to get the rig's
+size = [3072, 1728]
+model = "brown"                            # brown | fisheye | tsai
+focal = [2123.1, 2123.1]
+principal = [1642.7, 875.7]
+distortion = [-0.348, 0.124, 0.0, 0.0, -0.014]
+rotation = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # camera_from_world
+translation = [0.0, 0.0, 5.0]
+[[camera]]
+name = "far"
+size = [640, 480]
+ground_from_image = [[0.1, 0, -3], [0, 0.1, 2], [0, 0.001, 1]]
+)";
+
+std::string problems_of(const std::string& text) {
+  try {
+    parse_rig(text, "rig.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  if (at == std::string::npos) ADD_FAILURE() << from << " is not there";
+  return text.replace(at, from.size(), to);
+}
+
+TEST(RigFile, ReadsTheExample) {
+  const Rig rig = parse_rig(kExample, "rig.toml");
+  ASSERT_EQ(rig.cameras.size(), 2u);
+  const RigCamera& left = rig.cameras[0];
+  EXPECT_EQ(left.name, "left");
+  EXPECT_EQ(left.source, "left_camera.mp4");
+  EXPECT_EQ(left.offset_s, 0.25);
+  EXPECT_EQ(left.size, cv::Size(3072, 1728));
+  const auto& lens = std::get<geometry::BrownLens>(left.lens.value());
+  EXPECT_EQ(lens.focal, Vector<2>(2123.1, 2123.1));
+  EXPECT_EQ(lens.distortion[4], -0.014);
+  EXPECT_EQ(left.camera_from_world->translation, Vector<3>(0, 0, 5));
+  EXPECT_TRUE(left.camera());
+  EXPECT_FALSE(rig.cameras[1].offset_s) << "nobody said";
+  EXPECT_FALSE(rig.cameras[1].camera());
+  EXPECT_TRUE(rig.cameras[1].ground_view());
+}
+
+TEST(RigFile, IsWrittenInItsOwnLayoutAndReadsBackTheSame) {
+  Rig rig = parse_rig(kExample, "rig.toml");
+  rig.calibration =
+      Rig::Calibration{.method = "wand \"3\"", .mean_px = 0.1, .rms_px = 0.125, .inliers = 10, .observations = 12, .grade = "good"};
+  rig.ground_from_world = Eigen::Vector3d(1, -1, 1).asDiagonal();
+  rig.cameras[0].region = cv::Rect(0, 5, 3072, 1728);
+  rig.cameras[0].rate_hz = 25;
+  rig.cameras[1].rms_px = 0.25;
+  const std::string text = rig_text(rig);
+  EXPECT_EQ(rig_text(parse_rig(text, "again")), text);
+  EXPECT_EQ(text, R"([world]
+up = "z"                                   # metres, right-handed
+# ground_from_world: the ground as its user counts it, of (x, y, 1)
+ground_from_world = [[1.0, 0.0, 0.0],
+                     [0.0, -1.0, 0.0],
+                     [0.0, 0.0, 1.0]]
+
+[calibration]
+method = "wand \"3\""
+mean_px = 0.1
+rms_px = 0.125
+inliers = 10
+observations = 12
+grade = "good"
+
+[[camera]]
+name = "left"
+source = "left_camera.mp4"                 # seen from this file
+region = [0, 5, 3072, 1728]                # x, y, width, height in px
+rate = 25.0                                # Hz
+offset_s = 0.25                            # add to this camera's times to get the rig's
+size = [3072, 1728]                        # px
+model = "brown"                            # brown | fisheye | tsai
+focal = [2123.1, 2123.1]                   # px
+principal = [1642.7, 875.7]                # px; a pixel's whole number is its centre
+distortion = [-0.348, 0.124, 0.0, 0.0, -0.014]
+# rotation: camera_from_world (a camera has x right, y down, z ahead)
+rotation = [[1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0]]
+translation = [0.0, 0.0, 5.0]              # m, in the camera's frame
+
+[[camera]]
+name = "far"
+size = [640, 480]
+ground_from_image = [[0.1, 0.0, -3.0],
+                     [0.0, 0.1, 2.0],
+                     [0.0, 0.001, 1.0]]
+rms_px = 0.25
+)");
+}
+
+TEST(RigFile, TellsAllProblemsAtOnceEachWithItsLine) {
+  std::string text = replaced(kExample, "focal = [2123.1", "focal = [0");
+  text = replaced(text, "name = \"far\"", "name = \"left\"\nfocul = 3");
+  text = replaced(text, "0, 0, 1]]   #", "0, 0, -1]]   #");
+  text = replaced(text, "up = \"z\"", "up = \"x\"");
+  EXPECT_EQ(
+      problems_of(text),
+      "rig.toml:2: world: up is \"x\"; it must be \"z\" or \"y\"\n"
+      "rig.toml:9: camera \"left\": focal length is 0; it must be positive\n"
+      "rig.toml:12: camera \"left\": rotation is a mirroring (its determinant is -1); it must be a rotation\n"
+      "rig.toml:15: camera \"left\": another camera has this name; each needs its own\n"
+      "rig.toml:16: camera \"left\": unknown key \"focul\"; there are: name, source, detections, region, rate, offset_s, size, "
+      "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px");
+}
+
+TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {
+  const Rig rig =
+      parse_rig("[[camera]]\nname = \"a\"\nfocal = [900, 900]\nprincipal = [320, 240]\n[[camera]]\nname = \"b\"\n", "rig.toml");
+  EXPECT_TRUE(rig.cameras[0].lens);
+  EXPECT_FALSE(rig.cameras[0].size);
+  EXPECT_FALSE(rig.cameras[1].lens);
+}
+
+TEST(RigFile, RefusesWhatIsWrong) {
+  const auto told = [](const std::string& from, const std::string& to, const std::string& expected) {
+    const std::string problems = problems_of(replaced(kExample, from, to));
+    EXPECT_NE(problems.find(expected), std::string::npos) << "\"" << problems << "\" does not say \"" << expected << "\"";
+  };
+  told("[640, 480]", "[640, 0]", ":16: camera \"far\": size is [640, 0]; both must be positive whole numbers of px");
+  told("[640, 480]", "[640.5, 480]", "positive whole numbers");
+  told("[640, 480]", "[640]", "size must be [width, height] in px");
+  told("[0, 0.001, 1]", "[0, 0, 0]", "ground_from_image is singular");
+  told("[0, 0.001, 1]", "[0, 1]", "three rows of three");
+  told("[0, 0.001, 1]", "[0, nan, 1]", "finite");
+  told("[0, 1, 0]", "[0, 1.1, 0]", "no rotation");
+  told("translation", "translatoin", "translation is missing");
+  told("\"brown\"", "\"browne\"", "model \"browne\" is unknown");
+  told("\"brown\"", "\"tsai\"", "distortion must be at most 1 finite numbers");
+  told("name = \"far\"", "", "camera 2: its name is missing");
+  told("\"far\"", "\"a/b\"", "its name may hold no");
+  told("\"far\"", "7", "name must be a text in quotation marks");
+  told("principal = [1642.7, 875.7]", "", "without its principal point");
+  told("offset_s = 0.25", "offset_s = inf", "offset_s must be a finite number");
+  told("offset_s = 0.25", "rate = -1", "rate is -1; it must be positive");
+  told("offset_s = 0.25", "region = [0, 0, 10, 10]", "they must agree");
+  told("offset_s = 0.25", "detections = \"a.txt\"", "both a source and detections");
+  told("[world]", "[wolrd]", "rig.toml:1: unknown key \"wolrd\"");
+  told("[[camera]]", "[[camera]", "rig.toml:3: ");
+  EXPECT_NE(problems_of("").find("there is no camera"), std::string::npos);
+  EXPECT_NE(problems_of("camera = 3").find("[[camera]]"), std::string::npos);
+  EXPECT_NE(problems_of("camera = [3]").find("[[camera]]"), std::string::npos);
+  EXPECT_NE(problems_of("world = 3\ncalibration = 4").find("calibration must be a table"), std::string::npos);
+}
+
+TEST(RigFile, AWorldWithYUpIsTurned) {
+  const Rig up_y = parse_rig(replaced(kExample, "up = \"z\"", "up = \"y\""), "rig.toml");
+  const Rig up_z = parse_rig(kExample, "rig.toml");
+  const Vector<3> in_y_up(0.4, 1.5, -2), in_z_up(0.4, 2, 1.5);  // the same place, 1.5 m above the floor
+  EXPECT_LT((*up_y.cameras[0].camera_from_world * in_z_up - *up_z.cameras[0].camera_from_world * in_y_up).norm(), 1e-15);
+  EXPECT_NEAR(up_y.cameras[0].camera_from_world->rotation.determinant(), 1, 1e-15);
+}
+
+TEST(RigFile, ARoundedRotationIsMadeExact) {
+  const Rig rig =
+      parse_rig(replaced(kExample, "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", "[[0.7071, -0.7071, 0], [0.7071, 0.7071, 0], [0, 0, 1]]"),
+                "rig.toml");
+  const Matrix<3>& R = rig.cameras[0].camera_from_world->rotation;
+  EXPECT_LT((R.transpose() * R - Matrix<3>::Identity()).norm(), 1e-14);
+  EXPECT_NEAR(R(0, 0), std::sqrt(0.5), 1e-14);
+}
+
+TEST(RigFile, SourcesLieBesideTheFile) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "a");
+  test::write_file(folder / "a/rig.toml", kExample);
+  Rig rig = read_rig(folder / "a/rig.toml");
+  EXPECT_EQ(rig.cameras[0].source, folder / "a/left_camera.mp4");
+  write_rig(rig, folder / "out.toml");
+  EXPECT_NE(test::read_file(folder / "out.toml").find("source = \"a/left_camera.mp4\""), std::string::npos);
+  EXPECT_EQ(read_rig(folder / "out.toml").cameras[0].source, folder / "a/left_camera.mp4");
+  EXPECT_THROW(read_rig(folder / "none.toml"), Error);
+  EXPECT_THROW(read_rig(folder.path()), Error);
+}
+
+TEST(RigSources, AreReplacedByPairs) {
+  Rig rig = parse_rig(kExample, "rig.toml");
+  const std::vector<std::string> pairs{"left=other.mp4", "far=boxes.txt"};
+  set_sources(rig, pairs);
+  EXPECT_EQ(rig.cameras[0].source, "other.mp4");
+  EXPECT_EQ(rig.cameras[1].detections, "boxes.txt");
+  for (const char* wrong : {"left", "=a.mp4", "left=", "right=a.mp4"}) {
+    const std::vector<std::string> bad{wrong};
+    EXPECT_THROW(set_sources(rig, bad), Error) << wrong;
+  }
+  const std::vector<std::string> twice{"left=a.mp4", "left=b.mp4"};
+  EXPECT_THROW(set_sources(rig, twice), Error);
+}
+
+TEST(RigSources, ACalibrationIsScaledWhereTheShapeFits) {
+  Rig rig = parse_rig(kExample, "rig.toml");
+  RigCamera& left = rig.cameras[0];
+  const Vector<3> point(0.3, -0.2, 1);
+  const Vector<2> before = *left.camera()->project(point);
+  fit_to_size(left, {1536, 864});
+  EXPECT_EQ(left.size, cv::Size(1536, 864));
+  EXPECT_LT((*left.camera()->project(point) - ((before.array() + 0.5) / 2 - 0.5).matrix()).norm(), 1e-9);
+  EXPECT_THROW(fit_to_size(left, {1440, 1080}), Error);
+
+  RigCamera& far = rig.cameras[1];
+  const Vector<2> ground = far.ground_view()->place({100.25, 300})->ground;
+  fit_to_size(far, {1280, 960});
+  EXPECT_LT((far.ground_view()->place({200.5 + 0.5, 600.5})->ground - ground).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace marey::format::rig

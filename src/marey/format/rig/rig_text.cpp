@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <filesystem>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::rig {
+namespace {
+
+/// To 12 digits, always with a point or an exponent, never "-0.0".
+std::string number_text(double value) {
+  if (value == 0) return "0.0";
+  std::string text = fmt::format("{:.12g}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string row(std::span<const double> values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + number_text(value);
+  return "[" + text + "]";
+}
+
+std::string row(const Vector<2>& v) {
+  return row(std::span(v.data(), 2));
+}
+
+/// One row a line, each under the one before it.
+std::string rows(const Matrix<3>& m, std::string_view key) {
+  std::string text(key);
+  text += " = [";
+  const std::string indent(text.size(), ' ');
+  for (int i = 0; i < 3; ++i) {
+    const Vector<3> values = m.row(i);
+    text += (i > 0 ? ",\n" + indent : "") + row(std::span(values.data(), 3));
+  }
+  return text + "]\n";
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      (result += '\\') += c;
+    } else if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
+      result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+/// `source` as it is found from `folder`, where it has a relative path or lies below it.
+std::string seen_from(const std::string& folder, const std::string& source) {
+  namespace fs = std::filesystem;
+  if (folder.empty() || source.find("://") != std::string::npos) return source;
+  const fs::path path(source), base = fs::absolute(folder).lexically_normal();
+  const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(base / "");
+  const bool below = !relative.empty() && *relative.begin() != "..";
+  return path.is_absolute() && !below ? source : relative.string();
+}
+
+/// `key = value` and, on the first camera, what an editor of the file should know about it.
+class Lines {
+ public:
+  explicit Lines(bool explain) : explain_(explain) {}
+
+  void add(std::string_view key, const std::string& value, std::string_view remark = {}) {
+    std::string line = fmt::format("{} = {}", key, value);
+    if (explain_ && !remark.empty()) line = fmt::format("{:<42} # {}", line, remark);
+    text_ += line + "\n";
+  }
+  void add_matrix(std::string_view key, const Matrix<3>& m, std::string_view remark) {
+    if (explain_) text_ += fmt::format("# {}: {}\n", key, remark);
+    text_ += rows(m, key);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  bool explain_;
+  std::string text_;
+};
+
+void add_lens(Lines& lines, const geometry::Lens& lens) {
+  std::visit(
+      [&](const auto& model) {
+        lines.add("model", in_quotes(model.name), "brown | fisheye | tsai");
+        lines.add("focal", row(model.focal), "px");
+        lines.add("principal", row(model.principal), "px; a pixel's whole number is its centre");
+        // Brown's first five are the common ones; its last three are written where they are used.
+        std::size_t count = model.distortion.size();
+        if (count == 8 && std::all_of(model.distortion.begin() + 5, model.distortion.end(), [](double k) { return k == 0; }))
+          count = 5;
+        lines.add("distortion", row(std::span(model.distortion).first(count)));
+      },
+      lens);
+}
+
+std::string camera_text(const RigCamera& camera, const std::string& folder, bool first) {
+  Lines lines(first);
+  lines.add("name", in_quotes(camera.name));
+  if (!camera.source.empty()) lines.add("source", in_quotes(seen_from(folder, camera.source)), "seen from this file");
+  if (!camera.detections.empty()) lines.add("detections", in_quotes(seen_from(folder, camera.detections)), "seen from this file");
+  if (const auto& r = camera.region) {
+    lines.add("region", fmt::format("[{}, {}, {}, {}]", r->x, r->y, r->width, r->height), "x, y, width, height in px");
+  }
+  if (camera.rate_hz) lines.add("rate", number_text(*camera.rate_hz), "Hz");
+  if (camera.offset_s) lines.add("offset_s", number_text(*camera.offset_s), "add to this camera's times to get the rig's");
+  if (camera.size) lines.add("size", fmt::format("[{}, {}]", camera.size->width, camera.size->height), "px");
+  if (camera.lens) add_lens(lines, *camera.lens);
+  if (const auto& pose = camera.camera_from_world) {
+    lines.add_matrix("rotation", pose->rotation, "camera_from_world (a camera has x right, y down, z ahead)");
+    lines.add("translation", row(std::span(pose->translation.data(), 3)), "m, in the camera's frame");
+  }
+  if (camera.ground_from_image) lines.add_matrix("ground_from_image", *camera.ground_from_image, "px to m on the ground");
+  if (camera.rms_px) lines.add("rms_px", number_text(*camera.rms_px), "2-D reprojection error of the calibration");
+  return lines.text();
+}
+
+std::string calibration_text(const Rig::Calibration& calibration) {
+  Lines lines(false);
+  if (!calibration.method.empty()) lines.add("method", in_quotes(calibration.method));
+  if (calibration.mean_px) lines.add("mean_px", number_text(*calibration.mean_px));
+  if (calibration.rms_px) lines.add("rms_px", number_text(*calibration.rms_px));
+  if (calibration.inliers) lines.add("inliers", fmt::format("{}", *calibration.inliers));
+  if (calibration.observations) lines.add("observations", fmt::format("{}", *calibration.observations));
+  if (calibration.grade) lines.add("grade", in_quotes(*calibration.grade));
+  return "\n[calibration]\n" + lines.text();
+}
+
+}  // namespace
+
+std::string rig_text(const Rig& rig, const std::string& folder) {
+  Lines world(true);
+  world.add("up", in_quotes("z"), "metres, right-handed");
+  if (rig.ground_from_world)
+    world.add_matrix("ground_from_world", *rig.ground_from_world, "the ground as its user counts it, of (x, y, 1)");
+  std::string text = "[world]\n" + world.text();
+  if (rig.calibration) text += calibration_text(*rig.calibration);
+  for (const RigCamera& camera : rig.cameras) {
+    text += "\n[[camera]]\n" + camera_text(camera, folder, &camera == rig.cameras.data());
+  }
+  return text;
+}
+
+void write_rig(const Rig& rig, const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  WholeFile file(path);
+  file.write(rig_text(rig, folder.empty() ? "." : folder));
+  file.finish();
+}
+
+}  // namespace marey::format::rig

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "marey/core/time.h"
+#include "marey/core/track.h"
+#include "marey/format/whole_file.h"
+
+namespace marey::format::tracks {
+
+/// How tracks in the image are written, one line for each target in each frame:
+///   mot    MOTChallenge text: frame,id,left,top,width,height,conf,-1,-1,-1; frames and pixels count from 1
+///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
+///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
+///          (outline_json.h)
+enum class TrackFormat { mot, csv, jsonl };
+
+/// Every format's name with commas between, the default one first.
+std::string track_format_names();
+/// Throws Error with the list of names where there is no such format.
+TrackFormat parse_track_format(std::string_view name);
+/// What the file name's ending says: .txt, .csv or .jsonl.
+std::optional<TrackFormat> track_format_of(std::string_view path);
+/// The ending that track_format_of knows it by, with its dot.
+std::string_view ending_of(TrackFormat format);
+
+/// Writes tracks as they come; the file is there whole or not at all.
+class TrackFile {
+ public:
+  /// Throws Error where nothing can be written there.
+  TrackFile(const std::string& path, TrackFormat format);
+
+  /// `frame` counts from 0. Throws Error where the place is full.
+  void write(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks);
+  /// Throws Error where the place is full.
+  void finish() { file_.finish(); }
+
+ private:
+  WholeFile file_;
+  TrackFormat format_;
+  std::string lines_;
+};
+
+}  // namespace marey::format::tracks

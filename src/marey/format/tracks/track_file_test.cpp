@@ -1,0 +1,113 @@
+#include "marey/format/tracks/track_file.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+
+#include "support/files.h"
+
+namespace marey::format::tracks {
+namespace {
+
+std::vector<Track<2>> two_tracks() {
+  Track<2> seen;
+  seen.id = TrackId{3};
+  seen.position = {12.5, 30};
+  seen.velocity = {-1.25, 0};
+  seen.box = Box{9, 20, 8, 21};
+  seen.score = 0.75;
+  Track<2> guessed;
+  guessed.id = TrackId{4};
+  guessed.label = "the \"tall\", one";
+  guessed.position = {1, 2};
+  guessed.state = Track<2>::State::predicted;
+  return {seen, guessed};
+}
+
+TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
+  Track<2> track = two_tracks()[0];
+  auto outline = std::make_shared<Outline>();
+  outline->order = 3;
+  outline->state = Outline::State::partly;
+  outline->control_points = {{1, 2}, {3.25, 4}, {5, 6.5}};
+  outline->deviations = {{0.5, 0.25}, {1, 1}, {2, 3}};
+  outline->centre = {3, 4};
+  outline->velocity = {10, -20};
+  outline->scale_rate = 0.125;
+  outline->silhouette = Vector<2>(3.5, 4.25);
+  outline->velocity_deviation = {1.5, 2};
+  outline->scale_rate_deviation = 0.0625;
+  track.outline = outline;
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "tracks", TrackFormat::jsonl);
+  file.write(6, Timestamp{}, std::vector{track});
+  file.finish();
+  const auto json = nlohmann::json::parse(test::read_file(folder / "tracks"))["outline"];
+  EXPECT_EQ(json["state"], "partly");
+  EXPECT_EQ(json["order"], 3);
+  EXPECT_EQ(json["control_points"], nlohmann::json::parse("[[1.0,2.0],[3.25,4.0],[5.0,6.5]]"));
+  EXPECT_EQ(json["deviations"], nlohmann::json::parse("[[0.5,0.25],[1.0,1.0],[2.0,3.0]]"));
+  EXPECT_EQ(json["centre"], nlohmann::json::parse("[3.0,4.0]"));
+  EXPECT_EQ(json["velocity"], nlohmann::json::parse("[10.0,-20.0]"));
+  EXPECT_EQ(json["scale_rate"], 0.125);
+  EXPECT_EQ(json["silhouette"], nlohmann::json::parse("[3.5,4.25]"));
+  EXPECT_EQ(json["centre_deviation"], nlohmann::json::parse("[0.0,0.0]"));
+  EXPECT_EQ(json["velocity_deviation"], nlohmann::json::parse("[1.5,2.0]"));
+  EXPECT_EQ(json["scale_rate_deviation"], 0.0625);
+}
+
+std::string written(TrackFormat format) {
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "tracks", format);
+  file.write(0, Timestamp{}, {});
+  file.write(6, timestamp_from_seconds(0.24), two_tracks());
+  file.finish();
+  return test::read_file(folder / "tracks");
+}
+
+TEST(TrackFile, MotCountsFramesAndPixelsFromOneAndHoldsBoxesAlone) {
+  EXPECT_EQ(written(TrackFormat::mot), "7,3,10.00,21.00,8.00,21.00,0.75,-1,-1,-1\n");
+}
+
+TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
+  EXPECT_EQ(written(TrackFormat::csv),
+            "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"
+            "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
+            "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,0.00,0.00,,,,,predicted\n");
+}
+
+TEST(TrackFile, EveryJsonLineIsAnObject) {
+  std::istringstream lines(written(TrackFormat::jsonl));
+  std::vector<nlohmann::json> objects;
+  for (std::string line; std::getline(lines, line);) objects.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(objects.size(), 2u);
+  EXPECT_EQ(objects[0]["frame"], 6);
+  EXPECT_EQ(objects[0]["time"], 0.24);
+  EXPECT_EQ(objects[0]["height"], 21);
+  EXPECT_EQ(objects[0]["state"], "observed");
+  EXPECT_FALSE(objects[0].contains("label"));
+  EXPECT_EQ(objects[1]["label"], "the \"tall\", one");
+  EXPECT_FALSE(objects[1].contains("left"));
+}
+
+TEST(TrackFile, FormatsAreKnownByNameAndByEnding) {
+  for (const TrackFormat format : {TrackFormat::mot, TrackFormat::csv, TrackFormat::jsonl}) {
+    EXPECT_EQ(track_format_of("a/b" + std::string(ending_of(format))), format);
+  }
+  EXPECT_EQ(parse_track_format("jsonl"), TrackFormat::jsonl);
+  EXPECT_EQ(track_format_of("tracks.xml"), std::nullopt);
+  try {
+    parse_track_format("xml");
+    FAIL() << "xml was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("mot, csv, jsonl"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace marey::format::tracks

@@ -1,0 +1,118 @@
+#include "marey/reconstruct/track_matches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace marey::reconstruct {
+namespace {
+
+constexpr int kNobody = -1;
+constexpr int kMostCandidates = 3;  // blobs for a prediction in one picture
+
+}  // namespace
+
+void TrackMatches::claim(const FrameRays& frame, std::span<const Track<3>> expected, RayGroups& groups,
+                         std::vector<std::optional<NoPoint>>& missed) {
+  const auto cameras = static_cast<std::size_t>(frame.cameras());
+  missed.assign(expected.size(), std::nullopt);
+  if (expected.empty()) return;
+  claimed_.assign(expected.size() * cameras, kNobody);
+  for (int c = 0; c < frame.cameras(); ++c) claim_in(frame, c, expected);
+  for (int i = 0; i < std::ssize(expected); ++i) missed[i] = place(frame, i, expected[i], groups);
+}
+
+/// One camera: the assignment of blobs to predictions that is the likeliest as a whole.
+void TrackMatches::claim_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected) {
+  if (frame.first(camera) == frame.last(camera)) return;
+  const int first = frame.first(camera);
+  pairs_.clear();
+  const double noise = frame.largest_sigma(camera);
+  const double gate = sigmas_ * sigmas_;
+  claimants_.assign(static_cast<std::size_t>(frame.last(camera) - first), 0);
+  bool contested = false;
+  for (int i = 0; i < std::ssize(expected); ++i) {
+    const auto at = frame.camera(camera).project_with_jacobian(expected[i].position);
+    if (!at) continue;
+    Matrix<2> S = at->by_world * expected[i].covariance * at->by_world.transpose();
+    S.diagonal().array() += noise * noise;
+    const Matrix<2> information = S.inverse();
+    const double radius = sigmas_ * std::sqrt(S.trace());
+    int found = 0;
+    const std::size_t before = pairs_.size();
+    frame.for_each_near(camera, at->pixel, radius, [&](int ray) {
+      const Vector<2> error = frame.pixel(ray) - at->pixel;
+      const double distance = error.dot(information * error);
+      if (distance >= gate) return;
+      pairs_.push_back({i, ray - first, 1 + gate - distance});
+      ++found;
+      contested |= ++claimants_[ray - first] > 1 || found > 1;
+    });
+    if (found > kMostCandidates) pairs_.resize(before);  // a guess among so many would take what is another's
+  }
+  const auto cameras = static_cast<std::size_t>(frame.cameras());
+  const auto give = [&](int row, int column) { claimed_[static_cast<std::size_t>(row) * cameras + camera] = first + column; };
+  if (!contested) {
+    for (const assign::GatedPair& pair : pairs_) give(pair.row, pair.column);
+    return;
+  }
+  const auto columns = assigner_.assign(static_cast<int>(expected.size()), frame.last(camera) - first, pairs_);
+  for (int row = 0; row < std::ssize(expected); ++row) {
+    if (columns[row] != assign::GatedAssigner::nobody) give(row, columns[row]);
+  }
+}
+
+std::optional<NoPoint> TrackMatches::place(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups) {
+  const auto cameras = static_cast<std::size_t>(frame.cameras());
+  list_.clear();
+  for (std::size_t c = 0; c < cameras; ++c) {
+    const int ray = claimed_[static_cast<std::size_t>(index) * cameras + c];
+    if (ray != kNobody && !groups.taken(ray)) list_.add(frame, ray);
+  }
+  Triangulation result = triangulator_(list_.lines(), expected.position);
+  if (const auto* reason = std::get_if<NoPoint>(&result)) return *reason;
+  const SpacePoint point = std::get<SpacePoint>(result);
+  if (complete(frame, point, groups)) {
+    const Triangulation again = triangulator_(better_.lines(), point.position);
+    if (const auto* more = std::get_if<SpacePoint>(&again); more && more->rays > point.rays) {
+      groups.add(better_.rays(), *more, index);
+      return std::nullopt;
+    }
+  }
+  groups.add(list_.rays(), point, index);
+  return std::nullopt;
+}
+
+/// Asks the cameras whose ray was wrong or missing for a blob where the others say that the marker is; whether there is one.
+bool TrackMatches::complete(const FrameRays& frame, const SpacePoint& point, const RayGroups& groups) {
+  if (point.rays == frame.cameras()) return false;
+  better_.clear();
+  bool more = false;
+  int k = 0;
+  for (int c = 0; c < frame.cameras(); ++c) {
+    bool has_ray = false;
+    if (k < list_.size() && list_.lines()[k].camera == c) {
+      has_ray = point.used >> k & 1;
+      if (has_ray) better_.add(frame, list_.rays()[k]);
+      ++k;
+    }
+    if (has_ray || frame.first(c) == frame.last(c)) continue;
+    const auto at = frame.camera(c).project_with_jacobian(point.position);
+    if (!at) continue;
+    const double sigma = frame.largest_sigma(c);
+    const double spread = (at->by_world * point.covariance * at->by_world.transpose()).trace() / 2;
+    double nearest = sigmas_ * std::sqrt(sigma * sigma + spread);
+    int best = kNobody;
+    frame.for_each_near(c, at->pixel, nearest, [&](int ray) {
+      const double distance = (frame.pixel(ray) - at->pixel).norm();
+      if (distance < nearest && !groups.taken(ray)) nearest = distance, best = ray;
+    });
+    if (best == kNobody) continue;
+    better_.add(frame, best);
+    more = true;
+  }
+  return more;
+}
+
+}  // namespace marey::reconstruct

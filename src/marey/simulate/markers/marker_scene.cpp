@@ -1,0 +1,280 @@
+// Paths of markers that make trackers fail, after Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking
+// Methods for an Open Source Motion Capture System", §IV-A. A path is a chain of straight legs (zigzag, acceleration), a line
+// with at most one bend (occlusion), or two lines that meet (crossing). All speeds are px a frame, as in the paper, whose
+// trackers count time in frames: a scene at another rate shows the same places.
+#include "marey/simulate/markers/marker_scene.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "marey/simulate/markers/discs.h"
+#include "marey/simulate/random.h"
+
+namespace marey::simulate::markers {
+namespace {
+
+using Path = std::vector<Vector<2>>;
+
+constexpr double kMargin = 30;  // px that a marker keeps from the border
+constexpr double kPi = std::numbers::pi;
+
+Vector<2> direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+struct Range {
+  double low, high;
+  double draw(Random& random) const { return random.uniform(low, high); }
+};
+
+bool inside(const Vector<2>& place, const cv::Size& size) {
+  return place.x() > kMargin && place.y() > kMargin && place.x() < size.width - kMargin && place.y() < size.height - kMargin;
+}
+
+Vector<2> middle(const cv::Size& size) {
+  return {size.width / 2.0, size.height / 2.0};
+}
+
+double heading_inwards(const Vector<2>& place, const cv::Size& size, Random& random) {
+  const Vector<2> way = middle(size) - place;
+  return std::atan2(way.y(), way.x()) + random.uniform(-0.5, 0.5);
+}
+
+struct ZigzagMotion {
+  Range speed;                    ///< px a frame, one draw a video
+  int shortest_leg, longest_leg;  ///< frames
+  Range turn;                     ///< rad, at each corner
+};
+constexpr ZigzagMotion kSlowZigzag{{11, 22}, 3, 7, {1.6, 2.4}};
+constexpr ZigzagMotion kRapidZigzag{{16, 28}, 3, 5, {1.2, 2.2}};
+
+Path zigzag(const ZigzagMotion& motion, int frames, const cv::Size& size, Random& random) {
+  const double speed = motion.speed.draw(random);
+  Vector<2> place(random.uniform(0.19, 0.81) * size.width, random.uniform(0.25, 0.75) * size.height);
+  double heading = random.uniform(0, 2 * kPi);
+  double side = 1;
+  double course = 0;
+  int left = 0;
+  Path path{place};
+  while (std::ssize(path) < frames) {
+    if (left-- <= 0) {
+      side = -side;
+      course = heading + side * motion.turn.draw(random) / 2;
+      left = random.integer(motion.shortest_leg, motion.longest_leg) - 1;
+    }
+    if (!inside(place + speed * direction(course), size)) {
+      heading = heading_inwards(place, size, random);
+      course = heading + side * motion.turn.draw(random) / 4;
+      left = random.integer(motion.shortest_leg, motion.longest_leg) - 1;
+    }
+    place += speed * direction(course);
+    path.push_back(place);
+  }
+  return path;
+}
+
+/// From near rest each leg speeds up steadily; then the marker turns and begins slowly again.
+Path accelerating(int frames, const cv::Size& size, Random& random) {
+  constexpr Range kStart{2, 5};             // px a frame
+  constexpr Range kAcceleration{0.6, 2.4};  // px a frame²
+  constexpr Range kTurn{1.2, 2.8};          // rad
+  constexpr int kShortestLeg = 12, kLongestLeg = 20;
+  const double acceleration = kAcceleration.draw(random);
+  Vector<2> place(random.uniform(0.25, 0.75) * size.width, random.uniform(0.29, 0.71) * size.height);
+  double course = random.uniform(0, 2 * kPi);
+  double speed = kStart.draw(random);
+  int left = random.integer(kShortestLeg, kLongestLeg);
+  Path path{place};
+  const auto new_leg = [&](double new_course) {
+    course = new_course;
+    speed = kStart.draw(random);
+    left = random.integer(kShortestLeg, kLongestLeg);
+  };
+  while (std::ssize(path) < frames) {
+    if (left-- <= 0) new_leg(course + (random.chance(0.5) ? 1 : -1) * kTurn.draw(random));
+    if (!inside(place + speed * direction(course), size)) new_leg(heading_inwards(place, size, random));
+    place += speed * direction(course);
+    speed += acceleration;
+    path.push_back(place);
+  }
+  return path;
+}
+
+/// A path through `meeting` at the middle of the video, which bends there by `bend` rad over `bend_frames` frames.
+Path through(const Vector<2>& meeting, double course, double speed, double bend, int bend_frames, int frames) {
+  Path path(static_cast<std::size_t>(frames));
+  const int half = frames / 2;
+  path[half] = meeting;
+  const auto course_at = [&](double frame) {
+    const double share = bend_frames > 0 ? std::clamp((frame - half) / bend_frames + 0.5, 0.0, 1.0) : (frame > half ? 1.0 : 0.0);
+    return course + (share - 0.5) * bend;
+  };
+  for (int i = half + 1; i < frames; ++i) path[i] = path[i - 1] + speed * direction(course_at(i - 0.5));
+  for (int i = half - 1; i >= 0; --i) path[i] = path[i + 1] - speed * direction(course_at(i + 0.5));
+  return path;
+}
+
+/// The longest stretch of frames around the meeting in which the whole path keeps inside the image.
+bool stays_inside(const Path& path, const cv::Size& size) {
+  for (const Vector<2>& place : path) {
+    if (!inside(place, size)) return false;
+  }
+  return true;
+}
+
+struct OcclusionMotion {
+  Path path;
+  Box barrier;
+};
+
+OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random) {
+  constexpr Range kBarrier{30, 150};  // px across
+  constexpr Range kSpeed{3, 9};       // px a frame
+  constexpr Range kBend{0.6, 1.6};    // rad
+  const bool bent = random.chance(0.5);
+  const double width = kBarrier.draw(random);
+  const double height = kBarrier.draw(random) + width / 2;
+  for (;;) {
+    const double speed = kSpeed.draw(random) * size.width / 640;
+    const double bend = bent ? (random.chance(0.5) ? 1 : -1) * kBend.draw(random) : 0;
+    const Vector<2> centre = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
+    const int bend_frames = static_cast<int>(width / speed);
+    Path path = through(centre, random.uniform(0, 2 * kPi), speed, bend, bend_frames, frames);
+    if (stays_inside(path, size)) return {std::move(path), Box::from_centre(centre, width, height)};
+  }
+}
+
+std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& size, Random& random) {
+  constexpr Range kSpeed{2, 6};       // px a frame, drawn for each marker
+  constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
+  constexpr Range kBend{-0.5, 0.5};   // rad
+  for (;;) {
+    const Vector<2> meeting = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
+    const double course = random.uniform(0, 2 * kPi);
+    const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
+    Path first = through(meeting, course, kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
+    Path second =
+        through(meeting + miss, course + kAngle.draw(random), kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
+    const bool apart_at_first = (first.front() - second.front()).norm() > 8 * radius;
+    const bool apart_at_last = (first.back() - second.back()).norm() > 8 * radius;
+    if (apart_at_first && apart_at_last && stays_inside(first, size) && stays_inside(second, size)) {
+      return {std::move(first), std::move(second)};
+    }
+  }
+}
+
+/// A Lissajous curve: smooth, bounded, and another one for every draw.
+Path plain(int frames, const cv::Size& size, Random& random) {
+  const Vector<2> reach(random.uniform(0.1, 0.4) * size.width, random.uniform(0.1, 0.4) * size.height);
+  const Vector<2> rate(random.uniform(0.02, 0.06), random.uniform(0.02, 0.06));  // rad a frame
+  const Vector<2> phase(random.uniform(0, 2 * kPi), random.uniform(0, 2 * kPi));
+  Path path;
+  for (int i = 0; i < frames; ++i) {
+    path.push_back(middle(size) +
+                   Vector<2>(reach.x() * std::sin(rate.x() * i + phase.x()), reach.y() * std::sin(rate.y() * i + phase.y())));
+  }
+  return path;
+}
+
+int paper_length(MarkerSituation situation) {
+  switch (situation) {
+    case MarkerSituation::slow_zigzag:
+    case MarkerSituation::acceleration:
+      return 86;  // 85 predictions a video: 1445 / 17 = 1700 / 20
+    case MarkerSituation::rapid_zigzag:
+      return 55;  // 54 predictions: 594 / 11
+    case MarkerSituation::occlusion:
+    case MarkerSituation::crossing:
+      return 80;  // "about 80 frames"
+    case MarkerSituation::plain:
+      return 200;  // §IV-B
+  }
+  return 80;
+}
+
+bool hidden(const Vector<2>& place, const std::vector<Box>& barriers) {
+  for (const Box& box : barriers) {
+    if (place.x() >= box.left - 0.5 && place.x() < box.right() - 0.5 && place.y() >= box.top - 0.5 &&
+        place.y() < box.bottom() - 0.5)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::span<const NamedSituation> marker_situations() {
+  static constexpr std::array<NamedSituation, 6> kSituations{{{"slow", MarkerSituation::slow_zigzag},
+                                                              {"rapid", MarkerSituation::rapid_zigzag},
+                                                              {"acceleration", MarkerSituation::acceleration},
+                                                              {"occlusion", MarkerSituation::occlusion},
+                                                              {"crossing", MarkerSituation::crossing},
+                                                              {"plain", MarkerSituation::plain}}};
+  return kSituations;
+}
+
+MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options) {
+  MarkerScene scene;
+  scene.situation = situation;
+  scene.options = options;
+  scene.seed = seed;
+  Random random(seed * 16 + static_cast<std::uint64_t>(situation));
+  const int frames = options.frames.value_or(paper_length(situation));
+
+  std::vector<Path> paths;
+  switch (situation) {
+    case MarkerSituation::slow_zigzag:
+      paths.push_back(zigzag(kSlowZigzag, frames, options.size, random));
+      break;
+    case MarkerSituation::rapid_zigzag:
+      paths.push_back(zigzag(kRapidZigzag, frames, options.size, random));
+      break;
+    case MarkerSituation::acceleration:
+      paths.push_back(accelerating(frames, options.size, random));
+      break;
+    case MarkerSituation::occlusion: {
+      OcclusionMotion motion = behind_barrier(frames, options.size, random);
+      paths.push_back(std::move(motion.path));
+      scene.barriers.push_back(motion.barrier);
+      break;
+    }
+    case MarkerSituation::crossing:
+      for (Path& path : crossing_pair(frames, options.radius_px, options.size, random)) paths.push_back(std::move(path));
+      break;
+    case MarkerSituation::plain:
+      paths.push_back(plain(frames, options.size, random));
+      break;
+  }
+  while (std::ssize(paths) < options.markers.value_or(0)) paths.push_back(plain(frames, options.size, random));
+
+  const cv::Rect2d image(-0.5, -0.5, options.size.width, options.size.height);
+  scene.frames.resize(frames);
+  scene.clutter.resize(frames);
+  for (int i = 0; i < frames; ++i) {
+    for (int marker = 0; marker < std::ssize(paths); ++marker) {
+      const Vector<2>& place = paths[marker][i];
+      const bool in_image = image.contains(cv::Point2d(place.x(), place.y()));
+      scene.frames[i].push_back({marker, place, in_image && !hidden(place, scene.barriers)});
+    }
+    for (int light = 0; light < options.clutter; ++light) {
+      scene.clutter[i].emplace_back(random.uniform(0, options.size.width - 1), random.uniform(0, options.size.height - 1));
+    }
+  }
+  return scene;
+}
+
+cv::Mat render_frame(const MarkerScene& scene, int index) {
+  constexpr double kGround = 12, kBarrier = 34, kMarker = 202;
+  const MarkerSceneOptions& options = scene.options;
+  std::vector<Disc> discs;
+  for (const MarkerTruth& marker : scene.frames[index])
+    discs.push_back({marker.position, options.radius_px, kMarker, options.blur_px});
+  for (const Vector<2>& light : scene.clutter[index]) discs.push_back({light, options.radius_px, kMarker, options.blur_px});
+  cv::Mat image(options.size, CV_32FC1, cv::Scalar(kGround));
+  draw_discs(image, discs);
+  for (const Box& barrier : scene.barriers) draw_barrier(image, barrier, kBarrier);
+  return expose(image, options.noise, scene.seed * 100'003 + static_cast<std::uint64_t>(index));
+}
+
+}  // namespace marey::simulate::markers

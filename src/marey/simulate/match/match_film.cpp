@@ -1,0 +1,113 @@
+#include "marey/simulate/match/match_film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "marey/simulate/match/match_ground.h"
+
+namespace marey::simulate::match {
+namespace {
+
+constexpr double kGoalWidth = 7.32, kGoalHeight = 2.44, kPostWidth = 0.12;  // m
+
+Vector<2> in_world(const Matrix<3>& world_from_pitch, const Vector<2>& at) {
+  return (world_from_pitch * at.homogeneous()).head<2>();
+}
+
+std::vector<people::Post> goal_posts(const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch) {
+  std::vector<people::Post> posts;
+  for (const double x : {0.0, pitch.length}) {
+    for (const double side : {-1.0, 1.0}) {
+      const double y = pitch.width / 2 + side * (kGoalWidth + kPostWidth) / 2;
+      posts.push_back({in_world(world_from_pitch, {x - kPostWidth / 2, y - kPostWidth / 2}),
+                       in_world(world_from_pitch, {x + kPostWidth / 2, y + kPostWidth / 2}),
+                       kGoalHeight,
+                       {225, 226, 228}});
+    }
+  }
+  return posts;
+}
+
+people::PeopleRenderer renderer_of(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+                                   const MatchFilmOptions& options, std::uint64_t seed) {
+  people::RenderOptions render;
+  render.samples = 3;
+  render.shadows = options.shadows;
+  render.sun = {0.45, 0.3, 1.0};
+  render.shadow_level = options.shadow_level;
+  render.noise = options.noise;
+  const Picture ground = draw_match_ground(camera, world_from_pitch.inverse(), pitch, seed);
+  // Far outside the picture nothing needs to be drawn, however large a lens would make it.
+  const auto in_reach = [camera](const Vector<3>& point) -> std::optional<people::Sighting> {
+    const auto seen = sight(camera, point);
+    const double reach = camera.size().width;
+    if (!seen || std::abs(seen->at.x()) > 2 * reach || std::abs(seen->at.y()) > 2 * reach || seen->scale > reach)
+      return std::nullopt;
+    return seen;
+  };
+  return {ground, in_reach, goal_posts(world_from_pitch, pitch), render};
+}
+
+/// Corners, crossings of lines, marks: one half of the pitch, mirrored to the other.
+std::vector<Vector<2>> known_places(const geometry::PitchSize& pitch) {
+  const double middle = pitch.width / 2, half = pitch.length / 2;
+  std::vector<Vector<2>> places{{half, 0}, {half, middle - 9.15}, {half, middle}, {half, middle + 9.15}, {half, pitch.width}};
+  for (const bool other : {false, true}) {
+    const auto add = [&](double x, double y) { places.emplace_back(other ? pitch.length - x : x, y); };
+    for (const double side : {-1.0, 1.0}) {
+      add(0, middle + side * middle);
+      add(0, middle + side * 20.16);
+      add(16.5, middle + side * 20.16);
+      add(0, middle + side * 9.16);
+      add(5.5, middle + side * 9.16);
+      add(16.5, middle + side * 7.312);  // where the arc leaves the penalty area
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+MatchFilm::MatchFilm(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+                     const MatchFilmOptions& options, std::uint64_t seed)
+    : options_(options), seed_(seed), renderer_(renderer_of(camera, world_from_pitch, pitch, options, seed)) {}
+
+Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
+                          std::span<const people::Stance, kMatchPeople> stances, double time, std::int64_t index) const {
+  std::vector<people::PosedFigure> people;
+  for (std::size_t i = 0; i < figures.size(); ++i) people.push_back({static_cast<int>(i) + 1, &figures[i], stances[i]});
+  const double begin = static_cast<double>(seed_ % 97);
+  const double swing =
+      0.6 * std::sin(begin + 2 * std::numbers::pi * time / 71) + 0.4 * std::sin(2 * begin + 2 * std::numbers::pi * time / 29);
+  people::FrameConditions conditions;
+  conditions.light = 1 + options_.light_change * (swing - 1) / 2;
+  conditions.seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(index);
+  return renderer_.render(people, conditions).picture;
+}
+
+std::vector<MatchClick> match_clicks(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+                                     double noise, int wrong, std::uint64_t seed) {
+  constexpr double kSlip = 40;  // px
+  Random random(seed * 2654435761u + 51);
+  std::vector<MatchClick> clicks;
+  for (const Vector<2>& place : known_places(pitch)) {
+    const Vector<2> at = in_world(world_from_pitch, place);
+    const auto pixel = camera.project({at.x(), at.y(), 0});
+    const Vector<2> slip(noise * random.gaussian(), noise * random.gaussian());
+    if (pixel && camera.in_picture(*pixel)) clicks.push_back({place, *pixel + slip});
+  }
+  const int count = std::min(wrong, static_cast<int>(clicks.size()) / 2);
+  for (int i = 0; i < count; ++i) {  // in turn put elsewhere and named as its neighbour
+    MatchClick& click = clicks[static_cast<std::size_t>(2 * i)];
+    if (i % 2 == 0)
+      click.pixel += kSlip * Vector<2>(random.gaussian(), random.gaussian());
+    else
+      click.ground = clicks[static_cast<std::size_t>(2 * i + 1)].ground;
+  }
+  return clicks;
+}
+
+}  // namespace marey::simulate::match

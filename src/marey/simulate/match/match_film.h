@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "marey/core/geometry.h"
+#include "marey/core/picture.h"
+#include "marey/geometry/camera.h"
+#include "marey/geometry/pitch.h"
+#include "marey/simulate/match/match_view.h"
+
+namespace marey::simulate::match {
+
+struct MatchFilmOptions {
+  bool shadows = true;         ///< that people and goal posts cast
+  double shadow_level = 0.7;   ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
+  double noise = 1.2;          ///< standard deviation of luma, grey levels
+  double light_change = 0.08;  ///< the light swings by this share of itself, over half a minute and more
+};
+
+/// A match as one camera films it. Its empty scene is drawn once.
+class MatchFilm {
+ public:
+  MatchFilm(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+            const MatchFilmOptions& options, std::uint64_t seed);
+
+  /// The frame `index` at `time`, s since the kick-off. Safe to call from several threads.
+  Picture render(std::span<const people::Figure, kMatchPeople> figures, std::span<const people::Stance, kMatchPeople> stances,
+                 double time, std::int64_t index) const;
+
+ private:
+  MatchFilmOptions options_;
+  std::uint64_t seed_;
+  people::PeopleRenderer renderer_;
+};
+
+/// Somebody's click on a crossing of lines or another place that is easily recognised.
+struct MatchClick {
+  Vector<2> ground;  ///< m, on the pitch
+  Vector<2> pixel;
+};
+
+/// What somebody would click in a camera's picture: every such place that it sees, `noise` px off in each axis. Of these `wrong`
+/// lie elsewhere or bear another place's name.
+std::vector<MatchClick> match_clicks(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+                                     double noise, int wrong, std::uint64_t seed);
+
+}  // namespace marey::simulate::match

@@ -1,0 +1,184 @@
+// A person's box is that of his figure's limbs, each seen as two discs and what lies between them, so that it breathes with the
+// gait as real boxes do. What hides whom is counted on a coarse raster of each box: a cell is hidden where the box of somebody
+// nearer covers it. Cost: two projections a limb, some fifty a person and camera.
+#include "marey/simulate/match/match_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "marey/simulate/people/silhouette_raster.h"
+
+namespace marey::simulate::match {
+namespace {
+
+constexpr int kColumns = 8, kRows = 16;  // of the raster of a box
+constexpr double kBodyShare = 0.75;      // of the width of a box that its person fills: people see past each other's elbows
+constexpr double kLeast = 4;             // px; a box lower than this is nobody's
+
+struct Placed {
+  SeenPerson seen;
+  double depth = 0;  // m
+};
+
+std::optional<Placed> place(const Camera& camera, const people::Figure& figure, const people::Stance& stance) {
+  const auto foot = sight(camera, {stance.place.x(), stance.place.y(), 0});
+  if (!foot) return std::nullopt;
+  Placed placed;
+  placed.depth = foot->depth;
+  for (const people::Limb& limb : people::pose(figure, stance)) {
+    const auto from = sight(camera, limb.from), to = sight(camera, limb.to);
+    if (!from || !to) return std::nullopt;
+    const Box box =
+        people::bounds(people::RoundCone2{from->at, to->at, limb.from_radius * from->scale, limb.to_radius * to->scale});
+    placed.seen.whole = placed.seen.whole.empty() ? box : geometry::hull(placed.seen.whole, box);
+  }
+  return placed;
+}
+
+bool holds(const Box& box, double x, double y) {
+  const double trim = (1 - kBodyShare) / 2 * box.width;
+  return x >= box.left + trim && x < box.right() - trim && y >= box.top && y < box.bottom();
+}
+
+double visible_share(const Placed& placed, std::span<const Placed> all) {
+  std::vector<const Box*> before;
+  for (const Placed& other : all) {
+    if (other.depth < placed.depth && !geometry::intersection(other.seen.whole, placed.seen.whole).empty())
+      before.push_back(&other.seen.whole);
+  }
+  const Box& box = placed.seen.whole;
+  int visible = 0;
+  for (int row = 0; row < kRows; ++row) {
+    const double y = box.top + box.height * (row + 0.5) / kRows;
+    for (int column = 0; column < kColumns; ++column) {
+      const double x = box.left + box.width * (column + 0.5) / kColumns;
+      const Box& shown = placed.seen.shown;
+      if (x < shown.left || x >= shown.right() || y < shown.top || y >= shown.bottom()) continue;
+      visible += std::none_of(before.begin(), before.end(), [&](const Box* other) { return holds(*other, x, y); }) ? 1 : 0;
+    }
+  }
+  return static_cast<double>(visible) / (kRows * kColumns);
+}
+
+/// Every edge moves on its own, so that a size has the deviation asked for.
+Box disturbed(const Box& box, double noise, Random& random) {
+  const double sigma = noise / std::sqrt(2.0);
+  const double left = box.left + sigma * box.width * random.gaussian();
+  const double right = box.right() + sigma * box.width * random.gaussian();
+  const double top = box.top + sigma * box.height * random.gaussian();
+  const double bottom = box.bottom() + sigma * box.height * random.gaussian();
+  return {left, top, std::max(1.0, right - left), std::max(1.0, bottom - top)};
+}
+
+int poisson(double mean, Random& random) {
+  const double least = std::exp(-mean);
+  int count = 0;
+  for (double product = random.uniform(); product > least; product *= random.uniform()) ++count;
+  return count;
+}
+
+/// What the box of somebody upright at a place of the ground would be; nothing where that is out of the picture.
+std::optional<Box> box_at(const Camera& camera, const Vector<2>& at, double stature) {
+  const auto foot = sight(camera, {at.x(), at.y(), 0}), head = sight(camera, {at.x(), at.y(), stature});
+  if (!foot || !head || !camera.in_picture(foot->at) || !camera.in_picture(head->at)) return std::nullopt;
+  const double height = foot->at.y() - head->at.y();
+  if (height < kLeast) return std::nullopt;
+  return Box::from_centre((foot->at + head->at) / 2, 0.3 * height, height);
+}
+
+void wear(people::Figure& figure, const people::Rgb& shirt, const people::Rgb& shorts, const people::Rgb& socks) {
+  figure.colours[static_cast<std::size_t>(people::FigurePart::shirt)] = shirt;
+  figure.colours[static_cast<std::size_t>(people::FigurePart::shorts)] = shorts;
+  figure.colours[static_cast<std::size_t>(people::FigurePart::socks)] = socks;
+}
+
+}  // namespace
+
+std::optional<people::Sighting> sight(const Camera& camera, const Vector<3>& point) {
+  const auto seen = camera.project_with_jacobian(point);
+  if (!seen) return std::nullopt;
+  // Two of the three directions of space change the pixel: the geometric mean of how much.
+  const double scale = std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+  return people::Sighting{seen->pixel, scale, (point - camera.centre()).norm()};
+}
+
+std::array<people::Figure, kMatchPeople> match_figures(std::uint64_t seed) {
+  Random random(seed * 2654435761u + 31);
+  std::array<people::Figure, kMatchPeople> figures;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const int team = match_team(static_cast<int>(i)) == "white" ? 0 : 1;
+    figures[i] = people::draw_figure(random, team);
+    figures[i].stature = std::clamp(random.gaussian(1.79, 0.055), 1.68, 1.95);
+    if (i >= kMatchPlayers)
+      wear(figures[i], {28, 28, 30}, {24, 24, 26}, {26, 26, 28});
+    else if (i == 0)
+      wear(figures[i], {226, 205, 40}, {215, 192, 38}, {220, 200, 40});
+    else if (i == kMatchSide)
+      wear(figures[i], {230, 110, 30}, {40, 40, 44}, {226, 108, 30});
+    else if (team == 0)
+      wear(figures[i], {232, 233, 236}, {226, 227, 232}, {225, 225, 230});
+    else
+      wear(figures[i], {26, 84, 190}, {24, 74, 176}, {26, 82, 186});
+  }
+  return figures;
+}
+
+people::Stance match_stance(const MatchPerson& person, const Matrix<3>& world_from_pitch) {
+  const Matrix<2> turn = world_from_pitch.topLeftCorner<2, 2>();
+  people::Stance stance;
+  stance.place = turn * person.place + world_from_pitch.topRightCorner<2, 1>();
+  const Vector<2> face = turn * Vector<2>(std::cos(person.heading), std::sin(person.heading));
+  stance.heading = std::atan2(face.y(), face.x());
+  stance.speed = person.velocity.norm();
+  stance.phase = person.phase;
+  return stance;
+}
+
+std::vector<SeenPerson> look_at(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
+                                std::span<const people::Stance, kMatchPeople> stances) {
+  const Box picture{0, 0, static_cast<double>(camera.size().width), static_cast<double>(camera.size().height)};
+  std::vector<Placed> all;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    auto placed = place(camera, figures[i], stances[i]);
+    if (!placed) continue;
+    placed->seen.person = static_cast<int>(i);
+    placed->seen.shown = geometry::intersection(placed->seen.whole, picture);
+    if (!placed->seen.shown.empty() && placed->seen.whole.height >= kLeast) all.push_back(*placed);
+  }
+  std::vector<SeenPerson> seen;
+  for (const Placed& placed : all) {
+    seen.push_back(placed.seen);
+    seen.back().visible_share = visible_share(placed, all);
+  }
+  return seen;
+}
+
+std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const Camera& camera, const Matrix<3>& world_from_pitch,
+                                      const geometry::PitchSize& pitch, std::int32_t frame, const MatchDetectorOptions& options,
+                                      Random& random) {
+  std::vector<LabelledBox> boxes;
+  for (const SeenPerson& person : seen) {
+    // The same numbers are drawn whatever comes of them, so that one person's luck does not change another's.
+    const double luck = random.uniform();
+    const Box box = disturbed(person.shown, options.size_noise, random);
+    const double score = std::clamp(0.86 * std::min(1.0, 0.55 + 0.45 * person.visible_share) + 0.08 * random.gaussian(), 0.1, 1.0);
+    const double found = person.visible_share < kHiddenShare ? options.hidden_found : 1.0;
+    if (luck < (1 - options.missed) * found) boxes.push_back({frame, LabelledBox::nobody, box, score});
+  }
+  constexpr double kMargin = 3;   // m
+  constexpr int kAttempts = 200;  // to find a place that the camera sees
+  for (int left = poisson(options.false_alarms, random); left > 0; --left) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const Vector<3> at(random.uniform(-kMargin, pitch.length + kMargin), random.uniform(-kMargin, pitch.width + kMargin), 1);
+      const auto box = box_at(camera, (world_from_pitch * at).head<2>(), random.uniform(1.5, 2));
+      if (!box) continue;
+      const double score = std::clamp(random.gaussian(0.55, 0.15), 0.1, 1.0);
+      boxes.push_back({frame, LabelledBox::nobody, disturbed(*box, options.size_noise, random), score});
+      break;
+    }
+  }
+  std::stable_sort(boxes.begin(), boxes.end(), [](const LabelledBox& a, const LabelledBox& b) { return a.box.left < b.box.left; });
+  return boxes;
+}
+
+}  // namespace marey::simulate::match

@@ -1,0 +1,157 @@
+#include "marey/simulate/people/people_film.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+#include "marey/simulate/people/people_motion.h"
+
+namespace marey::simulate::people {
+namespace {
+
+constexpr std::array<NamedPeopleSituation, 6> kSituations{{{"apart", PeopleSituation::apart},
+                                                           {"crossing", PeopleSituation::crossing},
+                                                           {"post", PeopleSituation::post},
+                                                           {"abrupt", PeopleSituation::abrupt},
+                                                           {"border", PeopleSituation::border},
+                                                           {"crowd", PeopleSituation::crowd}}};
+
+constexpr double kStature = 1.78;  // m
+constexpr double kLens = 3.0;      // focal length in widths of the picture: as from a stand
+
+void check(const PeopleFilmOptions& options) {
+  if (options.size.width < 32 || options.size.height < 32)
+    throw Error("a film of people needs pictures of at least 32 × 32 pixels");
+  if (!(options.rate_hz > 0)) throw Error("a film's rate is {} frames a second; it must be positive", options.rate_hz);
+  if (!(options.height_px >= 4) || options.height_px > options.size.height)
+    throw Error("people {} px tall do not fit a picture {} px high; 4 px is the least", options.height_px, options.size.height);
+  if (options.samples < 1 || options.samples > 16)
+    throw Error("{} points per pixel and axis; 1 to 16 are possible", options.samples);
+  if (options.frames && *options.frames < 1) throw Error("a film of {} frames; it needs one at least", *options.frames);
+  if (options.people && *options.people < 0) throw Error("{} people; the number cannot be negative", *options.people);
+}
+
+LevelCamera camera_for(const PeopleFilmOptions& options) {
+  LevelCamera camera;
+  camera.size = options.size;
+  camera.focal = kLens * options.size.width;
+  camera.distance = camera.focal * kStature * std::cos(camera.pitch) / options.height_px;
+  return camera;
+}
+
+/// The factor on every level: steady; slowly up and down by a third; or by a cloud, from one frame to the next.
+std::vector<double> lights(LightChange change, int frames, Random& random) {
+  std::vector<double> values(static_cast<std::size_t>(frames), 1.0);
+  const double begin = random.uniform(0, 2 * std::numbers::pi);
+  const int first = frames * 2 / 5 + random.integer(0, std::max(1, frames / 10));
+  const int second = frames * 7 / 10 + random.integer(0, std::max(1, frames / 10));
+  const double cloud = random.uniform(0.6, 0.75);
+  for (int i = 0; i < frames; ++i) {
+    double& value = values[static_cast<std::size_t>(i)];
+    if (change == LightChange::gradual) value = 0.85 + 0.2 * std::sin(begin + 2 * std::numbers::pi * i / std::max(200, frames));
+    if (change == LightChange::sudden && i >= first && i < second) value = cloud;
+  }
+  return values;
+}
+
+std::vector<PosedFigure> posed(const std::vector<PeopleMotion::Placed>& placed, const std::vector<Figure>& figures) {
+  std::vector<PosedFigure> people;
+  for (const auto& one : placed) people.push_back({one.id, &figures[static_cast<std::size_t>(one.id - 1)], one.stance});
+  return people;
+}
+
+Picture scaled(const Picture& picture, cv::Size size) {
+  if (picture.size() == size) return picture;
+  cv::Mat bgr;
+  cv::resize(picture.bgr(), bgr, size, 0, 0, cv::INTER_AREA);
+  return Picture::from_bgr(bgr);
+}
+
+class FilmSource final : public Source {
+ public:
+  explicit FilmSource(std::shared_ptr<const PeopleFilm> film) : film_(std::move(film)) {
+    info_.name = "simulated people";
+    info_.size = film_->options().size;
+    info_.rate_hz = film_->options().rate_hz;
+    info_.frame_count = film_->frames();
+  }
+
+  const SourceInfo& info() const override { return info_; }
+
+  std::optional<Frame> next() override {
+    if (next_ >= film_->frames()) return std::nullopt;
+    Frame frame;
+    frame.index = next_;
+    frame.time = timestamp_from_seconds(next_ / film_->options().rate_hz);
+    frame.picture = film_->render(next_++).picture;
+    return frame;
+  }
+
+ private:
+  std::shared_ptr<const PeopleFilm> film_;
+  SourceInfo info_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+std::span<const NamedPeopleSituation> people_situations() {
+  return kSituations;
+}
+
+PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const PeopleFilmOptions& options)
+    : situation_(situation), options_(options) {
+  check(options_);
+  const bool few = situation == PeopleSituation::crossing || situation == PeopleSituation::post;
+  if (!options_.frames) options_.frames = situation == PeopleSituation::crossing ? 100 : 200;
+  if (!options_.people) options_.people = few ? 2 : 6;
+  camera_ = camera_for(options_);
+  Random random(seed);
+  PeopleMotion motion = move_people(situation, camera_, options_, random);
+  figures_ = std::move(motion.figures);
+  for (const auto& frame : motion.frames) people_.push_back(posed(frame, figures_));
+  const std::vector<double> light = lights(options_.light, *options_.frames, random);
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    FrameConditions& now = conditions_.emplace_back();
+    now.light = light[i];
+    now.seed = seed * 1'000'003 + i;
+    if (options_.shake_px > 0) now.shift = options_.shake_px * Vector<2>(random.gaussian(), random.gaussian());
+  }
+  PeopleFilmOptions before = options_;
+  before.people = 6;
+  const int second = std::max(1, static_cast<int>(std::lround(options_.rate_hz)));
+  before.frames = kEarlier * second;
+  PeopleMotion earlier = move_people(PeopleSituation::apart, camera_, before, random);
+  earlier_figures_ = std::move(earlier.figures);
+  for (int i = 0; i < kEarlier; ++i) {
+    earlier_.push_back(posed(earlier.frames[static_cast<std::size_t>(i) * static_cast<std::size_t>(second)], earlier_figures_));
+  }
+  RenderOptions render;
+  render.samples = options_.samples;
+  render.shadows = options_.shadows;
+  render.noise = options_.noise;
+  const Picture ground = options_.ground.empty() ? draw_lawn(camera_, 1) : scaled(options_.ground, options_.size);
+  renderer_ = std::make_unique<PeopleRenderer>(ground, camera_, std::move(motion.posts), render);
+}
+
+RenderedFrame PeopleFilm::render(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  return renderer_->render(people_[i], conditions_[i]);
+}
+
+Picture PeopleFilm::render_earlier(int index) const {
+  FrameConditions conditions = conditions_[static_cast<std::size_t>(index * frames() / kEarlier)];
+  conditions.seed = ~conditions.seed;  // other noise than that of the frame itself
+  return renderer_->render(earlier_[static_cast<std::size_t>(index)], conditions).picture;
+}
+
+std::unique_ptr<Source> make_source(std::shared_ptr<const PeopleFilm> film) {
+  return std::make_unique<FilmSource>(std::move(film));
+}
+
+}  // namespace marey::simulate::people

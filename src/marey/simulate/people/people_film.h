@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/picture.h"
+#include "marey/core/source.h"
+#include "marey/simulate/ground_picture.h"
+#include "marey/simulate/people/figure.h"
+#include "marey/simulate/people/people_renderer.h"
+
+namespace marey::simulate::people {
+
+/// What people do in a film.
+enum class PeopleSituation {
+  apart,     ///< each walks and runs in a lane of the picture's own: nobody is hidden
+  crossing,  ///< two players pass, the farther one partly hidden for some twenty frames (Arnaut & Costa, Figure 6)
+  post,      ///< each passes behind a board of his own, which hides him wholly for a while
+  abrupt,    ///< apart, but they stop, start, turn round, squat and throw up their arms as abruptly as people can
+  border,    ///< each walks out of the picture and in again at its sides, in a lane of his own
+  crowd,     ///< everybody goes anywhere: every kind of occlusion, entering and leaving
+};
+
+struct NamedPeopleSituation {
+  std::string_view name;
+  PeopleSituation situation;
+};
+/// All situations with the names that the command line uses.
+std::span<const NamedPeopleSituation> people_situations();
+
+enum class LightChange { steady, gradual, sudden };
+
+struct PeopleFilmOptions {
+  cv::Size size{768, 576};    ///< px
+  double rate_hz = 25;        ///< frames a second
+  std::optional<int> frames;  ///< nothing: 100 of crossing, 200 of the others
+  std::optional<int> people;  ///< nothing: 2 of crossing and post, 6 of the others. As many as fit where they keep apart.
+  double height_px = 60;      ///< of a person of 1.78 m who stands in the middle of the picture
+  double pace = 1;            ///< factor on everybody's speed
+  double noise = 2;           ///< standard deviation of luma, grey levels
+  double shake_px = 0;        ///< standard deviation of the picture's movement, each axis
+  LightChange light = LightChange::steady;
+  bool shadows = true;
+  double hidden_s = 2;      ///< post: the longest time that somebody is hidden; the shortest is a fifth of it
+  int overlap_frames = 20;  ///< crossing: about how long the two overlap
+  Picture ground;           ///< the empty scene, scaled to `size`; empty for a lawn
+  int samples = 4;          ///< lattice points per pixel and axis, for edges and silhouettes
+};
+
+/// A film of people whose truth is known: the same for the same seed.
+class PeopleFilm {
+ public:
+  /// Throws Error where an option is out of its domain.
+  PeopleFilm(PeopleSituation situation, std::uint64_t seed, const PeopleFilmOptions& options = {});
+
+  PeopleSituation situation() const { return situation_; }
+  const PeopleFilmOptions& options() const { return options_; }
+  int frames() const { return static_cast<int>(conditions_.size()); }
+  const LevelCamera& camera() const { return camera_; }
+  /// Everybody who is in the film at all, in the order of their ids 1, 2, …
+  const std::vector<Figure>& figures() const { return figures_; }
+
+  /// Frame 0 ≤ `index` < frames(): picture and truth. Safe to call from several threads.
+  RenderedFrame render(int index) const;
+  /// What the camera saw before the film began, in the light of the film: other people who keep apart, moments apart. To learn the
+  /// scene from. 0 ≤ `index` < kEarlier.
+  Picture render_earlier(int index) const;
+  static constexpr int kEarlier = 20;
+
+ private:
+  PeopleSituation situation_;
+  PeopleFilmOptions options_;
+  LevelCamera camera_;
+  std::vector<Figure> figures_;
+  std::vector<std::vector<PosedFigure>> people_;  ///< by frame; their figures are ours
+  std::vector<FrameConditions> conditions_;       ///< by frame
+  std::vector<Figure> earlier_figures_;
+  std::vector<std::vector<PosedFigure>> earlier_;
+  std::unique_ptr<PeopleRenderer> renderer_;
+};
+
+/// The film as a camera gives it. Holds `film`.
+std::unique_ptr<Source> make_source(std::shared_ptr<const PeopleFilm> film);
+
+}  // namespace marey::simulate::people

@@ -1,0 +1,296 @@
+// People go from goal to goal: they gain and lose speed by 3 m/s² and turn by a few rad/s, as people do, unless a situation wants
+// it abrupt. Where they shall keep apart, the picture is cut into lanes one above the other, with room for a person and his arms; a
+// goal is a place in one's own lane. Meetings (crossing, post) are laid out backwards from the moment of the meeting.
+#include "marey/simulate/people/people_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace marey::simulate::people {
+namespace {
+
+constexpr double kGain = 3.0;  // m/s²
+constexpr double kTurn = 3.5;  // rad/s
+// As abruptly as people can: they stop from a run within two steps, turn round in a quarter of a second, squat in a fifth.
+constexpr double kAbruptGain = 12;    // m/s²
+constexpr double kAbruptTurn = 12;    // rad/s
+constexpr double kAbruptShape = 5;    // share of the whole change, 1/s
+constexpr double kWide = 0.36;        // of a person from the side in mid stride, in heights
+constexpr double kLaneHeights = 1.9;  // a lane, in heights of the people in it
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2 * std::numbers::pi);
+}
+
+/// A person on the way to a goal.
+struct Walker {
+  int id = 0;
+  Stance stance;
+  double wished_speed = 0, wished_crouch = 0, wished_reach = 0;
+  Vector<2> goal = Vector<2>::Zero();
+  double rests_until = 0;  // s
+
+  /// Moves on by dt; true where the goal is reached.
+  bool walk(double now, double dt, double stature, bool abrupt) {
+    const Vector<2> way = goal - stance.place;
+    const double wished_heading = std::atan2(way.y(), way.x());
+    const double turn = wrapped(wished_heading - stance.heading);
+    const double wish = now < rests_until ? 0 : wished_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
+    const double gain = abrupt ? kAbruptGain : kGain;
+    const double most = (abrupt ? kAbruptTurn : kTurn) * dt;
+    stance.speed += std::clamp(wish - stance.speed, -gain * dt, gain * dt);
+    if (now >= rests_until) stance.heading += std::clamp(turn, -most, most);
+    stance.crouch += std::clamp(wished_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
+    stance.reach += std::clamp(wished_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
+    step(dt, stature);
+    return way.norm() < std::max(0.4, 0.35 * stance.speed);
+  }
+
+  void step(double dt, double stature) {
+    stance.place += stance.speed * dt * Vector<2>(std::cos(stance.heading), std::sin(stance.heading));
+    stance.phase = wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt / stride_length(stance.speed, stature));
+  }
+};
+
+class Director {
+ public:
+  Director(const LevelCamera& camera, const PeopleFilmOptions& options, Random& random)
+      : camera_(camera), options_(options), random_(random), dt_(1 / options.rate_hz) {
+    motion_.frames.resize(static_cast<std::size_t>(*options.frames));
+  }
+
+  void in_lanes(bool abrupt, bool over_border);
+  void crossing();
+  void behind_posts();
+  void crowd();
+  PeopleMotion take() { return std::move(motion_); }
+
+ private:
+  int new_figure(int team) {
+    motion_.figures.push_back(draw_figure(random_, team));
+    return static_cast<int>(motion_.figures.size());
+  }
+  double stature(int id) const { return motion_.figures[static_cast<std::size_t>(id - 1)].stature; }
+  double speed() { return options_.pace * (random_.chance(0.6) ? random_.uniform(0.9, 1.9) : random_.uniform(2.5, 5.0)); }
+  /// Height in the picture, px, of a person whose feet are at a row.
+  double height_at(double row) const {
+    const auto at = camera_.on_ground({camera_.size.width / 2.0, row});
+    return at ? 1.78 * std::cos(camera_.pitch) * camera_(Vector<3>(at->x(), at->y(), 0))->scale : 1;
+  }
+  Vector<2> ground(double column, double row) const {
+    // Above the horizon nobody can stand: as far away as the picture's top row that shows ground.
+    for (double r = row;; r += 1) {
+      if (const auto at = camera_.on_ground({column, r})) return *at;
+    }
+  }
+  struct Lane {
+    double top = 0, bottom = 0;  // rows between which the feet go
+  };
+  std::vector<Lane> lanes(int wanted) const;
+  void begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal);
+  void walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander);
+  void change_shape(Walker& walker, bool abrupt);
+
+  LevelCamera camera_;
+  PeopleFilmOptions options_;
+  Random& random_;
+  double dt_;
+  PeopleMotion motion_;
+};
+
+std::vector<Director::Lane> Director::lanes(int wanted) const {
+  // As many as wanted and as fit, about the middle of the picture.
+  const double middle = camera_.size.height / 2.0;
+  const double room = wanted * kLaneHeights * height_at(middle);
+  std::vector<Lane> found;
+  for (double row = std::min(camera_.size.height - 6.0, middle + room / 2 - 0.4 * height_at(middle));
+       static_cast<int>(found.size()) < wanted;) {
+    const double height = height_at(row);
+    const double top = row - kLaneHeights * height;
+    if (top < 4 && !found.empty()) break;
+    found.push_back({row - 0.55 * height, row});
+    row = top;
+  }
+  return found;
+}
+
+void Director::begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal) {
+  walker.goal = goal;
+  walker.stance.place = place;
+  walker.stance.heading = std::atan2((goal - place).y(), (goal - place).x());
+  walker.stance.phase = random_.uniform(0, 2 * std::numbers::pi);
+  walker.wished_speed = speed();
+  walker.stance.speed = walker.wished_speed;
+}
+
+void Director::change_shape(Walker& walker, bool abrupt) {
+  if (!abrupt || !random_.chance(0.9 * dt_)) return;
+  walker.wished_crouch = random_.chance(0.5) ? random_.uniform(0.4, 1) : 0;
+  walker.wished_reach = random_.chance(0.5) ? random_.uniform(0.5, 1) : 0;
+}
+
+void Director::in_lanes(bool abrupt, bool over_border) {
+  const double width = camera_.size.width;
+  int team = 0;
+  for (const Lane& lane : lanes(*options_.people)) {
+    const double height = height_at(lane.bottom);
+    const double low = over_border ? -0.6 * height : 0.7 * height;
+    const double high = over_border ? width + 0.6 * height : width - 0.7 * height;
+    const auto place = [&](double column) { return ground(column, random_.uniform(lane.top, lane.bottom)); };
+    const auto side = [&](bool right) { return place(right ? high : low); };
+    Walker walker;
+    walker.id = new_figure(team++ % 2);
+    bool right = random_.chance(0.5);
+    begin(walker, place(random_.uniform(std::max(low, 0.1 * width), std::min(high, 0.9 * width))),
+          over_border ? side(right) : place(random_.uniform(low, high)));
+    for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
+      const double now = static_cast<double>(frame) * dt_;
+      motion_.frames[frame].push_back({walker.id, walker.stance});
+      change_shape(walker, abrupt);
+      const bool bored = abrupt && random_.chance(0.7 * dt_);
+      if (!walker.walk(now, dt_, stature(walker.id), abrupt) && !bored) continue;
+      if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.3, 1.5);
+      walker.wished_speed = speed();
+      if (over_border) {
+        const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
+        const bool gone = column < -0.3 * height || column > width - 1 + 0.3 * height;
+        if (gone) {
+          walker.id = new_figure(team++ % 2);
+          walker.stance.place = side(right);
+        }
+        // Some turn back at the very border, half of them outside.
+        right = !right;
+        if (random_.chance(0.35)) {
+          walker.goal = place(right ? width - 1 : 0);
+          continue;
+        }
+      }
+      walker.goal = over_border ? side(right) : place(random_.uniform(low, high));
+    }
+  }
+}
+
+/// On a way that passes a place at a moment; its heading swings by up to `wander` rad, for nobody walks like a machine.
+void Director::walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander) {
+  Walker walker;
+  walker.id = id;
+  walker.stance.speed = velocity.norm();
+  walker.stance.heading = std::atan2(velocity.y(), velocity.x());
+  walker.stance.place = at - when * velocity;
+  walker.stance.phase = random_.uniform(0, 2 * std::numbers::pi);
+  const double beat = random_.uniform(0.15, 0.4);  // Hz
+  const double heading = walker.stance.heading;
+  for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
+    motion_.frames[frame].push_back({walker.id, walker.stance});
+    const double since = static_cast<double>(frame) * dt_ - when;
+    walker.stance.heading = heading + wander * std::sin(2 * std::numbers::pi * beat * since);
+    walker.step(dt_, stature(walker.id));
+  }
+}
+
+void Director::crossing() {
+  const double middle = 0.45 * static_cast<double>(motion_.frames.size()) * dt_;
+  const int team = random_.integer(0, 1);
+  const int far = new_figure(team);
+  const int near = new_figure(random_.chance(0.5) ? team : 1 - team);
+  const double row = camera_.size.height * random_.uniform(0.5, 0.7);
+  const double column = camera_.size.width * random_.uniform(0.4, 0.6);
+  const double height = height_at(row);
+  const Vector<2> far_at = ground(column, row);
+  const Vector<2> near_at = ground(column + random_.gaussian(0, 0.08 * height), row + random_.uniform(0.15, 0.5) * height);
+  // Both widths are passed in the time of the overlap.
+  const double px_per_m = camera_(Vector<3>(far_at.x(), far_at.y(), 0))->scale;
+  const double apart = 2 * kWide * height / px_per_m / (options_.overlap_frames * dt_);
+  const Vector<2> common = options_.pace * Vector<2>(random_.uniform(-1.6, 1.6), random_.uniform(-0.6, 0.6));
+  const double side = random_.chance(0.5) ? 0.5 : -0.5;
+  const double drift = random_.uniform(-0.2, 0.2);
+  walk_straight(far, far_at, middle, common + Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
+  walk_straight(near, near_at, middle, common - Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
+}
+
+void Director::behind_posts() {
+  int team = 0;
+  for (const Lane& lane : lanes(*options_.people)) {
+    const double row = 0.5 * (lane.top + lane.bottom);
+    const double height = height_at(row);
+    const int id = new_figure(team++ % 2);
+    const double hidden = random_.uniform(0.2, 1) * options_.hidden_s;
+    const Vector<2> at = ground(camera_.size.width * random_.uniform(0.4, 0.6), row);
+    const double px_per_m = camera_(Vector<3>(at.x(), at.y(), 0))->scale;
+    // The board hides the whole width of a person for that long; the way ends within the picture.
+    const double length = static_cast<double>(motion_.frames.size()) * dt_;
+    const double person = kWide * height / px_per_m;
+    const double half = 0.36 * camera_.size.width / px_per_m;
+    const double pace = std::min(options_.pace * random_.uniform(0.9, 2.4), half / (0.6 * length));
+    const double wide = person + pace * hidden;
+    const double side = random_.chance(0.5) ? 1 : -1;
+    const double middle = random_.uniform(0.4, 0.55) * length;
+    walk_straight(id, at, middle, {side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
+    const Vector<2> front = at - Vector<2>(0, 0.9);
+    motion_.posts.push_back({front - Vector<2>(wide / 2, 0), front + Vector<2>(wide / 2, 0), 2.7, {74, 82, 96}});
+  }
+}
+
+void Director::crowd() {
+  const double width = camera_.size.width;
+  const double low_row = camera_.size.height - 4;
+  const double high_row = std::max(0.3 * camera_.size.height, 4 + height_at(0.3 * camera_.size.height));
+  const auto row = [&] { return random_.uniform(high_row, low_row); };
+  const auto outside = [&] {
+    const double r = row();
+    return ground(random_.chance(0.5) ? -height_at(r) : width + height_at(r), r);
+  };
+  const auto inside = [&] { return ground(random_.uniform(0.05, 0.95) * width, row()); };
+  std::vector<Walker> walkers(static_cast<std::size_t>(*options_.people));
+  int team = 0;
+  for (Walker& walker : walkers) {
+    walker.id = new_figure(team++ % 2);
+    begin(walker, inside(), inside());
+  }
+  for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
+    const double now = static_cast<double>(frame) * dt_;
+    for (Walker& walker : walkers) {
+      motion_.frames[frame].push_back({walker.id, walker.stance});
+      if (!walker.walk(now, dt_, stature(walker.id), false)) continue;
+      const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
+      if (column < -10 || column > width + 10) {
+        walker.id = new_figure(team++ % 2);
+        begin(walker, outside(), inside());
+        continue;
+      }
+      if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.5, 4);
+      walker.wished_speed = speed();
+      walker.goal = random_.chance(0.25) ? outside() : inside();
+    }
+  }
+}
+
+}  // namespace
+
+PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, const PeopleFilmOptions& options, Random& random) {
+  Director director(camera, options, random);
+  switch (situation) {
+    case PeopleSituation::apart:
+      director.in_lanes(false, false);
+      break;
+    case PeopleSituation::abrupt:
+      director.in_lanes(true, false);
+      break;
+    case PeopleSituation::border:
+      director.in_lanes(false, true);
+      break;
+    case PeopleSituation::crossing:
+      director.crossing();
+      break;
+    case PeopleSituation::post:
+      director.behind_posts();
+      break;
+    case PeopleSituation::crowd:
+      director.crowd();
+      break;
+  }
+  return director.take();
+}
+
+}  // namespace marey::simulate::people

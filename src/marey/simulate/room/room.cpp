@@ -1,0 +1,269 @@
+// The room as a function of time: every path is made of sines, so that any frame can be asked for without those before it, and
+// all that is random in a frame (noise, what is missed, ghosts) is drawn from a generator of that frame and camera alone.
+// One frame costs cameras × markers × 15 distances between line pieces where a body hides its markers.
+#include "marey/simulate/room/room.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "marey/simulate/random.h"
+#include "marey/simulate/room/body.h"
+#include "marey/simulate/room/room_rig.h"
+
+namespace marey::simulate::room {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// One seed from several numbers (the finaliser of SplitMix64).
+std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
+  std::uint64_t x = a * 0x9E3779B97F4A7C15u + b * 0xD1B54A32D192ED03u + c * 0x8CB92BA72F3D8DD7u + 0x632BE59BD9B4E019u;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+/// A smooth way to and fro that comes near every place between −1 and 1 in time: two sines of incommensurate rates.
+struct Sway {
+  double slow, quick, slow_phase, quick_phase;  // rad/s, rad
+
+  static Sway drawn(double rate, Random& random) {
+    return {rate * random.uniform(0.8, 1.2), rate * random.uniform(1.9, 2.6), random.uniform(0, 2 * kPi),
+            random.uniform(0, 2 * kPi)};
+  }
+  double at(double t) const { return 0.72 * std::sin(slow * t + slow_phase) + 0.28 * std::sin(quick * t + quick_phase); }
+};
+
+struct Drift {
+  std::array<Sway, 3> axes;
+  static Drift drawn(double rate, Random& random) {
+    return {{Sway::drawn(rate, random), Sway::drawn(rate, random), Sway::drawn(rate, random)}};
+  }
+  Vector<3> at(double t) const { return {axes[0].at(t), axes[1].at(t), axes[2].at(t)}; }
+};
+
+}  // namespace
+
+struct RoomScene::Parts {
+  RoomOptions options;
+  Rig rig, after_bump;
+  std::vector<Camera> cameras, cameras_after;
+  std::vector<std::string> labels;
+  std::vector<BodyMarker> body;
+  std::vector<Drift> cloud;
+  Drift wand_place, wand_turn;
+  double first_angle = 0, step_phase = 0;  // of the walk
+
+  bool has_body() const { return !body.empty(); }
+  bool is_bumped(double time_s) const { return options.bump && time_s >= options.bump->time_s; }
+  const Camera& camera(int index, double time_s) const {
+    return (is_bumped(time_s) ? cameras_after : cameras)[static_cast<std::size_t>(index)];
+  }
+
+  BodyPose pose(double t) const;
+  std::vector<Vector<3>> points(double t) const;
+  bool covered(int marker, double t) const;
+  bool sees(int index, double t, const Vector<3>& point, const BodyPose& pose, Vector<2>& pixel) const;
+  std::vector<RoomBlob> blobs(int index, std::int64_t frame) const;
+  void merge(std::vector<RoomBlob>& blobs, std::span<const double> far) const;
+};
+
+BodyPose RoomScene::Parts::pose(double t) const {
+  if (options.motion == RoomMotion::wave) return waving_pose({0, 0, first_angle}, t);
+  if (options.motion != RoomMotion::walk) return standing_pose({0, 0, first_angle});
+  // An ellipse whose axes turn slowly, at about 1.2 m/s; one double step takes a second.
+  const double a = 0.33 * options.volume.x(), b = 0.23 * options.volume.y();
+  const double round = 1.1 * t / ((a + b) / 2), turned = 0.05 * t + first_angle;
+  const Vector<2> along(-a * std::sin(round), b * std::cos(round));
+  const double c = std::cos(turned), s = std::sin(turned), x = a * std::cos(round), y = b * std::sin(round);
+  return walking_pose({c * x - s * y, s * x + c * y, std::atan2(along.y(), along.x()) + turned}, 2 * kPi * t + step_phase);
+}
+
+std::vector<Vector<3>> RoomScene::Parts::points(double t) const {
+  std::vector<Vector<3>> result;
+  const Vector<3> half = options.volume / 2;
+  if (has_body()) {
+    const BodyPose at = pose(t);
+    for (const BodyMarker& marker : body) result.push_back(at[static_cast<std::size_t>(marker.limb)] * marker.in_limb);
+  } else if (options.motion == RoomMotion::ground) {
+    result = options.ground_frame;
+  } else if (options.motion == RoomMotion::cloud) {
+    for (const Drift& each : cloud) result.push_back(Vector<3>(0, 0, half.z()) + 0.98 * half.cwiseProduct(each.at(t)));
+  } else {
+    const Vector<3> turn = wand_turn.at(t);
+    const double up = 1.4 * turn.x(), round = 2 * kPi * turn.y() + 0.4 * t;
+    const Vector<3> axis(std::cos(up) * std::cos(round), std::cos(up) * std::sin(round), std::sin(up));
+    const double middle = (options.wand.front() + options.wand.back()) / 2;
+    const Vector<3> place = Vector<3>(0, 0, half.z()) + 0.92 * half.cwiseProduct(wand_place.at(t));
+    for (const double along : options.wand) result.push_back(place + (along - middle) * axis);
+  }
+  return result;
+}
+
+/// Time is cut into slots, each of which may hold one gap of a marker, drawn from the slot's own number.
+bool RoomScene::Parts::covered(int marker, double t) const {
+  if (options.gap_share <= 0) return false;
+  const double longest = options.gap_s, mean = 0.55 * longest, slot = std::max(0.4 * longest / options.gap_share, 1.05 * longest);
+  const double which = std::floor(t / slot);
+  const auto drawn = [&](std::uint64_t what) {
+    const auto number = static_cast<std::uint64_t>(static_cast<std::int64_t>(which));
+    return static_cast<double>(mixed(options.seed * 4 + what, number, static_cast<std::uint64_t>(marker)) >> 11) * 0x1.0p-53;
+  };
+  if (drawn(1) >= options.gap_share * slot / mean) return false;
+  const double length = longest * (0.1 + 0.9 * drawn(2)), begin = drawn(3) * (slot - length);
+  const double within = t - which * slot;
+  return within >= begin && within < begin + length;
+}
+
+bool RoomScene::Parts::sees(int index, double t, const Vector<3>& point, const BodyPose& at, Vector<2>& pixel) const {
+  const Camera& eye = camera(index, t);
+  const auto seen = eye.project(point);
+  if (!seen || !eye.in_picture(*seen)) return false;
+  pixel = *seen;
+  return !(options.occlusion && has_body() && hidden_by_body(at, point, eye.centre()));
+}
+
+/// Blobs nearer than merge_px become one, again and again: each takes in the next that touches it.
+void RoomScene::Parts::merge(std::vector<RoomBlob>& blobs, std::span<const double> far) const {
+  std::vector<RoomBlob> result;
+  std::vector<bool> used(blobs.size(), false);
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    if (used[i]) continue;
+    RoomBlob joint = blobs[i];
+    std::size_t nearest = i;
+    int count = 1;
+    for (std::size_t j = i + 1; j < blobs.size(); ++j) {
+      if (used[j] || (blobs[j].pixel - joint.pixel).norm() >= options.merge_px) continue;
+      used[j] = true;
+      joint.pixel = (joint.pixel * count + blobs[j].pixel) / (count + 1);
+      ++count;
+      joint.merged = true;
+      if (far[j] < far[nearest]) nearest = j;
+    }
+    joint.marker = blobs[nearest].marker;
+    result.push_back(joint);
+  }
+  blobs = std::move(result);
+}
+
+std::vector<RoomBlob> RoomScene::Parts::blobs(int index, std::int64_t frame) const {
+  const double t = static_cast<double>(frame) / options.rate_hz + rig.cameras[static_cast<std::size_t>(index)].offset_s.value_or(0);
+  const std::vector<Vector<3>> places = points(t);
+  const BodyPose at = has_body() ? pose(t) : BodyPose{};
+  Random random(mixed(options.seed, static_cast<std::uint64_t>(frame), static_cast<std::uint64_t>(index)));
+  std::vector<RoomBlob> result;
+  std::vector<double> far;
+  for (int marker = 0; marker < std::ssize(places); ++marker) {
+    const Vector<3>& place = places[static_cast<std::size_t>(marker)];
+    Vector<2> pixel;
+    if (!sees(index, t, place, at, pixel) || covered(marker, t)) continue;
+    result.push_back({pixel, marker, false});
+    far.push_back((place - camera(index, t).centre()).norm());
+  }
+  const std::size_t there = result.size();
+  if (options.merge_px > 0) merge(result, far);
+  std::erase_if(result, [&](const RoomBlob&) { return random.chance(options.dropped); });
+  for (RoomBlob& blob : result) blob.pixel += Vector<2>(random.gaussian(0, options.noise_px), random.gaussian(0, options.noise_px));
+  for (std::size_t i = 0; i < there; ++i) {
+    if (!random.chance(options.ghosts)) continue;
+    result.push_back(
+        {{random.uniform(0, options.picture.width - 1), random.uniform(0, options.picture.height - 1)}, std::nullopt, false});
+  }
+  std::stable_sort(result.begin(), result.end(), [](const RoomBlob& a, const RoomBlob& b) { return a.pixel.y() < b.pixel.y(); });
+  return result;
+}
+
+std::span<const NamedRoomMotion> room_motions() {
+  static constexpr std::array<NamedRoomMotion, 6> kMotions{{{"walk", RoomMotion::walk},
+                                                            {"wave", RoomMotion::wave},
+                                                            {"still", RoomMotion::still},
+                                                            {"wand", RoomMotion::wand},
+                                                            {"ground", RoomMotion::ground},
+                                                            {"cloud", RoomMotion::cloud}}};
+  return kMotions;
+}
+
+RoomScene::RoomScene(const RoomOptions& options) : parts_(std::make_unique<Parts>()) {
+  assert(options.cameras > 0 && options.markers > 0 && options.rate_hz > 0 && "a room needs a camera, a marker and a rate");
+  assert((!options.bump || options.bump->camera < options.cameras) && "who is bumped must be there");
+  assert(!options.wand.empty() && "a wand has a marker");
+  Parts& parts = *parts_;
+  parts.options = options;
+  parts.rig = room_rig(options);
+  parts.after_bump = bumped(parts.rig, options);
+  for (const RigCamera& camera : parts.rig.cameras) parts.cameras.push_back(*camera.camera());
+  for (const RigCamera& camera : parts.after_bump.cameras) parts.cameras_after.push_back(*camera.camera());
+
+  Random random(mixed(options.seed, 1));
+  parts.first_angle = random.uniform(0, 2 * kPi);
+  parts.step_phase = random.uniform(0, 2 * kPi);
+  parts.wand_place = Drift::drawn(1.3, random);
+  parts.wand_turn = Drift::drawn(1.1, random);
+  switch (options.motion) {
+    case RoomMotion::walk:
+    case RoomMotion::wave:
+    case RoomMotion::still:
+      parts.body = place_markers(options.markers, random);
+      for (const BodyMarker& marker : parts.body) parts.labels.push_back(marker.label);
+      break;
+    case RoomMotion::wand:
+      for (std::size_t i = 0; i < options.wand.size(); ++i) parts.labels.push_back(fmt::format("wand{}", i + 1));
+      break;
+    case RoomMotion::ground:
+      for (std::size_t i = 0; i < options.ground_frame.size(); ++i) parts.labels.push_back(fmt::format("frame{}", i + 1));
+      break;
+    case RoomMotion::cloud:
+      for (int i = 0; i < options.markers; ++i) {
+        parts.labels.push_back(fmt::format("M{}", i + 1));
+        parts.cloud.push_back(Drift::drawn(0.7, random));
+      }
+      break;
+  }
+}
+
+RoomScene::~RoomScene() = default;
+RoomScene::RoomScene(RoomScene&&) noexcept = default;
+RoomScene& RoomScene::operator=(RoomScene&&) noexcept = default;
+
+const RoomOptions& RoomScene::options() const {
+  return parts_->options;
+}
+const Rig& RoomScene::rig() const {
+  return parts_->rig;
+}
+const Rig& RoomScene::rig_at(double time_s) const {
+  return parts_->is_bumped(time_s) ? parts_->after_bump : parts_->rig;
+}
+const std::vector<std::string>& RoomScene::labels() const {
+  return parts_->labels;
+}
+std::vector<Vector<3>> RoomScene::points(double time_s) const {
+  return parts_->points(time_s);
+}
+
+std::vector<bool> RoomScene::visible(int camera, double time_s, std::span<const Vector<3>> points) const {
+  const BodyPose at = parts_->has_body() ? parts_->pose(time_s) : BodyPose{};
+  std::vector<bool> result;
+  for (int marker = 0; marker < std::ssize(points); ++marker) {
+    Vector<2> pixel;
+    result.push_back(parts_->sees(camera, time_s, points[static_cast<std::size_t>(marker)], at, pixel) &&
+                     !parts_->covered(marker, time_s));
+  }
+  return result;
+}
+
+RoomFrame RoomScene::frame(std::int64_t index) const {
+  RoomFrame frame;
+  frame.index = index;
+  frame.time_s = static_cast<double>(index) / parts_->options.rate_hz;
+  frame.points = parts_->points(frame.time_s);
+  for (int camera = 0; camera < parts_->options.cameras; ++camera) frame.seen.push_back(parts_->blobs(camera, index));
+  return frame;
+}
+
+}  // namespace marey::simulate::room

@@ -1,0 +1,162 @@
+#include "marey/simulate/room/room.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "marey/simulate/room/body.h"
+
+namespace marey::simulate::room {
+namespace {
+
+TEST(Room, BlobsLieWhereTheRigSeesTheirMarkers) {
+  RoomOptions options;
+  options.noise_px = 0.1;
+  options.offset_s = 0.02;
+  const RoomScene scene(options);
+  double sum = 0;
+  int count = 0, offset = 0;
+  for (const std::int64_t index : {0, 77, 1199}) {
+    const RoomFrame frame = scene.frame(index);
+    ASSERT_EQ(frame.seen.size(), 8u);
+    for (std::size_t c = 0; c < 8; ++c) {
+      const RigCamera& camera = scene.rig().cameras[c];
+      offset += camera.offset_s != 0;
+      const auto points = scene.points(frame.time_s + *camera.offset_s);
+      for (const RoomBlob& blob : frame.seen[c]) {
+        sum += (blob.pixel - *camera.camera()->project(points[static_cast<std::size_t>(blob.marker.value())])).squaredNorm();
+        ++count;
+      }
+    }
+  }
+  EXPECT_EQ(offset, 3 * 7);
+  EXPECT_GT(count, 3 * 8 * 12) << "of 50 markers a camera sees a good part";
+  EXPECT_LT(count, 3 * 8 * 40) << "the body hides the rest";
+  EXPECT_NEAR(std::sqrt(sum / (2 * count)), 0.1, 0.008);
+}
+
+TEST(Room, EveryMotionIsSmoothAndStaysInTheVolume) {
+  for (const NamedRoomMotion& motion : room_motions()) {
+    RoomOptions options;
+    options.motion = motion.motion;
+    options.seed = 7;
+    const RoomScene scene(options);
+    EXPECT_EQ(scene.labels().size(), scene.points(0).size()) << motion.name;
+    double fastest = 0;
+    for (int i = 0; i < 2400; ++i) {
+      const auto now = scene.points(i / 120.0), before = scene.points((i - 1) / 120.0);
+      for (std::size_t m = 0; m < now.size(); ++m) {
+        fastest = std::max(fastest, (now[m] - before[m]).norm() * 120);
+        EXPECT_LE(std::abs(now[m].x()), 2.2) << motion.name;
+        EXPECT_LE(std::abs(now[m].y()), 2.2) << motion.name;
+        EXPECT_GE(now[m].z(), -0.01) << motion.name << " " << scene.labels()[m];
+        EXPECT_LE(now[m].z(), 2.6) << motion.name;
+      }
+    }
+    EXPECT_LT(fastest, 6) << motion.name << ": m/s";
+    const bool moves = motion.motion != RoomMotion::still && motion.motion != RoomMotion::ground;
+    EXPECT_EQ(fastest > 0.5, moves) << motion.name;
+  }
+}
+
+TEST(Room, TheBodyHidesWhatIsBehindIt) {
+  const BodyPose pose = standing_pose({0, 0, 0});
+  EXPECT_TRUE(hidden_by_body(pose, {-0.5, 0, 1.2}, {4, 0, 1.2}));
+  EXPECT_FALSE(hidden_by_body(pose, {0.5, 0, 1.2}, {4, 0, 1.2}));
+  EXPECT_FALSE(hidden_by_body(pose, {-0.5, 0, 2.2}, {4, 0, 2.2}));
+  // Slow twin: points along the line against points along each limb.
+  Random random(5);
+  int hidden = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector<3> from(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2));
+    const Vector<3> to(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0, 2));
+    double depth = 1;  // m from the nearest capsule's surface
+    for (std::size_t limb = 0; limb < kLimbs; ++limb) {
+      for (int s = 0; s <= 300; ++s) {
+        const Vector<3> place = from + (to - from) * s / 300.0;
+        for (int t = 0; t <= 60; ++t) {
+          depth = std::min(depth,
+                           (place - pose[limb] * Vector<3>(limb_shapes()[limb].end * t / 60)).norm() - limb_shapes()[limb].radius);
+        }
+      }
+    }
+    if (std::abs(depth) < 0.004) continue;  // closer than the twin's steps tell
+    EXPECT_EQ(hidden_by_body(pose, from, to), depth < 0) << i;
+    hidden += depth < 0;
+  }
+  EXPECT_GT(hidden, 30);
+}
+
+TEST(Room, MarkersKeepTheirPlaceOnTheirLimb) {
+  Random random(3);
+  const auto markers = place_markers(60, random);
+  for (const BodyMarker& marker : markers) {
+    const LimbShape& limb = limb_shapes()[static_cast<std::size_t>(marker.limb)];
+    const double along = marker.in_limb.dot(limb.end) / limb.end.squaredNorm();
+    EXPECT_NEAR((marker.in_limb - along * limb.end).norm(), limb.radius + 0.008, 1e-12) << marker.label;
+  }
+}
+
+TEST(Room, DropsGhostsMergesAndGapsAreAsMany) {
+  RoomOptions clean;
+  clean.motion = RoomMotion::cloud;
+  clean.markers = 200;
+  clean.cameras = 2;
+  RoomOptions dirty = clean;
+  dirty.dropped = 0.2;
+  dirty.ghosts = 0.1;
+  RoomOptions merged = clean;
+  merged.merge_px = 6;
+  RoomOptions gaps = clean;
+  gaps.gap_share = 0.1;
+  const RoomScene a(clean), b(dirty), c(merged), d(gaps);
+  double all = 0, kept = 0, ghosts = 0, joint = 0, joint_blobs = 0, covered = 0;
+  for (std::int64_t i = 0; i < 3000; i += 30) {
+    const RoomFrame clean_frame = a.frame(i), dirty_frame = b.frame(i), merged_frame = c.frame(i), gap_frame = d.frame(i);
+    for (std::size_t camera = 0; camera < 2; ++camera) {
+      all += static_cast<double>(clean_frame.seen[camera].size());
+      for (const RoomBlob& blob : dirty_frame.seen[camera]) (blob.marker ? kept : ghosts) += 1;
+      joint += static_cast<double>(merged_frame.seen[camera].size());
+      joint_blobs += static_cast<double>(std::count_if(merged_frame.seen[camera].begin(), merged_frame.seen[camera].end(),
+                                                       [](const RoomBlob& blob) { return blob.merged; }));
+      covered += static_cast<double>(gap_frame.seen[camera].size());
+      EXPECT_TRUE(std::is_sorted(dirty_frame.seen[camera].begin(), dirty_frame.seen[camera].end(),
+                                 [](const RoomBlob& x, const RoomBlob& y) { return x.pixel.y() < y.pixel.y(); }));
+    }
+  }
+  EXPECT_NEAR(kept / all, 0.8, 0.01);
+  EXPECT_NEAR(ghosts / all, 0.1, 0.01);
+  EXPECT_NEAR(covered / all, 0.9, 0.02);
+  EXPECT_GT(joint_blobs, 0);
+  EXPECT_LE(joint + joint_blobs, all) << "a joint blob stands for two or more";
+}
+
+TEST(Room, AFrameIsTheSameInAnyOrder) {
+  RoomOptions options;
+  options.dropped = options.ghosts = 0.1;
+  const RoomScene one(options), two(options);
+  one.frame(3);
+  const RoomFrame a = one.frame(500), b = two.frame(500);
+  for (std::size_t camera = 0; camera < a.seen.size(); ++camera) {
+    ASSERT_EQ(a.seen[camera].size(), b.seen[camera].size());
+    for (std::size_t i = 0; i < a.seen[camera].size(); ++i) EXPECT_EQ(a.seen[camera][i].pixel, b.seen[camera][i].pixel);
+  }
+  options.seed = 2;
+  EXPECT_NE(RoomScene(options).rig().cameras[0].camera_from_world->translation,
+            one.rig().cameras[0].camera_from_world->translation);
+}
+
+TEST(Room, ABumpMovesOneCameraFromThenOn) {
+  RoomOptions options;
+  options.bump = RoomOptions::Bump{.camera = 2, .time_s = 1, .angle = 0.02};
+  const RoomScene scene(options);
+  for (std::size_t camera = 0; camera < 8; ++camera) {
+    const Matrix<3> turn = scene.rig_at(1.0).cameras[camera].camera_from_world->rotation *
+                           scene.rig_at(0.99).cameras[camera].camera_from_world->rotation.transpose();
+    EXPECT_NEAR(geometry::angle_axis_of(turn).norm(), camera == 2 ? 0.02 : 0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace marey::simulate::room
