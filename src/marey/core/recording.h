@@ -1,13 +1,16 @@
 // The one result of every job: where everything was, when, how well that is known, and how it was found out.
 #pragma once
 
-#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "marey/core/instant.h"
@@ -70,5 +73,127 @@ struct Edit {
   std::string payload;                 ///< JSON
   bool operator==(const Edit&) const = default;
 };
+
+/// A column of a track of which some rows are not known. Costs nothing while none is. Rows are `width` numbers each.
+class OptionalColumn {
+ public:
+  explicit OptionalColumn(int width) : width_(width) {}
+
+  bool empty() const { return known_.empty(); }  ///< no row is known
+  bool known(std::size_t row) const { return row < known_.size() && known_[row]; }
+  /// `width` numbers; only where the row is known.
+  const double* values(std::size_t row) const { return values_.data() + row * static_cast<std::size_t>(width_); }
+  /// Rows before `row` that were never set are unknown. Rows come in growing order.
+  void set(std::size_t row, std::span<const double> values);
+
+ private:
+  int width_;
+  std::vector<double> values_;
+  std::vector<bool> known_;
+};
+
+/// One track over the whole recording, in columns, by growing instant. Optional columns exist only where a step filled them.
+class TrackColumns {
+ public:
+  TrackColumns(TrackName name, int dimensions);
+
+  TrackName name;
+
+  TrackId id() const { return name.id; }
+  int dimensions() const { return dimensions_; }
+  std::size_t size() const { return at_.size(); }
+  bool empty() const { return at_.empty(); }
+  /// Which of the recording's instants each row belongs to.
+  std::span<const std::int32_t> at() const { return at_; }
+  std::span<const double> x() const { return x_; }
+  std::span<const double> y() const { return y_; }
+  std::span<const double> z() const { return z_; }  ///< empty in two dimensions
+  std::span<const Provenance> provenance() const { return provenance_; }
+  std::span<const CameraMask> cameras() const { return cameras_; }
+  bool has_velocities() const { return !velocity_.empty(); }
+
+  Vector<2> place(std::size_t row) const { return {x_[row], y_[row]}; }
+  Vector<3> position(std::size_t row) const { return {x_[row], y_[row], z_.empty() ? 0 : z_[row]}; }
+  std::optional<Vector<3>> velocity(std::size_t row) const;
+  bool measured(std::size_t row) const { return provenance_[row] == Provenance::measured; }
+  Sample sample(std::size_t row) const;
+  /// The row of this instant of the recording, by binary search.
+  std::optional<std::size_t> row_at(std::int32_t instant) const;
+
+  /// `instant` is later than the last one's.
+  void add(std::int32_t instant, const Sample& sample);
+
+ private:
+  int dimensions_;
+  std::vector<std::int32_t> at_;
+  std::vector<double> x_, y_, z_;
+  std::vector<Provenance> provenance_;
+  std::vector<CameraMask> cameras_;
+  OptionalColumn velocity_, covariance_, score_, box_, residual_px_, residual_m_;
+  std::map<std::size_t, std::shared_ptr<const Outline>> outlines_;  // by row
+};
+
+/// A whole recording in memory. What may be long and is only passed on is better streamed, instant by instant.
+class Recording {
+ public:
+  struct Moment {
+    std::int64_t index = 0;
+    Timestamp time{};
+  };
+
+  Recording() = default;
+  explicit Recording(RecordingHeader of) : header(std::move(of)) {}
+
+  RecordingHeader header;
+  std::vector<Edit> edits;
+  std::optional<std::int64_t> head;  ///< the edit whose branch counts; nothing: what was recorded, without any
+
+  int dimensions() const { return header.frame.dimensions(); }
+  const std::vector<Moment>& instants() const { return instants_; }
+  const std::vector<TrackColumns>& tracks() const { return tracks_; }  ///< by id
+  const TrackColumns* find(TrackId id) const;
+  double seconds_at(std::size_t instant) const { return seconds(instants_[instant].time); }
+  std::int64_t samples() const;
+  std::span<const SeenPoint> seen(std::size_t instant) const;
+
+  /// Its index is later than the last one's. Pictures are not kept.
+  void add(const Instant& instant);
+  /// A track's label and team; it need not have samples yet.
+  void set_name(const TrackName& name);
+  /// Puts a track in as a whole, in the place of one with its id. Its instants must be there already.
+  void put(TrackColumns track);
+  void add_moment(const Moment& moment) { instants_.push_back(moment); }
+  /// Leaves out the tracks for which this says so.
+  void erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out);
+
+ private:
+  TrackColumns& track_of(TrackId id);
+
+  std::vector<Moment> instants_;
+  std::vector<TrackColumns> tracks_;
+  std::vector<SeenPoint> seen_;
+  std::vector<std::size_t> seen_end_;  // by instant; empty where nothing seen is kept
+};
+
+/// The recording's instants one after the other, as a sink takes them. The recording must outlive it.
+class InstantsOf {
+ public:
+  explicit InstantsOf(const Recording& recording) : recording_(recording), rows_(recording.tracks().size(), 0) {}
+  /// The next one, names at the first that shows them; nothing behind the last.
+  std::optional<Instant> next();
+
+ private:
+  const Recording& recording_;
+  std::size_t next_ = 0;
+  std::vector<std::size_t> rows_;  // of each track, the next to be given
+};
+
+/// The usual step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer
+/// than two instants.
+std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants);
+
+/// Throws Error, with `what` for the job that needs it, where the recording is not in that kind of frame.
+void require_metric(const Recording& recording, std::string_view what);
+void require_ground(const Recording& recording, std::string_view what);
 
 }  // namespace marey

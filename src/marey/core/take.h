@@ -7,17 +7,11 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/ids.h"
+#include "marey/core/instant.h"
 #include "marey/core/rig.h"
 #include "marey/core/time.h"
 
 namespace marey {
-
-/// How a point came to be where it is.
-enum class Provenance : std::uint8_t {
-  measured,   ///< from what cameras saw at this instant
-  filled,     ///< within a gap, from what was seen before and after it
-  predicted,  ///< by the tracker's model of motion, from what was seen before it
-};
 
 /// What one camera saw at one instant: a blob's centre.
 struct TakeObservation {

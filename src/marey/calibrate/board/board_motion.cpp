@@ -89,7 +89,7 @@ class Motion {
   void judge() {
     std::vector<double> distances;
     for (const View& view : views_) {
-      for (const auto& error : bundle::errors_of(view)) {
+      for (const auto& error : errors_of(view)) {
         if (error) distances.push_back(error->norm());
       }
     }
@@ -103,7 +103,7 @@ class Motion {
     if (jitter_s_ > 0) jitter_s_ = std::min(kUneven * options_.knot_s, std::sqrt(square / static_cast<double>(views_.size())));
     if (jitter_s_ < kEven * options_.knot_s) jitter_s_ = 0;
     for (View& view : views_) {
-      const auto errors = bundle::errors_of(view);
+      const auto errors = errors_of(view);
       for (std::size_t i = 0; i < errors.size(); ++i) view.corners[i].inlier = errors[i] && errors[i]->norm() <= limit;
     }
   }
@@ -272,7 +272,7 @@ BoardRig Motion::report(bool deviations) {
     double own_square = 0, own_sum = 0;
     for (const View& view : views_) {
       if (view.camera != c) continue;
-      const auto errors = bundle::errors_of(view);
+      const auto errors = errors_of(view);
       camera.observations += static_cast<int>(errors.size());
       for (std::size_t i = 0; i < errors.size(); ++i) {
         if (!view.corners[i].inlier || !errors[i]) continue;

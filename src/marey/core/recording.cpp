@@ -1,0 +1,212 @@
+#include "marey/core/recording.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+bool is_new(const std::vector<std::int32_t>& at, std::int32_t instant) {
+  return at.empty() || at.back() < instant;
+}
+
+}  // namespace
+
+std::string to_string(const FrameOfReference& frame) {
+  switch (frame.kind) {
+    case FrameOfReference::Kind::image:
+      return frame.camera ? fmt::format("px of camera {}'s pictures", number(*frame.camera) + 1) : "px of a picture";
+    case FrameOfReference::Kind::ground:
+      return "m on the ground of the rig's world";
+    case FrameOfReference::Kind::user_ground:
+      return "m on the ground";
+    case FrameOfReference::Kind::space:
+      return "m in space";
+  }
+  return {};
+}
+
+void OptionalColumn::set(std::size_t row, std::span<const double> values) {
+  const auto width = static_cast<std::size_t>(width_);
+  known_.resize(row, false);
+  known_.push_back(true);
+  values_.resize(row * width);
+  values_.insert(values_.end(), values.begin(), values.end());
+}
+
+TrackColumns::TrackColumns(TrackName of, int dimensions)
+    : name(std::move(of)),
+      dimensions_(dimensions),
+      velocity_(dimensions),
+      covariance_(dimensions * (dimensions + 1) / 2),
+      score_(1),
+      box_(4),
+      residual_px_(1),
+      residual_m_(1) {}
+
+std::optional<Vector<3>> TrackColumns::velocity(std::size_t row) const {
+  if (!velocity_.known(row)) return std::nullopt;
+  const double* value = velocity_.values(row);
+  return Vector<3>(value[0], value[1], dimensions_ == 3 ? value[2] : 0);
+}
+
+Sample TrackColumns::sample(std::size_t row) const {
+  Sample sample{.track = name.id,
+                .position = position(row),
+                .velocity = velocity(row),
+                .covariance = {},
+                .provenance = provenance_[row],
+                .cameras = cameras_[row],
+                .score = {},
+                .box = {},
+                .residual_px = {},
+                .residual_m = {}};
+  if (covariance_.known(row)) {
+    const double* value = covariance_.values(row);
+    Matrix<3> covariance = Matrix<3>::Zero();
+    for (int i = 0; i < dimensions_; ++i) {
+      for (int k = i; k < dimensions_; ++k) covariance(i, k) = covariance(k, i) = *value++;
+    }
+    sample.covariance = covariance;
+  }
+  if (score_.known(row)) sample.score = *score_.values(row);
+  if (box_.known(row)) {
+    const double* value = box_.values(row);
+    sample.box = Box{value[0], value[1], value[2], value[3]};
+  }
+  if (residual_px_.known(row)) sample.residual_px = *residual_px_.values(row);
+  if (residual_m_.known(row)) sample.residual_m = *residual_m_.values(row);
+  if (const auto outline = outlines_.find(row); outline != outlines_.end()) sample.outline = outline->second;
+  return sample;
+}
+
+std::optional<std::size_t> TrackColumns::row_at(std::int32_t instant) const {
+  const auto found = std::lower_bound(at_.begin(), at_.end(), instant);
+  if (found == at_.end() || *found != instant) return std::nullopt;
+  return static_cast<std::size_t>(found - at_.begin());
+}
+
+void TrackColumns::add(std::int32_t instant, const Sample& sample) {
+  if (!is_new(at_, instant)) throw Error("track {} has two samples at one instant", number(name.id));
+  const std::size_t row = at_.size();
+  at_.push_back(instant);
+  x_.push_back(sample.position.x());
+  y_.push_back(sample.position.y());
+  if (dimensions_ == 3) z_.push_back(sample.position.z());
+  provenance_.push_back(sample.provenance);
+  cameras_.push_back(sample.cameras);
+  if (sample.velocity) velocity_.set(row, {sample.velocity->data(), static_cast<std::size_t>(dimensions_)});
+  if (sample.covariance) {
+    std::array<double, 6> upper{};
+    std::size_t count = 0;
+    for (int i = 0; i < dimensions_; ++i) {
+      for (int k = i; k < dimensions_; ++k) upper[count++] = (*sample.covariance)(i, k);
+    }
+    covariance_.set(row, {upper.data(), count});
+  }
+  if (sample.score) score_.set(row, {&*sample.score, 1});
+  if (sample.box) box_.set(row, std::array{sample.box->left, sample.box->top, sample.box->width, sample.box->height});
+  if (sample.residual_px) residual_px_.set(row, {&*sample.residual_px, 1});
+  if (sample.residual_m) residual_m_.set(row, {&*sample.residual_m, 1});
+  if (sample.outline) outlines_.emplace(row, sample.outline);
+}
+
+const TrackColumns* Recording::find(TrackId id) const {
+  const auto found =
+      std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
+  return found == tracks_.end() || found->id() != id ? nullptr : &*found;
+}
+
+TrackColumns& Recording::track_of(TrackId id) {
+  const auto at = std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
+  if (at != tracks_.end() && at->id() == id) return *at;
+  return *tracks_.emplace(at, TrackName{.id = id, .label = {}, .team = {}}, dimensions());
+}
+
+std::int64_t Recording::samples() const {
+  std::int64_t count = 0;
+  for (const TrackColumns& track : tracks_) count += static_cast<std::int64_t>(track.size());
+  return count;
+}
+
+std::span<const SeenPoint> Recording::seen(std::size_t instant) const {
+  if (instant >= seen_end_.size()) return {};
+  const std::size_t begin = instant == 0 ? 0 : seen_end_[instant - 1];
+  return {seen_.data() + begin, seen_end_[instant] - begin};
+}
+
+void Recording::add(const Instant& instant) {
+  if (!instants_.empty() && instant.index <= instants_.back().index)
+    throw Error("instant {} comes after instant {}; they must grow", instant.index, instants_.back().index);
+  const auto at = static_cast<std::int32_t>(instants_.size());
+  instants_.push_back({instant.index, instant.time});
+  for (const TrackName& name : instant.named) set_name(name);
+  for (const Sample& sample : instant.samples) track_of(sample.track).add(at, sample);
+  if (instant.seen.empty() && seen_end_.empty()) return;
+  seen_end_.resize(static_cast<std::size_t>(at), seen_.size());
+  seen_.insert(seen_.end(), instant.seen.begin(), instant.seen.end());
+  seen_end_.push_back(seen_.size());
+}
+
+void Recording::set_name(const TrackName& name) {
+  track_of(name.id).name = name;
+}
+
+void Recording::put(TrackColumns track) {
+  TrackColumns& place = track_of(track.id());
+  place = std::move(track);
+}
+
+void Recording::erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out) {
+  std::erase_if(tracks_, leave_out);
+}
+
+std::optional<Instant> InstantsOf::next() {
+  if (next_ == recording_.instants().size()) return std::nullopt;
+  Instant instant;
+  instant.index = recording_.instants()[next_].index;
+  instant.time = recording_.instants()[next_].time;
+  const auto seen = recording_.seen(next_);
+  instant.seen.assign(seen.begin(), seen.end());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const TrackColumns& track = recording_.tracks()[i];
+    std::size_t& row = rows_[i];
+    if (row == track.size() || static_cast<std::size_t>(track.at()[row]) != next_) continue;
+    if (row == 0 && (!track.name.label.empty() || !track.name.team.empty())) instant.named.push_back(track.name);
+    instant.samples.push_back(track.sample(row++));
+  }
+  ++next_;
+  return instant;
+}
+
+std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < instants.size(); ++i) {
+    const auto frames = static_cast<double>(instants[i].index - instants[i - 1].index);
+    const double step = seconds(instants[i].time - instants[i - 1].time);
+    if (step > 0 && frames > 0) steps.push_back(step / frames);
+  }
+  if (steps.empty()) return std::nullopt;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return 1 / *middle;
+}
+
+void require_metric(const Recording& recording, std::string_view what) {
+  if (recording.header.frame.metric()) return;
+  throw Error("{}: {} needs metres, and these positions are {}; track with a calibrated rig (marey track RIG --ground)",
+              recording.header.name, what, to_string(recording.header.frame));
+}
+
+void require_ground(const Recording& recording, std::string_view what) {
+  require_metric(recording, what);
+  if (recording.dimensions() == 2) return;
+  throw Error("{}: {} is of people on the ground, and these positions are {}", recording.header.name, what,
+              to_string(recording.header.frame));
+}
+
+}  // namespace marey

@@ -1,0 +1,117 @@
+#include "marey/core/recording.h"
+
+#include <map>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+RecordingHeader header_in(FrameOfReference::Kind kind) {
+  RecordingHeader header;
+  header.name = "test";
+  header.frame.kind = kind;
+  header.rate_hz = 50;
+  return header;
+}
+
+Sample sample_of(int track, double x) {
+  Sample sample;
+  sample.track = TrackId{track};
+  sample.position = {x, 2 * x, 0};
+  return sample;
+}
+
+TEST(Recording, GivesBackWhatWasPutIn) {
+  Recording recording(header_in(FrameOfReference::Kind::space));
+  std::vector<Instant> given;
+  for (int i = 0; i < 20; ++i) {
+    Instant instant;
+    instant.index = 3 * i;
+    instant.time = timestamp_from_seconds(0.06 * i);
+    if (i == 0) instant.named = {{TrackId{2}, "LKNE", "blue"}};
+    for (int track = 1; track <= 3; ++track) {
+      if ((i + track) % 4 == 0 || (i == 0 && track == 3)) continue;
+      Sample sample = sample_of(track, i + 0.25 * track);
+      sample.position.z() = -i;
+      if (i % 3 == 1) sample.velocity = Vector<3>(1, i, track);
+      if (i % 5 == 2) sample.covariance = (Matrix<3>() << 4, 1, 0.5, 1, 5, 0.25, 0.5, 0.25, 6).finished() * (i + 1);
+      if (i % 4 == 3) sample.box = Box{1, 2, 3, static_cast<double>(i)};
+      if (i == 7) sample.outline = std::make_shared<Outline>();
+      if (i > 10) sample.residual_px = 0.1 * i;
+      sample.provenance = i % 6 == 5 ? Provenance::filled : Provenance::measured;
+      sample.cameras = static_cast<CameraMask>(i);
+      instant.samples.push_back(sample);
+    }
+    if (i > 4) instant.seen.push_back({CameraId{1}, {i + 0.5, 2}, 0.1, {}, TrackId{1}});
+    given.push_back(instant);
+    recording.add(instant);
+  }
+  InstantsOf instants(recording);
+  for (const Instant& was : given) {
+    const auto is = instants.next();
+    ASSERT_TRUE(is);
+    EXPECT_EQ(is->index, was.index);
+    EXPECT_EQ(is->time, was.time);
+    EXPECT_EQ(is->seen, was.seen);
+    ASSERT_EQ(is->samples.size(), was.samples.size()) << was.index;
+    for (std::size_t i = 0; i < was.samples.size(); ++i) {
+      const Sample &a = is->samples[i], &b = was.samples[i];
+      EXPECT_EQ(a.track, b.track);
+      EXPECT_EQ(a.position, b.position);
+      EXPECT_EQ(a.velocity, b.velocity);
+      EXPECT_EQ(a.covariance, b.covariance);
+      EXPECT_EQ(a.box, b.box);
+      EXPECT_EQ(a.outline, b.outline);
+      EXPECT_EQ(a.residual_px, b.residual_px);
+      EXPECT_EQ(a.residual_m, b.residual_m);
+      EXPECT_EQ(a.provenance, b.provenance);
+      EXPECT_EQ(a.cameras, b.cameras);
+    }
+  }
+  EXPECT_FALSE(instants.next());
+  ASSERT_NE(recording.find(TrackId{2}), nullptr);
+  EXPECT_EQ(recording.find(TrackId{2})->name.label, "LKNE");
+  EXPECT_EQ(recording.find(TrackId{4}), nullptr);
+}
+
+TEST(Recording, TwoDimensionsHaveNoThirdColumn) {
+  Recording recording(header_in(FrameOfReference::Kind::ground));
+  Instant instant;
+  instant.samples = {sample_of(1, 4)};
+  instant.samples[0].covariance = Matrix<3>(Vector<3>(1, 2, 0).asDiagonal());
+  recording.add(instant);
+  const TrackColumns& track = recording.tracks().front();
+  EXPECT_TRUE(track.z().empty());
+  EXPECT_EQ(track.sample(0).covariance, instant.samples[0].covariance);
+  EXPECT_FALSE(track.has_velocities());
+}
+
+TEST(Recording, InstantsMustGrow) {
+  Recording recording(header_in(FrameOfReference::Kind::ground));
+  Instant instant;
+  instant.index = 5;
+  recording.add(instant);
+  EXPECT_THROW(recording.add(instant), Error);
+}
+
+TEST(Recording, RateIsTheMedianStep) {
+  std::vector<Recording::Moment> moments;
+  for (int i = 0; i < 11; ++i) moments.push_back({i, timestamp_from_seconds(0.04 * i)});
+  moments.push_back({999'999'999, timestamp_from_seconds(1)});
+  EXPECT_NEAR(median_rate_hz(moments).value(), 25, 1e-6);
+  EXPECT_FALSE(median_rate_hz(std::span(moments).first(1)));
+}
+
+TEST(Recording, WhoNeedsMetresRefusesPixels) {
+  const Recording image(header_in(FrameOfReference::Kind::image)), space(header_in(FrameOfReference::Kind::space));
+  EXPECT_THROW(require_metric(image, "measuring"), Error);
+  EXPECT_NO_THROW(require_metric(space, "measuring"));
+  EXPECT_THROW(require_ground(space, "measuring"), Error);
+}
+
+}  // namespace
+}  // namespace marey
