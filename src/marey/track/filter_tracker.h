@@ -53,7 +53,7 @@ class FilterTracker final : public Tracker<F::dimension> {
                        [&](const Observation<D>& o, const Target<F>& target) { return place_of(o, target); });
     }
     keep_merged(seen);
-    filter::correct(now, seen);
+    correct(now, seen);
     retire_lost(now);
     start_unclaimed(now, seen);
     return report(now);

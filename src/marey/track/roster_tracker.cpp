@@ -60,7 +60,7 @@ class RosterTracker final : public Tracker<F::dimension> {
       }
       meet(seen);
       adoption_.find_lost(targets_, seen, claimed_, sight_, companions_.all());
-      filter::correct(seen);
+      correct(seen);
       judge_newcomers();
       start_unclaimed(seen);
     }

@@ -72,7 +72,7 @@ geometry::Lens lens_of(const Table& table) {
   const auto K = table.numbers("matrix", 9);
   auto k = table.has("distortions") ? table.numbers("distortions") : std::vector<double>{};
   while (!k.empty() && k.back() == 0) k.pop_back();
-  const auto filled = [&](auto lens) -> Lens {
+  const auto filled = [&](auto lens) -> geometry::Lens {
     if (k.size() > lens.distortion.size()) table.fail("distortions", fmt::format("too long for the model {}", lens.name));
     lens.focal = {K[0], K[4]};
     lens.principal = {K[2], K[5]};

@@ -72,7 +72,7 @@ geometry::Lens lens_at(const cv::FileNode& K_node, const cv::FileNode& D_node, b
   const Matrix<3> K = matrix_of(K_node, path, "the camera matrix");
   auto k = D_node.empty() ? std::vector<double>{} : numbers(D_node).value_or(std::vector<double>(99));
   while (!k.empty() && k.back() == 0) k.pop_back();  // 12 and 14 coefficients, the last of which are mostly not used
-  const auto filled = [&](auto lens) -> Lens {
+  const auto filled = [&](auto lens) -> geometry::Lens {
     if (k.size() > lens.distortion.size()) {
       throw Error("{}: {} coefficients of distortion; the model {} has {} (thin prisms and tilted sensors are not known)", path,
                   k.size(), lens.name, lens.distortion.size());

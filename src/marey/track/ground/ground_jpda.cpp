@@ -34,7 +34,7 @@ class GroundJpda final : public GroundFollower<F> {
       std::size_t to = from;
       while (to < gains_.size() && gains_[to].row == gains_[from].row) ++to;
       GroundTarget<F>& target = targets[gains_[from].row];
-      filter::correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
+      correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
       from = to;
     }
     claim_probable(targets, seen, probable);
