@@ -122,8 +122,8 @@ void convert(const ConvertOptions& options) {
       throw Error("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
     return convert_ground(options.from, options.to, options.format, options.ground);
   }
-  const bool motion = fs::is_regular_file(options.from, error) && motion_format_of_content(options.from);
-  if (!motion && rig_format_of_content(options.from)) return convert_rig(options);
+  const bool motion = fs::is_regular_file(options.from, error) && format::motion::motion_format_of_content(options.from);
+  if (!motion && format::rig::rig_format_of_content(options.from)) return convert_rig(options);
   convert_motion(options);
 }
 

@@ -52,7 +52,7 @@ std::vector<std::string> doubts(const EvaluateOptions& options, const format::tr
 }
 
 nlohmann::json as_json(const evaluate::Evaluation& result, double iou, const std::vector<std::string>& warnings) {
-  nlohmann::json json = as_json(result);
+  nlohmann::json json = cli::as_json(result);
   json["iou"] = iou;
   json["true_boxes"] = result.true_boxes;
   json["track_boxes"] = result.track_boxes;

@@ -57,7 +57,7 @@ nlohmann::json people_json(const pipeline::MatchJudgement& judgement) {
 
 nlohmann::json as_json(const pipeline::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
-  nlohmann::json json = as_json(scores);
+  nlohmann::json json = cli::as_json(scores);
   json["distance"] = distance;
   json["paired_by"] = judgement.by_time ? "time" : "frame";
   json["true_places"] = scores.true_boxes;

@@ -231,7 +231,7 @@ void tell_rig(const InfoOptions& options) {
 void run(const InfoOptions& options) {
   const bool folder = std::filesystem::is_directory(options.file);
   const auto format = folder ? std::nullopt : format::motion::motion_format_of_content(options.file);
-  if (!folder && ground_format_of_content(options.file)) {
+  if (!folder && format::match::ground_format_of_content(options.file)) {
     tell_ground(options.file, options.metadata, options.json);
   } else if (format) {
     tell_motion(options, *format);

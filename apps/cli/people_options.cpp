@@ -57,7 +57,7 @@ void add_people_options(CLI::App& command, PeopleFlags& flags) {
 pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
   pipeline::TrackPeopleOptions options;
   options.background = detect::background::parse_background(flags.background);
-  if (!filter.empty() && filter_named(filter).index() != options.tracker.filter.index()) {
+  if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
     options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyHeight);
   }
   if (flags.outline) options.outlines = outline_options(flags);

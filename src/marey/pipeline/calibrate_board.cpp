@@ -24,7 +24,7 @@ constexpr std::size_t kViewsOfLens = 60;
 bool is_pictures(const std::string& source) {
   std::error_code error;
   if (std::filesystem::is_directory(source, error)) return true;
-  return source::is_picture_name(source) || (!std::filesystem::exists(source, error) && is_picture_pattern(source));
+  return source::is_picture_name(source) || (!std::filesystem::exists(source, error) && source::is_picture_pattern(source));
 }
 
 /// Whether the sources are pictures, each of an instant of its own, and no films.

@@ -130,7 +130,7 @@ const Detection* detection_of(const simulate::people::TrueFigure& person, std::s
 }
 
 /// One filter a person, begun with the first two detections in a row that are on him.
-template <typename filter::Filter>
+template <typename Filter>
 class LoneFilters : public OutlineMethod {
  public:
   std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
@@ -160,9 +160,9 @@ class LoneFilters : public OutlineMethod {
   }
 
  protected:
-  virtual void advance(filter::Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
-  virtual filter::Filter make(const Detection& before, const Detection& now) const = 0;
-  virtual FollowedShape shape_of(const filter::Filter& filter) const = 0;
+  virtual void advance(Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
+  virtual Filter make(const Detection& before, const Detection& now) const = 0;
+  virtual FollowedShape shape_of(const Filter& filter) const = 0;
 
  private:
   void begin(int id, const Detection& before, const Detection& now) {
@@ -173,7 +173,7 @@ class LoneFilters : public OutlineMethod {
     }
   }
 
-  std::map<int, filter::Filter> filters_;
+  std::map<int, Filter> filters_;
   std::map<int, Detection> before_;
 };
 

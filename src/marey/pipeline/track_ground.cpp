@@ -74,7 +74,7 @@ class Run {
 
   GroundSummary operator()() {
     const auto begin = std::chrono::steady_clock::now();
-    track::ground::follow();
+    follow();
     cameras_.close();
     summary_.tracking_s = since(begin);
     if (!options_.live) {

@@ -71,7 +71,7 @@ void append_json(std::string& lines, std::int64_t frame, Timestamp time, const T
   fmt::format_to(out, R"("state":"{}")", name_of(track.state));
   if (track.outline) {
     lines += R"(,"outline":)";
-    append_json(lines, *track.outline);
+    tracks::append_json(lines, *track.outline);
   }
   lines += "}\n";
 }
