@@ -6,7 +6,7 @@
 #include "marey/core/ids.h"
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
-#include "marey/core/track.h"
+#include "marey/core/track_names.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/fading_trails.h"
 
@@ -26,8 +26,8 @@ class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
 
-  /// Frames come in order. Keeps trails of those targets alone that were seen within `trail`.
-  Picture draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks);
+  /// Instants come in order; px. Keeps trails of those targets alone that were seen within `trail`.
+  Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
   Colour colour(TrackId id) const;

@@ -87,19 +87,20 @@ std::string css(const Colour& colour) {
 
 }  // namespace
 
-void TrajectoryPlot::add(std::int64_t frame, std::span<const Track<2>> tracks) {
-  for (const Track<2>& track : tracks) {
-    const Vector<2> place = track.outline ? track.outline->centre : track.position;
-    Way& way = ways_[track.id];
-    if (way.pieces.empty() || way.last_frame + 1 != frame) {
+void TrajectoryPlot::add(const Instant& instant) {
+  names_.add(instant.named);
+  for (const Sample& sample : instant.samples) {
+    const Vector<2> place = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
+    Way& way = ways_[sample.track];
+    if (way.pieces.empty() || way.last_frame + 1 != instant.index) {
       if (!way.pieces.empty() && way.pieces.back().back() != way.last) way.pieces.back().push_back(way.last);
       way.pieces.push_back({place});
-      way.name = track.label.empty() ? fmt::format("{}", number(track.id)) : track.label;
+      way.name = names_.shown(sample.track);
     } else if ((place - way.pieces.back().back()).norm() >= kShortest) {
       way.pieces.back().push_back(place);
     }
     way.last = place;
-    way.last_frame = frame;
+    way.last_frame = instant.index;
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include "marey/core/ids.h"
 #include "marey/core/time.h"
-#include "marey/core/track.h"
+#include "marey/core/track_names.h"
 
 namespace marey::draw {
 
@@ -17,9 +17,8 @@ namespace marey::draw {
 /// is known of it. Memory grows with the ways' length, not with time: steps of less than half a pixel are passed over.
 class TrajectoryPlot {
  public:
-  /// Tracks of one frame; frames grow from call to call. The place drawn is the outline's centre where there is an outline, else
-  /// the track's position.
-  void add(std::int64_t frame, std::span<const Track<2>> tracks);
+  /// Instants come in order; px. The place drawn is the outline's centre where there is an outline, else the target's position.
+  void add(const Instant& instant);
 
   /// A self-contained SVG picture that a browser shows: pixels to scale, y pointing down, axes with round numbers.
   std::string to_svg(const std::string& title) const;
@@ -32,6 +31,7 @@ class TrajectoryPlot {
     std::int64_t last_frame = 0;
   };
   std::map<TrackId, Way> ways_;
+  TrackNames names_;
 };
 
 }  // namespace marey::draw

@@ -14,7 +14,7 @@
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_cameras.h"
-#include "marey/pipeline/run.h"
+#include "marey/pipeline/run_hooks.h"
 #include "marey/track/ground/ground_recorder.h"
 
 namespace marey::pipeline {

@@ -12,7 +12,7 @@
 #include "marey/core/rig.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/people_eyes.h"
-#include "marey/pipeline/run.h"
+#include "marey/pipeline/run_hooks.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {

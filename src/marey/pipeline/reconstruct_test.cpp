@@ -16,7 +16,6 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/take_file.h"
 #include "marey/pipeline/gap_filler.h"
-#include "marey/pipeline/instants.h"
 #include "marey/pipeline/room_files.h"
 #include "marey/reconstruct/layout.h"
 #include "marey/simulate/room/room.h"
@@ -73,8 +72,8 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   write_room(scene, folder.path());
   const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   EXPECT_EQ(summary.frames, 600);
-  EXPECT_NEAR(summary.noise_px, 0.1, 0.02);
-  EXPECT_EQ(summary.stages.size(), 6);
+  EXPECT_NEAR(summary.figures.at("noise_px"), 0.1, 0.02);
+  EXPECT_EQ(summary.steps.size(), 5);
   Score score = score_of(folder / "walk.marey", scene);
   EXPECT_GT(score.points, 0.95 * 600 * 30);
   EXPECT_LT(static_cast<double>(score.far), 0.002 * static_cast<double>(score.points));
@@ -125,7 +124,7 @@ TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
   const simulate::room::RoomScene scene(
       {.motion = simulate::room::RoomMotion::still, .markers = 20, .frames = 60, .occlusion = false, .bump = {}});
   write_room(scene, folder.path());
-  ReconstructOptions options;
+  MarkersInSpaceOptions options;
   options.set.labels = scene.labels();
   const Rigid3 turned{geometry::rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
   for (const Vector<3>& place : scene.points(0)) options.set.places.push_back(turned * place);
@@ -171,11 +170,13 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
     track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
     track.velocity = velocity;
     track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
-    TakeFrame frame{.index = i, .time = timestamp_from_seconds(t), .observations = {}, .points = {}};
+    Instant frame;
+    frame.index = i;
+    frame.time = timestamp_from_seconds(t);
     if (seen) {
-      frame.points.emplace_back();
-      frame.points.back().track = track.id;
-      frame.points.back().position = track.position;
+      frame.samples.emplace_back();
+      frame.samples.back().track = track.id;
+      frame.samples.back().position = track.position;
     }
     filler.add(frame, std::span(&track, 1));
   }
@@ -183,9 +184,9 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
   for (int i = 0; i < 20; ++i) {
     const auto frame = filler.next();
     ASSERT_TRUE(frame);
-    ASSERT_EQ(frame->points.size(), 1) << i;
-    EXPECT_EQ(frame->points[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
-    EXPECT_LT((frame->points[0].position - at(0.1 * i)).norm(), 1e-9) << i;
+    ASSERT_EQ(frame->samples.size(), 1) << i;
+    EXPECT_EQ(frame->samples[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
+    EXPECT_LT((frame->samples[0].position - at(0.1 * i)).norm(), 1e-9) << i;
   }
 }
 
@@ -254,7 +255,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   const std::string data = test::data("wing");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not here";
   const test::TemporaryFolder folder;
-  ReconstructOptions options;
+  MarkersInSpaceOptions options;
   options.markers.dark = true;
   options.markers.widest = 9;
   options.markers.min_area = 4;

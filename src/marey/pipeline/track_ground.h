@@ -11,7 +11,7 @@
 #include "marey/geometry/pitch.h"
 #include "marey/pipeline/ground_cameras.h"
 #include "marey/pipeline/people_eyes.h"
-#include "marey/pipeline/run.h"
+#include "marey/pipeline/run_hooks.h"
 #include "marey/track/ground/ground_recorder.h"
 #include "marey/track/ground/ground_tracker.h"
 
