@@ -89,8 +89,8 @@ void convert_ground(const std::string& from, const std::string& to, const std::s
   if (!options.periods.empty()) match.periods.clear();
   for (const std::string& period : options.periods)
     match.periods.push_back(parse_period(period, static_cast<int>(match.periods.size()) + 1));
-  if (is_plain(in) && !is_plain(out)) format::match::to_corner(match.recording, match.pitch, frame);
-  if (!is_plain(in) && is_plain(out)) format::match::from_corner(match.recording, match.pitch, frame);
+  if (is_plain(in) && !is_plain(out)) match.recording = format::match::to_corner(std::move(match.recording), match.pitch, frame);
+  if (!is_plain(in) && is_plain(out)) match.recording = format::match::from_corner(std::move(match.recording), match.pitch, frame);
   std::vector<std::string> warnings = match.warnings;
   const std::vector<std::string> lost = format::match::write_ground_as(match, to, out);
   warnings.insert(warnings.end(), lost.begin(), lost.end());

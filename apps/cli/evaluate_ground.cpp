@@ -109,20 +109,20 @@ void print_table(const pipeline::MatchJudgement& judgement, double distance) {
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const GroundRecording& truth,
-                                const GroundRecording& tracks, const pipeline::MatchJudgement& judgement) {
+std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
+                                const Recording& tracks, const pipeline::MatchJudgement& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
-  if (truth.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
-  if (tracks.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
-  if (truth.samples.empty() || tracks.samples.empty()) return sentences;
+  const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
+  if (truth_is_empty) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
+  if (tracks_are_empty) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
+  if (truth_is_empty || tracks_are_empty) return sentences;
   if (judgement.evaluation.scores.common_frames == 0) sentences.push_back("truth and tracks have no instant in common");
-  const double earlier = truth.samples.front().time - tracks.samples.front().time;
-  const double later = tracks.samples.back().time - truth.samples.back().time;
+  const double true_first = truth.seconds_at(0), true_last = truth.seconds_at(truth.instants().size() - 1);
+  const double first = tracks.seconds_at(0), last = tracks.seconds_at(tracks.instants().size() - 1);
   constexpr double much = 0.5;
-  if (earlier > much || later > much)
-    sentences.push_back(fmt::format("the tracks ({:.2f} to {:.2f} s) go beyond the truth ({:.2f} to {:.2f} s)",
-                                    tracks.samples.front().time, tracks.samples.back().time, truth.samples.front().time,
-                                    truth.samples.back().time));
+  if (true_first - first > much || last - true_last > much)
+    sentences.push_back(fmt::format("the tracks ({:.2f} to {:.2f} s) go beyond the truth ({:.2f} to {:.2f} s)", first, last,
+                                    true_first, true_last));
   return sentences;
 }
 
@@ -130,9 +130,9 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 
 void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
   const format::match::GroundMatch tracks_match = format::match::read_ground_any(tracks_name);
-  const GroundRecording& tracks = tracks_match.recording;
+  const Recording& tracks = tracks_match.recording;
   // A truth that has frames and no times has the tracks'.
-  const GroundRecording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks_match.rate_hz}).recording;
+  const Recording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
   const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);

@@ -1,4 +1,4 @@
-// A person's way over the ground, made smooth, and the velocity along it.
+// A person's path over the ground, made smooth, and the velocity along it.
 //
 // Positions from video jump about by decimetres from frame to frame; differences of them as they are add up to a distance that can
 // be 40 % too long and to speeds nobody runs. People change their velocity slowly: what is faster than about 1 Hz is noise.
@@ -6,16 +6,16 @@
 //   savgol   a parabola through the second round each instant (Savitzky & Golay 1964)
 //   kalman   constant velocity with noise in the acceleration, smoothed from both ends (Rauch, Tung & Striebel 1965)
 //   raw      as measured; velocities are differences
-// Ways are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
+// Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
 // References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/core/recording.h"
 
 namespace marey::analyse {
 
@@ -27,13 +27,13 @@ struct PathOptions {
   double window_s = 1;        ///< savgol
   double place_noise = 0.3;   ///< kalman: m, of a measured place
   double acceleration = 1.5;  ///< kalman: m/s^1.5
-  double longest_gap_s = 1;   ///< a person missing for longer is on another way afterwards
+  double longest_gap_s = 1;   ///< a person missing for longer is on another path afterwards
 };
 
 /// Throws Error, naming what is valid, for a name that is none.
 PathOptions::Method parse_path_method(std::string_view name);
 
-/// One unbroken way at an even rate.
+/// One unbroken path at an even rate.
 struct Path {
   double start_s = 0;
   double step_s = 0.04;
@@ -44,12 +44,13 @@ struct Path {
   double seconds() const { return step_s * static_cast<double>(place.empty() ? 0 : place.size() - 1); }
 };
 
-struct TimedPlace {
-  double time = 0;  ///< s
-  Vector<2> place = Vector<2>::Zero();
-};
+/// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over, pieces
+/// of fewer than two places left out.
+std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
+                               const PathOptions& options = {});
 
-/// `measured` in the order of time, times growing. Pieces of fewer than two places are left out.
-std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathOptions& options = {});
+/// The same of a track of a recording in m. Where the recording is smoothed already it is not smoothed again: places and velocities
+/// are those that it has (velocities that are missing are differences), so that who measures finds the speeds that were recorded.
+std::vector<Path> paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options = {});
 
 }  // namespace marey::analyse

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::analyse {
@@ -44,15 +44,16 @@ struct Teams {
     double confidence = 0;         ///< probability of what is said, in [0, 1]
   };
   std::vector<Team> teams;      ///< two at most; as named, else the one most seen first
-  std::vector<Member> members;  ///< one a person
+  std::vector<Member> members;  ///< one a track, in the recording's order
 };
 
-/// `wears` of each person of the recording, where known. `recording` in the pitch's frame where `pitch` is given.
-Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears,
+/// `wears` of each track of the recording, in their order, where known. `recording` is of the ground, in the pitch's frame where
+/// `pitch` is given; throws Error for another.
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears,
                  const TeamOptions& options = {});
 
 /// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
 /// none.
-void note_teams(const Teams& teams, GroundRecording& recording);
+void note_teams(const Teams& teams, Recording& recording);
 
 }  // namespace marey::analyse

@@ -1,7 +1,7 @@
 #include "marey/analyse/teams.h"
 
-#include <map>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,16 @@
 namespace marey::analyse {
 namespace {
 
+RecordingHeader on_the_pitch() {
+  RecordingHeader header;
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = 5;
+  return header;
+}
+
 /// People and what they wear; each stands about somewhere for some seconds.
 struct Scene {
-  GroundRecording recording;
+  Recording recording{on_the_pitch()};
   std::vector<std::optional<Appearance>> wears;
   std::mt19937_64 engine;
   double seconds = 20;
@@ -28,21 +35,19 @@ struct Scene {
                                .a = typical.a + static_cast<float>(normal(spread)),
                                .b = typical.b + static_cast<float>(normal(spread)),
                                .deviation = 3});
-    const auto who = static_cast<std::int32_t>(recording.people.size());
-    recording.people.push_back({who + 1, {}, {}});
+    for (auto k = static_cast<int>(recording.instants().size()); k < static_cast<int>(seconds * 5); ++k)
+      recording.add_moment({k, timestamp_from_seconds(k / 5.0)});
+    TrackColumns track({TrackId{static_cast<int>(recording.tracks().size()) + 1}, {}, {}}, 2);
     for (int k = static_cast<int>(from * seconds * 5); k < static_cast<int>(to * seconds * 5); ++k) {
-      GroundRecording::Sample sample;
-      sample.frame = k;
-      sample.person = who;
-      sample.time = k / 5.0;
-      sample.place = {x + normal(2), y + normal(2)};
-      recording.samples.push_back(sample);
+      Sample sample;
+      const double dx = normal(2), dy = normal(2);
+      sample.position = {x + dx, y + dy, 0};
+      track.add(k, sample);
     }
+    recording.put(std::move(track));
   }
 
   Teams find(const TeamOptions& options = {.names = {}, .pitch = geometry::PitchSize{}}) {
-    std::stable_sort(recording.samples.begin(), recording.samples.end(),
-                     [](const auto& a, const auto& b) { return a.frame < b.frame; });
     return find_teams(recording, wears, options);
   }
 };
@@ -94,10 +99,10 @@ TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
   EXPECT_EQ(teams.members[0].team, 1);
   EXPECT_EQ(teams.members[10].team, 0);
   note_teams(teams, scene.recording);
-  EXPECT_EQ(scene.recording.people[0].team, "Home");
-  EXPECT_EQ(scene.recording.people[20].label, "keeper");
-  EXPECT_EQ(scene.recording.people[22].label, "referee");
-  EXPECT_EQ(scene.recording.people[22].team, "");
+  EXPECT_EQ(scene.recording.tracks()[0].name.team, "Home");
+  EXPECT_EQ(scene.recording.tracks()[20].name.label, "keeper");
+  EXPECT_EQ(scene.recording.tracks()[22].name.label, "referee");
+  EXPECT_EQ(scene.recording.tracks()[22].name.team, "");
 }
 
 TEST(Teams, WhereKitsAreTheSameNobodyIsGivenTheWrongOne) {
@@ -142,7 +147,8 @@ TEST(Teams, ManyShortPiecesOfPeopleAreNoTrouble) {
 }
 
 TEST(Teams, NobodyIsNoTeam) {
-  EXPECT_TRUE(find_teams({}, {}).teams.empty());
+  EXPECT_TRUE(find_teams(Recording(on_the_pitch()), {}).teams.empty());
+  EXPECT_THROW(find_teams(Recording(), {}), Error) << "space is no ground";
 }
 
 TEST(Teams, WhatIsNoColourIsSaid) {

@@ -20,58 +20,65 @@ namespace {
 
 constexpr double kRound = 3;  // m round the pitch that the view from above shows, beyond the margin
 
-/// Samples of one instant after the other; instants are asked for in order.
-class Instant {
+/// Who is there at one frame after the other; frames are asked for in order.
+class FrameRows {
  public:
-  explicit Instant(const GroundRecording& recording) : samples_(recording.samples) {}
+  explicit FrameRows(const Recording& recording) : instants_(recording.instants()), rows_(recording) {}
 
-  std::span<const GroundRecording::Sample> at(std::int32_t frame) {
-    while (next_ < samples_.size() && samples_[next_].frame < frame) ++next_;
-    const std::size_t first = next_;
-    while (next_ < samples_.size() && samples_[next_].frame == frame) ++next_;
-    return samples_.subspan(first, next_ - first);
+  std::span<const InstantRows::Row> at(std::int32_t frame) {
+    while (next_ < instants_.size() && instants_[next_].index < frame) ++next_;
+    if (next_ == instants_.size() || instants_[next_].index != frame) return {};
+    return rows_.at(next_);
   }
 
  private:
-  std::span<const GroundRecording::Sample> samples_;
+  const std::vector<Recording::Moment>& instants_;
+  InstantRows rows_;
   std::size_t next_ = 0;
 };
 
-/// The person's box in the view, cut at the picture's border, if some of it is within.
-std::optional<Box> box_in_view(const GroundShow& show, std::size_t number, const ViewLog& log,
-                               const GroundRecording::Sample& sample) {
-  if (const auto seen = log.box(sample.frame, sample.person)) return seen;
-  const auto box = show.cameras.box_at(number, show.area.world(sample.place));
-  if (!box) return std::nullopt;
-  const cv::Size size = show.cameras.views()[number].size();
-  const Box cut = geometry::intersection(*box, {0, 0, static_cast<double>(size.width), static_cast<double>(size.height)});
-  if (cut.empty()) return std::nullopt;
-  return cut;
-}
+/// A person in a camera's view: the number of the camera, its log, and the row.
+struct InView {
+  const GroundShow& show;
+  std::size_t number;
+  const ViewLog& log;
 
-std::string text_of(const GroundRecording::Person& person) {
-  return person.label.empty() ? std::to_string(person.id) : person.label;
+  const TrackColumns& track(const InstantRows::Row& row) const { return show.recording.tracks()[row.track]; }
+
+  /// The person's box in the view, cut at the picture's border, if some of it is within.
+  std::optional<Box> box(const InstantRows::Row& row, std::int32_t frame) const {
+    if (const auto seen = log.box(frame, track(row).id())) return seen;
+    const auto box = show.cameras.box_at(number, show.area.world(track(row).place(row.row)));
+    if (!box) return std::nullopt;
+    const cv::Size size = show.cameras.views()[number].size();
+    const Box cut = geometry::intersection(*box, {0, 0, static_cast<double>(size.width), static_cast<double>(size.height)});
+    if (cut.empty()) return std::nullopt;
+    return cut;
+  }
+};
+
+std::string text_of(const TrackName& person) {
+  return person.label.empty() ? std::to_string(number(person.id)) : person.label;
 }
 
 /// What fits on a disc.
-std::string short_text_of(const GroundRecording::Person& person) {
+std::string short_text_of(const TrackName& person) {
   constexpr std::size_t most = 3;
-  return person.label.empty() || person.label.size() > most ? std::to_string(person.id) : person.label;
+  return person.label.empty() || person.label.size() > most ? std::to_string(number(person.id)) : person.label;
 }
 
-/// What the overlay draws of one sample; nothing where it is out of the picture.
-std::optional<Track<2>> track_in_view(const GroundShow& show, std::size_t number, const ViewLog& log,
-                                      const GroundRecording::Sample& sample) {
-  const auto box = box_in_view(show, number, log, sample);
-  const auto foot = show.cameras.views()[number].pixel(show.area.world(sample.place));
+/// What the overlay draws of one row; nothing where it is out of the picture.
+std::optional<Track<2>> track_in_view(const InView& view, const InstantRows::Row& row, std::int32_t frame) {
+  const TrackColumns& person = view.track(row);
+  const auto box = view.box(row, frame);
+  const auto foot = view.show.cameras.views()[view.number].pixel(view.show.area.world(person.place(row.row)));
   if (!box || !foot) return std::nullopt;
-  const GroundRecording::Person& person = show.recording.people[static_cast<std::size_t>(sample.person)];
   Track<2> track;
-  track.id = TrackId{person.id};
-  track.label = text_of(person);
+  track.id = person.id();
+  track.label = text_of(person.name);
   track.position = *foot;
   track.box = box;
-  const bool seen = (sample.cameras & mask_of(CameraId{static_cast<int>(number)})) != 0;
+  const bool seen = (person.cameras()[row.row] & mask_of(CameraId{static_cast<int>(view.number)})) != 0;
   track.state = seen ? Track<2>::State::observed : Track<2>::State::predicted;
   return track;
 }
@@ -87,10 +94,15 @@ draw::PitchViewOptions view_of(const GroundShow& show) {
     options.high = {pitch->length + round, pitch->width + round};
     return options;
   }
-  options.low = options.high = show.recording.samples.empty() ? Vector<2>(0, 0) : show.recording.samples.front().place;
-  for (const GroundRecording::Sample& sample : show.recording.samples) {
-    options.low = options.low.cwiseMin(sample.place);
-    options.high = options.high.cwiseMax(sample.place);
+  options.low = options.high = Vector<2>::Zero();
+  bool any = false;
+  for (const TrackColumns& track : show.recording.tracks()) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      const Vector<2> place = track.place(row);
+      options.low = any ? Vector<2>(options.low.cwiseMin(place)) : place;
+      options.high = any ? Vector<2>(options.high.cwiseMax(place)) : place;
+      any = true;
+    }
   }
   options.low -= Vector<2>(kRound, kRound);
   options.high += Vector<2>(kRound, kRound);
@@ -104,10 +116,10 @@ void ViewLog::add_box(std::int32_t frame, TrackId track, const Box& box) {
                    static_cast<float>(box.height)});
 }
 
-void ViewLog::name(const std::function<std::optional<int>(TrackId, std::int32_t)>& person_of) {
+void ViewLog::name(const std::function<std::optional<TrackId>(TrackId, std::int32_t)>& person_of) {
   const auto kept = std::remove_if(rows_.begin(), rows_.end(), [&](Row& row) {
     const auto person = person_of(TrackId{row.who}, row.frame);
-    if (person) row.who = *person;
+    if (person) row.who = number(*person);
     return !person;
   });
   rows_.erase(kept, rows_.end());
@@ -115,22 +127,22 @@ void ViewLog::name(const std::function<std::optional<int>(TrackId, std::int32_t)
                    [](const Row& a, const Row& b) { return std::pair(a.frame, a.who) < std::pair(b.frame, b.who); });
 }
 
-std::optional<Box> ViewLog::box(std::int32_t frame, std::int32_t person) const {
-  const auto at = std::lower_bound(rows_.begin(), rows_.end(), std::pair(frame, person),
+std::optional<Box> ViewLog::box(std::int32_t frame, TrackId person) const {
+  const auto at = std::lower_bound(rows_.begin(), rows_.end(), std::pair(frame, number(person)),
                                    [](const Row& row, const auto& wanted) { return std::pair(row.frame, row.who) < wanted; });
-  if (at == rows_.end() || at->frame != frame || at->who != person) return std::nullopt;
+  if (at == rows_.end() || at->frame != frame || at->who != number(person)) return std::nullopt;
   return Box{at->left, at->top, at->width, at->height};
 }
 
 void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path) {
   format::WholeFile file(path);
-  Instant instant(show.recording);
+  FrameRows rows(show.recording);
+  const InView view{show, number, log};
   std::string text;
   for (const ViewLog::FramePair& frame : log.frames()) {
-    for (const GroundRecording::Sample& sample : instant.at(frame.instant)) {
-      const auto box = box_in_view(show, number, log, sample);
-      if (!box) continue;
-      format::tracks::append_mot(text, {frame.own, show.recording.people[static_cast<std::size_t>(sample.person)].id, *box, 1});
+    for (const InstantRows::Row& row : rows.at(frame.instant)) {
+      if (const auto box = view.box(row, frame.instant))
+        format::tracks::append_mot(text, {frame.own, marey::number(view.track(row).id()), *box, 1});
     }
     file.write(text);
     text.clear();
@@ -144,9 +156,10 @@ bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, c
   draw::MovieWriter movie(path, source->info().size, source->info().rate_hz);
   draw::OverlayOptions options{.trail_of_centres = true};
   for (std::size_t person = 0; person < show.colours.size(); ++person)
-    options.colours[TrackId{show.recording.people[person].id}] = show.colours[person];
+    options.colours[show.recording.tracks()[person].id()] = show.colours[person];
   draw::Overlay overlay(options);
-  Instant instant(show.recording);
+  FrameRows rows(show.recording);
+  const InView view{show, number, log};
   std::vector<Track<2>> tracks;
   bool stopped = false;
   const auto frames = log.frames();
@@ -155,8 +168,8 @@ bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, c
     if (!frame) break;
     if (frame->index < frames[at].own) continue;
     tracks.clear();
-    for (const GroundRecording::Sample& sample : instant.at(frames[at].instant)) {
-      if (auto track = track_in_view(show, number, log, sample)) tracks.push_back(std::move(*track));
+    for (const InstantRows::Row& row : rows.at(frames[at].instant)) {
+      if (auto track = track_in_view(view, row, frames[at].instant)) tracks.push_back(std::move(*track));
     }
     movie.write(overlay.draw(frame->picture, frame->time, tracks), frame->time);
     stopped = show.hooks.tell({TrackProgress::Step::drawing, static_cast<std::int64_t>(++at), std::ssize(frames)});
@@ -165,22 +178,25 @@ bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, c
   return stopped;
 }
 
-bool film_ground(const GroundShow& show, std::span<const double> times, const std::string& path) {
+bool film_ground(const GroundShow& show, const std::string& path) {
+  const Recording& recording = show.recording;
   draw::PitchView view(view_of(show));
   draw::MovieWriter movie(path, view.size(), show.cameras.rate_hz());
-  Instant instant(show.recording);
+  InstantRows rows(recording);
   std::vector<draw::PitchView::Mark> marks;
   bool stopped = false;
-  for (std::int32_t frame = 0; frame < std::ssize(times) && !stopped; ++frame) {
+  const std::size_t count = recording.instants().size();
+  for (std::size_t instant = 0; instant < count && !stopped; ++instant) {
     marks.clear();
-    for (const GroundRecording::Sample& sample : instant.at(frame)) {
-      const auto person = static_cast<std::size_t>(sample.person);
-      marks.push_back({show.recording.people[person].id, short_text_of(show.recording.people[person]), show.colours[person],
-                       sample.place, sample.observed});
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = recording.tracks()[index];
+      marks.push_back(
+          {number(track.id()), short_text_of(track.name), show.colours[index], track.place(row), track.measured(row)});
     }
-    const Timestamp now = timestamp_from_seconds(times[static_cast<std::size_t>(frame)]);
+    const Timestamp now = recording.instants()[instant].time;
     movie.write(view.draw(now, marks), now);
-    stopped = show.hooks.tell({TrackProgress::Step::drawing, frame + 1, std::ssize(times)});
+    stopped =
+        show.hooks.tell({TrackProgress::Step::drawing, static_cast<std::int64_t>(instant) + 1, static_cast<std::int64_t>(count)});
   }
   movie.finish();
   return stopped;

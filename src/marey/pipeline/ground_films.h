@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_cameras.h"
@@ -31,10 +31,10 @@ class ViewLog {
   };
   std::span<const FramePair> frames() const { return frames_; }
 
-  /// Puts persons (index into the recording's people) in the place of tracks; boxes of nobody are forgotten.
-  void name(const std::function<std::optional<int>(TrackId, std::int32_t frame)>& person_of);
-  /// The box of this person at this instant, where the camera saw it. After `name`.
-  std::optional<Box> box(std::int32_t frame, std::int32_t person) const;
+  /// Puts the recording's tracks in the place of the tracker's; boxes of those in no track are forgotten.
+  void name(const std::function<std::optional<TrackId>(TrackId, std::int32_t frame)>& person_of);
+  /// The box of this track of the recording at this instant, where the camera saw it. After `name`.
+  std::optional<Box> box(std::int32_t frame, TrackId person) const;
 
  private:
   struct Row {
@@ -45,12 +45,12 @@ class ViewLog {
   std::vector<Row> rows_;  // by frame, then by who once named
 };
 
-/// All that the films show. `recording` is in the user's coordinates.
+/// All that the films show. `recording` is in the user's coordinates, its instants the run's.
 struct GroundShow {
-  const GroundRecording& recording;
+  const Recording& recording;
   const GroundArea& area;
   const GroundCameras& cameras;
-  std::vector<draw::Colour> colours;  ///< of each person
+  std::vector<draw::Colour> colours;  ///< of each track
   const RunHooks& hooks;
 };
 
@@ -58,11 +58,11 @@ struct GroundShow {
 /// where it cannot be written.
 void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path);
 
-/// A film of camera `number` with boxes, numbers and ways on the ground. Whether it was stopped. Throws Error where it cannot be
+/// A film of camera `number` with boxes, numbers and paths on the ground. Whether it was stopped. Throws Error where it cannot be
 /// written.
 bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path);
 
-/// A film of the ground from above, a picture for each instant from the first to the last of `times` (s, by instant).
-bool film_ground(const GroundShow& show, std::span<const double> times, const std::string& path);
+/// A film of the ground from above, a picture for each of the recording's instants.
+bool film_ground(const GroundShow& show, const std::string& path);
 
 }  // namespace marey::pipeline

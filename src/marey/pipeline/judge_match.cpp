@@ -1,10 +1,11 @@
 // Judging tracks on the ground: which instants of the two recordings are the same, then the comparison place by place, then the
-// ways' lengths. A recording's instants are its different frames; its period is the median time between two of them.
+// paths' lengths. A recording's period is the median time between two of its instants.
 #include "marey/pipeline/judge_match.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -16,15 +17,12 @@ namespace {
 constexpr double kSlowest = 0.25;  // s between instants up to which a way between them is known
 constexpr double kSame = 0.02;     // share by which periods may differ and still be one
 
-struct Instant {
-  std::int32_t frame = 0;
-  double time = 0;
-};
-
 struct Clock {
-  std::vector<Instant> instants;  // by frame
-  double period = 0;              // s between instants; 0 where there are fewer than two
-  double frame_s = 0;             // s a frame number
+  const std::vector<Recording::Moment>& instants;
+  double period = 0;   // s between instants; 0 where there are fewer than two
+  double frame_s = 0;  // s a frame number
+
+  double time(std::size_t i) const { return seconds(instants[i].time); }
 };
 
 double median(std::vector<double> values) {
@@ -33,17 +31,13 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Clock clock_of(const GroundRecording& recording) {
-  Clock clock;
-  for (const auto& sample : recording.samples) {
-    if (clock.instants.empty() || clock.instants.back().frame != sample.frame)
-      clock.instants.push_back({sample.frame, sample.time});
-  }
+Clock clock_of(const Recording& recording) {
+  Clock clock{recording.instants()};
   std::vector<double> steps, per_frame;
   for (std::size_t i = 1; i < clock.instants.size(); ++i) {
-    const Instant &before = clock.instants[i - 1], &now = clock.instants[i];
-    steps.push_back(now.time - before.time);
-    per_frame.push_back((now.time - before.time) / (now.frame - before.frame));
+    const double step = clock.time(i) - clock.time(i - 1);
+    steps.push_back(step);
+    per_frame.push_back(step / static_cast<double>(clock.instants[i].index - clock.instants[i - 1].index));
   }
   clock.period = median(std::move(steps));
   clock.frame_s = median(std::move(per_frame));
@@ -54,23 +48,25 @@ bool alike(double a, double b) {
   return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b));
 }
 
-/// Which of `others` is the same instant: index into it, or −1.
-std::vector<std::ptrdiff_t> partners(const Clock& clock, const Clock& others, bool by_time) {
-  std::vector<std::ptrdiff_t> result;
-  const auto key = [by_time](const Instant& instant) { return by_time ? instant.time : static_cast<double>(instant.frame); };
+/// Which of `others` is the same instant: index into it.
+std::vector<std::optional<std::size_t>> partners(const Clock& clock, const Clock& others, bool by_time) {
+  std::vector<std::optional<std::size_t>> result;
+  const auto key = [by_time](const Recording::Moment& moment) {
+    return by_time ? seconds(moment.time) : static_cast<double>(moment.index);
+  };
   const double reach = by_time ? std::min(clock.period, others.period) / 2 + 1e-9 : 0;
   const auto begin = others.instants.begin(), end = others.instants.end();
-  for (const Instant& instant : clock.instants) {
-    auto next = std::lower_bound(begin, end, key(instant), [&](const Instant& a, double b) { return key(a) < b; });
-    if (next != begin && (next == end || key(*next) - key(instant) > key(instant) - key(*(next - 1)))) --next;
-    const bool near = next != end && std::abs(key(*next) - key(instant)) <= reach;
-    result.push_back(near ? next - begin : -1);
+  for (const Recording::Moment& moment : clock.instants) {
+    auto next = std::lower_bound(begin, end, key(moment), [&](const Recording::Moment& a, double b) { return key(a) < b; });
+    if (next != begin && (next == end || key(*next) - key(moment) > key(moment) - key(*(next - 1)))) --next;
+    const bool near = next != end && std::abs(key(*next) - key(moment)) <= reach;
+    result.push_back(near ? std::optional(static_cast<std::size_t>(next - begin)) : std::nullopt);
   }
   return result;
 }
 
-/// The common number of each frame of a recording; frames that are not judged are in none.
-using Numbers = std::map<std::int32_t, std::int32_t>;
+/// The common number of each instant of a recording; those that are not judged have none.
+using Numbers = std::vector<std::optional<std::int32_t>>;
 
 struct Pairing {
   Numbers truth, tracks;
@@ -81,18 +77,16 @@ struct Pairing {
 /// no partner get numbers of their own.
 void number(const Clock& leader, const Clock& follower, bool by_time, bool all, Numbers& leading, Numbers& following) {
   const auto partner = partners(leader, follower, by_time);
-  std::vector<bool> taken(follower.instants.size(), false);
+  leading.assign(leader.instants.size(), std::nullopt);
+  following.assign(follower.instants.size(), std::nullopt);
   std::int32_t next = 0;
-  for (std::size_t i = 0; i < leader.instants.size(); ++i) {
-    leading[leader.instants[i].frame] = next;
-    if (partner[i] >= 0 && !taken[static_cast<std::size_t>(partner[i])]) {
-      taken[static_cast<std::size_t>(partner[i])] = true;
-      following[follower.instants[static_cast<std::size_t>(partner[i])].frame] = next;
-    }
+  for (std::size_t i = 0; i < leading.size(); ++i) {
+    leading[i] = next;
+    if (partner[i] && !following[*partner[i]]) following[*partner[i]] = next;
     ++next;
   }
-  for (std::size_t i = 0; all && i < follower.instants.size(); ++i) {
-    if (!taken[i]) following[follower.instants[i].frame] = next++;
+  for (std::size_t i = 0; all && i < following.size(); ++i) {
+    if (!following[i]) following[i] = next++;
   }
 }
 
@@ -100,7 +94,7 @@ void number(const Clock& leader, const Clock& follower, bool by_time, bool all, 
 double time_between(const Clock& truth, const Clock& tracks) {
   const auto partner = partners(truth, tracks, false);
   for (std::size_t i = 0; i < partner.size(); ++i) {
-    if (partner[i] >= 0) return tracks.instants[static_cast<std::size_t>(partner[i])].time - truth.instants[i].time;
+    if (partner[i]) return tracks.time(*partner[i]) - truth.time(i);
   }
   return 0;
 }
@@ -131,72 +125,76 @@ Pairing pair_instants(const Clock& truth, const Clock& tracks, std::vector<std::
   return pairing;
 }
 
-std::vector<evaluate::PersonPlace> places_of(const GroundRecording& recording, const Numbers& numbers) {
+/// A velocity of each row of a track: as recorded, else of smoothed paths. What is on no path, because it stands alone, has none.
+using Velocities = std::vector<std::optional<Vector<2>>>;
+
+Velocities velocities_of(const Recording& recording, const TrackColumns& track, bool recorded) {
+  Velocities velocities(track.size());
+  if (recorded) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      if (const auto velocity = track.velocity(row)) velocities[row] = velocity->head<2>();
+    }
+    return velocities;
+  }
+  const std::vector<analyse::Path> paths = analyse::paths_of(recording, track);
+  for (std::size_t row = 0; row < track.size(); ++row) {
+    const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[row]));
+    for (const analyse::Path& path : paths) {
+      const double at = (time - path.start_s) / path.step_s;
+      if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
+      const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
+      velocities[row] = path.velocity[std::min(nearest, path.velocity.size() - 1)];
+    }
+  }
+  return velocities;
+}
+
+std::vector<evaluate::PersonPlace> places_of(const Recording& recording, const Numbers& numbers) {
+  const bool recorded = has_velocities(recording);
+  std::vector<Velocities> velocities;
+  for (const TrackColumns& track : recording.tracks()) velocities.push_back(velocities_of(recording, track, recorded));
   std::vector<evaluate::PersonPlace> places;
-  places.reserve(recording.samples.size());
-  auto number = numbers.end();
-  std::int32_t last = -1;
-  for (const auto& sample : recording.samples) {
-    if (sample.frame != last || number == numbers.end()) number = numbers.find(sample.frame);
-    last = sample.frame;
-    if (number == numbers.end()) continue;
-    places.push_back({number->second, recording.people[static_cast<std::size_t>(sample.person)].id, sample.place, sample.velocity});
+  places.reserve(static_cast<std::size_t>(recording.samples()));
+  InstantRows rows(recording);
+  for (std::size_t instant = 0; instant < numbers.size(); ++instant) {
+    if (!numbers[instant]) continue;
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = recording.tracks()[index];
+      places.push_back({*numbers[instant], marey::number(track.id()), track.place(row), velocities[index][row]});
+    }
   }
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   return places;
 }
 
-bool has_velocities(const GroundRecording& recording) {
-  return std::any_of(recording.samples.begin(), recording.samples.end(),
-                     [](const auto& sample) { return sample.velocity != Vector<2>::Zero(); });
-}
+struct PathColumns {
+  std::vector<double> x, y;
 
-/// Velocities of smoothed ways. What is on no way, because it stands alone, keeps 0.
-GroundRecording with_velocities(GroundRecording recording) {
-  std::vector<std::vector<std::size_t>> samples_of(recording.people.size());
-  for (std::size_t i = 0; i < recording.samples.size(); ++i)
-    samples_of[static_cast<std::size_t>(recording.samples[i].person)].push_back(i);
-  for (const auto& mine : samples_of) {
-    std::vector<analyse::TimedPlace> measured;
-    for (const std::size_t i : mine) {
-      const auto& sample = recording.samples[i];
-      if (measured.empty() || sample.time > measured.back().time) measured.push_back({sample.time, sample.place});
+  void add(const Vector<2>& place) { x.push_back(place.x()), y.push_back(place.y()); }
+
+  double length(const std::vector<double>& times) const {
+    double length = 0;
+    for (const analyse::Path& path : analyse::smooth_paths(times, x, y)) {
+      for (std::size_t i = 1; i < path.place.size(); ++i) length += (path.place[i] - path.place[i - 1]).norm();
     }
-    const std::vector<analyse::Path> paths = analyse::smooth_paths(measured);
-    for (const std::size_t i : mine) {
-      auto& sample = recording.samples[i];
-      for (const analyse::Path& path : paths) {
-        const double at = (sample.time - path.start_s) / path.step_s;
-        if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
-        const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
-        sample.velocity = path.velocity[std::min(nearest, path.velocity.size() - 1)];
-      }
-    }
+    return length;
   }
-  return recording;
-}
-
-struct SharedWay {
-  std::vector<analyse::TimedPlace> truth, track;
 };
 
-double length_of(const std::vector<analyse::TimedPlace>& way) {
-  double length = 0;
-  for (const analyse::Path& path : analyse::smooth_paths(way)) {
-    for (std::size_t i = 1; i < path.place.size(); ++i) length += (path.place[i] - path.place[i - 1]).norm();
-  }
-  return length;
-}
+struct SharedPath {
+  std::vector<double> times;
+  PathColumns truth, track;
+};
 
-/// The ways of people and of their tracks, over the instants that both have; `times` are those of the truth's frames.
-std::vector<PathLengths> way_lengths(const std::vector<evaluate::PersonPlace>& truth,
+/// The paths of people and of their tracks, over the instants that both have; `times` are those of the common numbers, by the truth.
+std::vector<PathLengths> path_lengths(const std::vector<evaluate::PersonPlace>& truth,
                                      const std::vector<evaluate::PersonPlace>& tracks,
                                      const std::vector<evaluate::PersonFate>& people, const std::map<std::int32_t, double>& times) {
   std::map<int, int> track_of;
   for (const evaluate::PersonFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;
   }
-  std::map<int, SharedWay> ways;
+  std::map<int, SharedPath> shared;
   std::size_t begin = 0;  // of the tracks' places in this frame
   for (const evaluate::PersonPlace& place : truth) {
     while (begin < tracks.size() && tracks[begin].frame < place.frame) ++begin;
@@ -205,41 +203,39 @@ std::vector<PathLengths> way_lengths(const std::vector<evaluate::PersonPlace>& t
     std::size_t theirs = begin;
     while (theirs < tracks.size() && tracks[theirs].frame == place.frame && tracks[theirs].id != track->second) ++theirs;
     if (theirs == tracks.size() || tracks[theirs].frame != place.frame) continue;
-    SharedWay& way = ways[place.id];
-    const double time = times.at(place.frame);
-    way.truth.push_back({time, place.place});
-    way.track.push_back({time, tracks[theirs].place});
+    SharedPath& path = shared[place.id];
+    path.times.push_back(times.at(place.frame));
+    path.truth.add(place.place);
+    path.track.add(tracks[theirs].place);
   }
   std::vector<PathLengths> lengths;
-  for (const auto& [id, way] : ways) lengths.push_back({id, length_of(way.truth), length_of(way.track)});
+  for (const auto& [id, path] : shared) lengths.push_back({id, path.truth.length(path.times), path.track.length(path.times)});
   return lengths;
 }
 
 }  // namespace
 
-MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& tracks, double farthest) {
+MatchJudgement judge_match(const Recording& truth, const Recording& tracks, double farthest) {
+  require_ground(truth, "judging places");
+  require_ground(tracks, "judging places");
   MatchJudgement judgement;
   const Clock true_clock = clock_of(truth), track_clock = clock_of(tracks);
   const Pairing pairing = pair_instants(true_clock, track_clock, judgement.warnings);
   judgement.by_time = pairing.by_time;
-  const auto moving = [](const GroundRecording& recording, const Clock& clock) {
+  const auto moving = [](const Recording& recording, const Clock& clock) {
     return has_velocities(recording) || (clock.period > 0 && clock.period <= kSlowest);
   };
-  const auto prepared = [](const GroundRecording& recording, const Numbers& numbers) {
-    return has_velocities(recording) ? places_of(recording, numbers) : places_of(with_velocities(recording), numbers);
-  };
-  const std::vector<evaluate::PersonPlace> true_places = prepared(truth, pairing.truth),
-                                           track_places = prepared(tracks, pairing.tracks);
+  const std::vector<evaluate::PersonPlace> true_places = places_of(truth, pairing.truth),
+                                           track_places = places_of(tracks, pairing.tracks);
   judgement.evaluation = evaluate::evaluate_ground(true_places, track_places, farthest);
   judgement.has_speed = moving(truth, true_clock) && moving(tracks, track_clock);
   const double period = std::max(true_clock.period, track_clock.period);
   if (period > 0 && period <= kSlowest) {
     std::map<std::int32_t, double> times;
-    for (const Instant& instant : true_clock.instants) {
-      if (const auto number = pairing.truth.find(instant.frame); number != pairing.truth.end())
-        times[number->second] = instant.time;
+    for (std::size_t i = 0; i < pairing.truth.size(); ++i) {
+      if (pairing.truth[i]) times[*pairing.truth[i]] = true_clock.time(i);
     }
-    judgement.ways = way_lengths(true_places, track_places, judgement.evaluation.people, times);
+    judgement.ways = path_lengths(true_places, track_places, judgement.evaluation.people, times);
     double error = 0, length = 0;
     for (const PathLengths& way : judgement.ways) error += std::abs(way.track_m - way.true_m), length += way.true_m;
     if (length > 0) judgement.distance_error = error / length;

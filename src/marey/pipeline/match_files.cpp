@@ -135,10 +135,16 @@ class GroundTruth {
   GroundTruth(const Match& match, const fs::path& folder)
       : match_(match),
         motion_(match.options.seed, match.options.cameras.pitch),
-        writer_((folder / "truth.csv").string(), names(match.rig)) {
+        writer_((folder / "truth.csv").string()) {
+    RecordingHeader header;
+    header.name = "truth.csv";
+    header.frame.kind = FrameOfReference::Kind::user_ground;
+    header.rate_hz = match.options.cameras.rate_hz;
+    header.rig = match.rig;
+    writer_.begin(header);
     for (const RigCamera& eye : match.rig.cameras) cameras_.push_back(*eye.camera());
     for (int i = 0; i < simulate::match::kMatchPeople; ++i)
-      people_.push_back({i + 1, simulate::match::match_label(i), std::string(simulate::match::match_team(i))});
+      people_.push_back({TrackId{i + 1}, simulate::match::match_label(i), std::string(simulate::match::match_team(i))});
   }
 
   /// `films` have written the same frame: cameras that were started with the first one have looked already.
@@ -157,31 +163,28 @@ class GroundTruth {
           seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
       }
     }
+    Instant instant;
+    instant.index = frame;
+    instant.time = timestamp_from_seconds(time);
+    if (frame == 0) instant.named = people_;
     for (std::size_t i = 0; i < people_.size(); ++i) {
       const simulate::match::MatchPerson& person = motion_.people()[i];
-      GroundRecording::Sample sample;
-      sample.frame = static_cast<std::int32_t>(frame);
-      sample.time = time;
-      sample.place = person.place;
-      sample.velocity = person.velocity;
+      Sample& sample = instant.samples.emplace_back();
+      sample.track = people_[i].id;
+      sample.position.head<2>() = person.place;
+      sample.velocity.emplace(Vector<3>::Zero()).head<2>() = person.velocity;
       sample.cameras = seen_by[i];
-      writer_.write(sample, people_[i]);
     }
+    writer_.write(instant);
   }
 
   void finish() { writer_.finish(); }
 
  private:
-  static std::vector<std::string> names(const Rig& rig) {
-    std::vector<std::string> all;
-    for (const RigCamera& eye : rig.cameras) all.push_back(eye.name);
-    return all;
-  }
-
   const Match& match_;
   simulate::match::MatchMotion motion_;
   std::vector<Camera> cameras_;
-  std::vector<GroundRecording::Person> people_;
+  std::vector<TrackName> people_;
   format::match::GroundWriter writer_;
 };
 

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <deque>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -21,6 +20,8 @@ namespace marey::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kUsualRate = 25;  // Hz, of live pictures of which nobody says it
 
 double since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -45,10 +46,13 @@ std::vector<double> offsets_of(const Rig& rig) {
   return offsets;
 }
 
-std::vector<std::string> names_of(const Rig& rig) {
-  std::vector<std::string> names;
-  for (const RigCamera& camera : rig.cameras) names.push_back(camera.name);
-  return names;
+/// The same, its times by the clock of the first camera, which was started `offset` s after the rig's.
+Recording by_first_camera(Recording recording, double offset) {
+  Recording result(recording.header);
+  for (const Recording::Moment& moment : recording.instants())
+    result.add_moment({moment.index, moment.time - duration_from_seconds(offset)});
+  for (TrackColumns& track : recording.take_tracks()) result.put(std::move(track));
+  return result;
 }
 
 class Run {
@@ -63,8 +67,8 @@ class Run {
         paths_(offsets_of(rig)),
         logs_(rig.cameras.size()),
         shows_(!output.boxes_of.empty() || !output.overlays.empty() || !output.pitch_view.empty()) {
-    recording_.cameras = names_of(rig);
-    if (options.live && output.boxes_of.empty()) file_.emplace(output.tracks, recording_.cameras);
+    recording_.header = header();
+    if (options.live && output.boxes_of.empty()) file_.emplace(output.tracks).begin(recording_.header);
     if (output.overlays.empty()) return;
     const auto has_pictures = [](const RigCamera& camera) { return !camera.source.empty(); };
     if (std::none_of(rig.cameras.begin(), rig.cameras.end(), has_pictures))
@@ -103,7 +107,8 @@ class Run {
     while (cameras_.next()) {
       const auto looks = cameras_.look(tracker_->expected(cameras_.time()));
       const auto tracks = tracker_->step(cameras_.time(), looks);
-      times_.push_back(seconds(cameras_.time()) - cameras_.rig().cameras.front().offset_s.value_or(0));
+      now_ = cameras_.time() - duration_from_seconds(first_offset());
+      if (!first_) first_ = now_;
       paths_.add(looks, tracker_->claims());
       log_frames();
       if (options_.live) {
@@ -119,7 +124,7 @@ class Run {
     if (!options_.live) record(tracker_->decide_all());
     summary_.frames = cameras_.frame() + 1;
     if (summary_.frames == 0) throw Error("camera \"{}\": not one frame could be read", cameras_.rig().cameras.front().name);
-    summary_.seconds = times_.back() - times_.front();
+    summary_.seconds = seconds(now_) - seconds(*first_);
   }
 
   /// What the tracker is sure of, of instants that waited for it.
@@ -149,60 +154,73 @@ class Run {
     }
   }
 
-  GroundRecording::Sample sample_of(const Track<2>& track) const {
-    return {.frame = cameras_.frame(),
-            .person = 0,
-            .time = times_.back(),
-            .place = area_.ground(track.position),
-            .velocity = area_.ground_velocity(track.velocity),
-            .cameras = track.cameras,
-            .observed = track.state == Track<2>::State::observed};
+  double first_offset() const { return cameras_.rig().cameras.front().offset_s.value_or(0); }
+
+  RecordingHeader header() const {
+    RecordingHeader header;
+    header.name = "people on the ground";
+    header.frame.kind = FrameOfReference::Kind::user_ground;
+    header.rate_hz = cameras_.rate_hz().value_or(kUsualRate);
+    header.rig = cameras_.rig();
+    return header;
+  }
+
+  Sample sample_of(const Track<2>& track) const {
+    Sample sample;
+    sample.track = track.id;
+    sample.position.head<2>() = area_.ground(track.position);
+    sample.velocity.emplace(Vector<3>::Zero()).head<2>() = area_.ground_velocity(track.velocity);
+    sample.provenance = track.state == Track<2>::State::observed ? Provenance::measured : Provenance::predicted;
+    sample.cameras = track.cameras;
+    return sample;
   }
 
   void write_live(std::span<const Track<2>> tracks) {
+    Instant instant;
+    instant.index = cameras_.frame();
+    instant.time = now_;
     for (const Track<2>& track : tracks) {
       if (!track.confirmed || !area_.holds(track.position)) continue;
-      GroundRecording::Sample sample = sample_of(track);
-      if (file_) file_->write(sample, {number(track.id), {}, {}});
-      live_people_.try_emplace(track.id, static_cast<std::int32_t>(live_people_.size()));
-      count(sample);
-      if (!shows_) continue;
-      sample.person = live_people_.at(track.id);
-      if (std::cmp_equal(sample.person, recording_.people.size())) recording_.people.push_back({number(track.id), {}, {}});
-      recording_.samples.push_back(sample);
+      instant.samples.push_back(sample_of(track));
+      live_people_.insert(track.id);
+      count(instant.samples.back().measured());
     }
+    if (file_) file_->write(instant);
+    if (shows_) recording_.add(instant);
   }
 
-  void count(const GroundRecording::Sample& sample) {
+  void count(bool measured) {
     ++summary_.rows;
-    if (!sample.observed) ++summary_.predicted;
+    if (!measured) ++summary_.predicted;
   }
 
   /// The second pass: who is whom over the whole recording, in the user's coordinates, without those who never were on the pitch.
   void join() {
-    track::ground::GroundRecorder::Joined joined =
-        std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
-    std::vector<std::string> names = std::move(recording_.cameras);
-    recording_ = std::move(joined.recording);
-    recording_.cameras = std::move(names);
-    const std::vector<std::int32_t> now = keep_in_area();
-    std::vector<std::optional<Appearance>> wears(recording_.people.size());
-    for (std::size_t person = 0; person < now.size(); ++person) {
-      if (now[person] >= 0) wears[static_cast<std::size_t>(now[person])] = joined.wears[person];
-    }
+    pieces_ = std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
+    const std::size_t all = pieces_.recording.tracks().size();
+    KeptPeople people = people_in(area_, by_first_camera(std::move(pieces_.recording), first_offset()));
+    recording_ = std::move(people.recording);
+    recording_.header.rig = cameras_.rig();
+    if (const auto rate = cameras_.rate_hz()) recording_.header.rate_hz = *rate;
+    summary_.off_pitch = static_cast<std::int64_t>(all - people.now.size());
+    std::vector<std::optional<Appearance>> wears(people.now.size());
+    for (const auto& [before, now] : people.now)
+      wears[static_cast<std::size_t>(number(now)) - 1] = pieces_.wears[static_cast<std::size_t>(number(before)) - 1];
     analyse::TeamOptions teams = options_.teams;
     teams.pitch = area_.pitch();
     teams_ = analyse::find_teams(recording_, wears, teams);
     analyse::note_teams(teams_, recording_);
-    pieces_ = std::move(joined);
     for (ViewLog& log : logs_) {
-      log.name([&](TrackId track, std::int32_t frame) -> std::optional<int> {
+      log.name([&](TrackId track, std::int32_t frame) -> std::optional<TrackId> {
         const auto person = pieces_.person_of(track, frame);
-        if (!person || now[static_cast<std::size_t>(*person)] < 0) return std::nullopt;
-        return now[static_cast<std::size_t>(*person)];
+        const auto now = person ? people.now.find(*person) : people.now.end();
+        if (now == people.now.end()) return std::nullopt;
+        return now->second;
       });
     }
-    for (const GroundRecording::Sample& sample : recording_.samples) count(sample);
+    for (const TrackColumns& track : recording_.tracks()) {
+      for (std::size_t row = 0; row < track.size(); ++row) count(track.measured(row));
+    }
   }
 
   bool in_sight(const Vector<2>& place) const {
@@ -213,42 +231,10 @@ class Run {
     });
   }
 
-  /// Leaves out places off the pitch and its margin, and who was nowhere else; the others are numbered anew. What each person's
-  /// index became, −1 for none.
-  std::vector<std::int32_t> keep_in_area() {
-    auto& samples = recording_.samples;
-    samples.erase(std::remove_if(samples.begin(), samples.end(),
-                                 [&](const GroundRecording::Sample& sample) { return !area_.holds(sample.place); }),
-                  samples.end());
-    std::vector<std::int32_t> now(recording_.people.size(), -1);
-    std::vector<GroundRecording::Person> people;
-    for (GroundRecording::Sample& sample : samples) {
-      std::int32_t& index = now[static_cast<std::size_t>(sample.person)];
-      if (index < 0) {
-        index = static_cast<std::int32_t>(people.size());
-        people.push_back(std::move(recording_.people[static_cast<std::size_t>(sample.person)]));
-        people.back().id = index + 1;
-      }
-      sample.person = index;
-      sample.place = area_.ground(sample.place);
-      sample.velocity = area_.ground_velocity(sample.velocity);
-      sample.time = times_[static_cast<std::size_t>(sample.frame)];
-    }
-    summary_.off_pitch = std::count(now.begin(), now.end(), -1);
-    recording_.people = std::move(people);
-    std::sort(samples.begin(), samples.end(),
-              [](const auto& a, const auto& b) { return std::pair(a.frame, a.person) < std::pair(b.frame, b.person); });
-    return now;
-  }
-
   void show() {
     if (options_.live) {
       for (ViewLog& log : logs_) {
-        log.name([&](TrackId track, std::int32_t) -> std::optional<int> {
-          const auto known = live_people_.find(track);
-          if (known == live_people_.end()) return std::nullopt;
-          return known->second;
-        });
+        log.name([&](TrackId track, std::int32_t) { return live_people_.contains(track) ? std::optional(track) : std::nullopt; });
       }
     }
     const GroundShow all{recording_, area_, cameras_, colours(), hooks_};
@@ -258,34 +244,35 @@ class Run {
       if (!output_.overlays.empty() && !cameras[i].source.empty())
         summary_.stopped |= film_view(all, i, logs_[i], (fs::path(output_.overlays) / (cameras[i].name + ".mp4")).string());
     }
-    if (!output_.pitch_view.empty()) summary_.stopped |= film_ground(all, times_, output_.pitch_view);
+    if (!output_.pitch_view.empty()) summary_.stopped |= film_ground(all, output_.pitch_view);
   }
 
   std::vector<draw::Colour> colours() const {
     std::vector<draw::Colour> colours;
-    for (std::size_t i = 0; i < recording_.people.size(); ++i) {
+    for (std::size_t i = 0; i < recording_.tracks().size(); ++i) {
       const auto team = i < teams_.members.size() ? teams_.members[i].team : std::nullopt;
       const bool alone = !team || teams_.members[i].role != analyse::Teams::Role::player;
-      colours.push_back(alone ? draw::colour_of(recording_.people[i].id)
+      colours.push_back(alone ? draw::colour_of(number(recording_.tracks()[i].id()))
                               : draw::colour_of(teams_.teams[static_cast<std::size_t>(*team)].colour));
     }
     return colours;
   }
 
   void tell() {
-    summary_.people = std::ssize(recording_.people);
+    summary_.people = std::ssize(recording_.tracks());
     if (options_.live) summary_.people = std::ssize(live_people_);
     summary_.warnings = cameras_.warnings();
     summary_.teams = teams_.teams;
     for (std::string& sentence : contradicted_offsets(cameras_.rig(), paths_)) summary_.warnings.push_back(std::move(sentence));
-    for (std::size_t i = 0; i < recording_.cameras.size(); ++i) {
+    const auto& cameras = cameras_.rig().cameras;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
       const GroundCameras::Counts counts = cameras_.counts(i);
       if (counts.frames == 0) {
         summary_.warnings.push_back(
             fmt::format("camera \"{}\" has no frame within the time of camera \"{}\"; is its offset_s right?",
-                        recording_.cameras[i], recording_.cameras.front()));
+                        cameras[i].name, cameras.front().name));
       }
-      summary_.cameras.push_back({recording_.cameras[i], counts});
+      summary_.cameras.push_back({cameras[i].name, counts});
     }
   }
 
@@ -299,13 +286,14 @@ class Run {
   track::ground::GroundRecorder recorder_;
   GroundPathLog paths_;
   track::ground::GroundRecorder::Joined pieces_;
-  GroundRecording recording_;
+  Recording recording_;
   analyse::Teams teams_;
-  std::vector<double> times_;  // s, of each instant by the first camera's clock
+  Timestamp now_{};  // by the first camera's clock
+  std::optional<Timestamp> first_;
   std::vector<ViewLog> logs_;  // of each camera, where something is to be shown
   bool shows_;
   std::optional<format::match::GroundWriter> file_;
-  std::map<TrackId, std::int32_t> live_people_;
+  std::set<TrackId> live_people_;
   GroundSummary summary_;
 };
 

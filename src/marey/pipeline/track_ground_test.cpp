@@ -138,10 +138,12 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 51, folder / "right.txt")};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.people, 2);
-  const GroundRecording found = format::match::read_ground(folder / "out.csv");
+  const Recording found = format::match::read_ground(folder / "out.csv");
   std::map<int, CameraMask> seen_by;
-  for (const auto& sample : found.samples) seen_by[sample.person] |= sample.cameras;
-  EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{0, 3}, {1, 1}})) << "who walks is seen by both";
+  for (const TrackColumns& track : found.tracks()) {
+    for (const CameraMask cameras : track.cameras()) seen_by[number(track.id())] |= cameras;
+  }
+  EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{1, 3}, {2, 1}})) << "who walks is seen by both";
 }
 
 TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {
@@ -174,8 +176,12 @@ TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.people, 1);
   EXPECT_EQ(summary.cameras[1].counts.missed, 20) << "before it was started";
-  for (const auto& sample : format::match::read_ground(folder / "out.csv").samples)
-    EXPECT_NEAR(sample.place.x(), 10 + 0.2 * sample.frame, 0.2) << sample.frame;
+  const Recording found = format::match::read_ground(folder / "out.csv");
+  ASSERT_EQ(found.tracks().size(), 1u);
+  for (std::size_t row = 0; row < found.tracks()[0].size(); ++row) {
+    const auto frame = static_cast<double>(found.instants()[row].index);
+    EXPECT_NEAR(found.tracks()[0].x()[row], 10 + 0.2 * frame, 0.2) << frame;
+  }
 }
 
 TEST(TrackGround, LiveAndLaterTheSameEveryTime) {
@@ -203,10 +209,13 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
   GroundOutput view_of = to(folder / "cam2_out.txt");
   view_of.boxes_of = "cam2";
   track_ground(rig, view_of, over_pitch());
-  const GroundRecording ground = format::match::read_ground(folder / "out.csv");
   std::map<std::pair<int, int>, Vector<2>> places;
-  for (const auto& sample : ground.samples)
-    places[{sample.frame, ground.people[static_cast<std::size_t>(sample.person)].id}] = sample.place;
+  const Recording ground = format::match::read_ground(folder / "out.csv");
+  InstantsOf instants(ground);
+  while (const auto instant = instants.next()) {
+    for (const Sample& sample : instant->samples)
+      places[{static_cast<int>(instant->index), number(sample.track)}] = sample.position.head<2>();
+  }
   const GroundView view = *rig.cameras[1].ground_view();
   const format::tracks::MotTable boxes = format::tracks::read_mot(folder / "cam2_out.txt", format::tracks::MotKind::tracks);
   EXPECT_GT(boxes.boxes.size(), 1500U);
@@ -249,7 +258,7 @@ TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch(), hooks);
   EXPECT_TRUE(summary.stopped);
   EXPECT_LT(summary.frames, 100);
-  EXPECT_LT(format::match::read_ground(folder / "out.csv").samples.back().frame, summary.frames);
+  EXPECT_LT(format::match::read_ground(folder / "out.csv").instants().back().index, summary.frames);
 }
 
 }  // namespace
