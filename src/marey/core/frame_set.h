@@ -19,8 +19,8 @@ struct CameraFrame {
 
 /// What all cameras of a rig gave to one moment. A camera that had nothing is a gap.
 struct FrameSet {
-  std::int64_t index = 0;  ///< counts the moments
-  Timestamp time{};        ///< by the run's clock
+  std::int64_t index = 0;                           ///< counts the moments
+  Timestamp time{};                                 ///< by the run's clock
   std::vector<std::optional<CameraFrame>> cameras;  ///< CameraId i is cameras[i]
 
   bool complete() const {

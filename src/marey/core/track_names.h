@@ -18,16 +18,15 @@ class TrackNames {
   /// Empty where the track has none.
   const std::string& label(TrackId id) const { return of(id).label; }
   const std::string& team(TrackId id) const { return of(id).team; }
-  /// The label, or else the number.
-  std::string shown(TrackId id) const { return label(id).empty() ? std::to_string(number(id)) : label(id); }
-
- private:
   const TrackName& of(TrackId id) const {
     static const TrackName none;
     const auto found = names_.find(id);
     return found != names_.end() ? found->second : none;
   }
+  /// The label, or else the number.
+  std::string shown(TrackId id) const { return label(id).empty() ? std::to_string(number(id)) : label(id); }
 
+ private:
   std::map<TrackId, TrackName> names_;
 };
 

@@ -58,9 +58,9 @@ void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, do
 
 }  // namespace
 
-Colour Overlay::colour(TrackId id) const {
-  const auto own = options_.colours.find(id);
-  return own != options_.colours.end() ? own->second : colour_of(number(id));
+Colour colour_of(const TrackName& name, TrackId id) {
+  if (!name.colour) return colour_of(number(id));
+  return {(*name.colour)[0], (*name.colour)[1], (*name.colour)[2]};
 }
 
 Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
@@ -69,23 +69,24 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sam
   const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
   for (const Sample& sample : samples) {
     const Vector<2> place = options_.trail_of_centres ? centre_of(sample) : foot_of(sample);
-    trails_.add(number(sample.track), now, to_point(place), colour(sample.track));
+    trails_.add(number(sample.track), now, to_point(place), colour_of(names.of(sample.track), sample.track));
   }
   trails_.draw(canvas, now, 0.9, 2 * unit);
 
   for (const Sample& sample : samples) {
     if (sample.outline) {
       draw_lines(canvas, *sample.outline, unit);
-      draw_curve(canvas, *sample.outline, colour(sample.track), unit);
+      draw_curve(canvas, *sample.outline, colour_of(names.of(sample.track), sample.track), unit);
       continue;
     }
     if (!sample.box) continue;
     const bool seen = sample.measured();
-    canvas.rectangle(edge_of(*sample.box), colour(sample.track), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+    canvas.rectangle(edge_of(*sample.box), colour_of(names.of(sample.track), sample.track), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
   }
   for (const Sample& sample : samples) {
-    const Vector<2> corner = sample.box ? Vector<2>(sample.box->left - unit, sample.box->top - unit) : Vector<2>(sample.position.head<2>());
-    canvas.tag(names.shown(sample.track), to_point(corner), colour(sample.track), 10 * unit);
+    const Vector<2> corner =
+        sample.box ? Vector<2>(sample.box->left - unit, sample.box->top - unit) : Vector<2>(sample.position.head<2>());
+    canvas.tag(names.shown(sample.track), to_point(corner), colour_of(names.of(sample.track), sample.track), 10 * unit);
   }
   return canvas.take();
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <span>
 
 #include "marey/core/ids.h"
@@ -15,8 +14,10 @@ namespace marey::draw {
 struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
   bool trail_of_centres = false;             ///< trails show where centres went, not feet
-  std::map<TrackId, Colour> colours = {};    ///< of targets that have one of their own
 };
+
+/// What a track is drawn in: its own colour, or one that is steady by its number.
+Colour colour_of(const TrackName& name, TrackId id);
 
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
@@ -30,8 +31,6 @@ class Overlay {
   Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
-  Colour colour(TrackId id) const;
-
   OverlayOptions options_;
   FadingTrails trails_;
 };

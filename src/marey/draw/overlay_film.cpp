@@ -1,22 +1,35 @@
 #include "marey/draw/overlay_film.h"
 
-#include "marey/core/error.h"
-
 namespace marey::draw {
 
-OverlayFilm::OverlayFilm(const std::string& path, CameraId camera, cv::Size size, std::optional<double> rate_hz,
-                         const OverlayOptions& options)
-    : path_(path), camera_(camera), movie_(path, size, rate_hz), overlay_(options) {}
+OverlayFilm::OverlayFilm(const std::string& path, const View& view, const OverlayOptions& options)
+    : path_(path), view_(view), movie_(path, view.size, view.rate_hz), overlay_(options) {}
 
 Sink::Wants OverlayFilm::begin(const RecordingHeader& header) {
-  if (header.frame.metric()) throw Error("{}: positions in a picture are drawn into it, and these are {}", path_, to_string(header.frame));
-  return {.pictures = true};
+  by_boxes_ = header.frame.metric();
+  return {.pictures = true, .boxes = by_boxes_};
+}
+
+/// The camera's boxes as samples in its picture.
+std::vector<Sample> OverlayFilm::in_view(const Instant& instant) const {
+  std::vector<Sample> samples;
+  for (const BoxInView& seen : instant.boxes) {
+    if (seen.camera != view_.camera || !seen.foot) continue;
+    Sample& sample = samples.emplace_back();
+    sample.track = seen.track;
+    sample.position.head<2>() = *seen.foot;
+    sample.box = seen.box;
+    sample.provenance = seen.seen ? Provenance::measured : Provenance::predicted;
+  }
+  return samples;
 }
 
 void OverlayFilm::write(const Instant& instant) {
   names_.add(instant.named);
   for (const Frame& frame : instant.frames) {
-    if (frame.camera == camera_) movie_.write(overlay_.draw(frame.picture, instant.time, instant.samples, names_), instant.time);
+    if (frame.camera != view_.camera) continue;
+    const Timestamp own = frame.time - view_.offset;
+    movie_.write(overlay_.draw(frame.picture, own, by_boxes_ ? in_view(instant) : instant.samples, names_), own);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <opencv2/core/types.hpp>
 
@@ -13,12 +14,19 @@
 
 namespace marey::draw {
 
-/// A film of one camera with its targets drawn into the pictures.
+/// A film of one camera with its targets drawn into the pictures: positions in the picture themselves, others by their boxes in the
+/// camera's view.
 class OverlayFilm final : public Sink {
  public:
-  /// `size` (px) and `rate_hz` of the camera's pictures. Throws Error where the file cannot be written.
-  OverlayFilm(const std::string& path, CameraId camera, cv::Size size, std::optional<double> rate_hz,
-              const OverlayOptions& options = {});
+  struct View {
+    CameraId camera{};
+    cv::Size size;                  ///< px
+    std::optional<double> rate_hz;  ///< of its pictures
+    Duration offset{};              ///< between its own clock, by which the film runs, and the recording's
+  };
+
+  /// Throws Error where the file cannot be written.
+  OverlayFilm(const std::string& path, const View& view, const OverlayOptions& options = {});
 
   std::string name() const override { return path_; }
   Wants begin(const RecordingHeader& header) override;
@@ -26,8 +34,11 @@ class OverlayFilm final : public Sink {
   void finish() override { movie_.finish(); }
 
  private:
+  std::vector<Sample> in_view(const Instant& instant) const;
+
   std::string path_;
-  CameraId camera_;
+  View view_;
+  bool by_boxes_ = false;
   MovieWriter movie_;
   Overlay overlay_;
   TrackNames names_;

@@ -47,12 +47,13 @@ Clock::Clock(std::vector<Feed> feeds, const ClockOptions& options)
   if (options_.pace == ClockOptions::Pace::first_camera && !feeds_.empty()) {
     rate_hz_ = feeds_.front().rate_hz();
   } else {
-    for (const Feed& feed : feeds_) rate_hz_ = std::max(rate_hz_, feed.info().rate_hz.value_or(feed.has_pictures() ? kUsualRate : 0));
+    for (const Feed& feed : feeds_)
+      rate_hz_ = std::max(rate_hz_, feed.info().rate_hz.value_or(feed.has_pictures() ? kUsualRate : 0));
   }
 }
 
-/// Reads the first frames. An even clock is set by the earliest of the cameras that run at its rate, so that cameras in step need not
-/// be moved.
+/// Reads the first frames. An even clock is set by the earliest of the cameras that run at its rate, so that cameras in step need
+/// not be moved.
 bool Clock::begin() {
   begun_ = true;
   if (options_.pace == ClockOptions::Pace::first_camera) return true;

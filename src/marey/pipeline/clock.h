@@ -1,12 +1,12 @@
 // One clock for all cameras: what their feeds deliver becomes sets of frames, one for each moment, with gaps explicit.
 //
 // The moments are either the frames of the first camera, or follow each other evenly at the rate of the fastest one, from the first
-// frame of the earliest. Each camera contributes the frame that lies nearest to the moment, if that is less than half a frame away. A
-// camera that stops, drops frames or is slower gives nothing to the moments it has no frame for; the others go on.
+// frame of the earliest. Each camera contributes the frame that lies nearest to the moment, if that is less than half a frame away.
+// A camera that stops, drops frames or is slower gives nothing to the moments it has no frame for; the others go on.
 //
 // Where `interpolate` is set, a camera that is out of step by a part of a frame saw the markers somewhere else than they are at the
-// moment: its detections are moved along the line between the frames before and after, each to the one of the other frame that is its
-// nearest and to which it is the nearest. What has no such partner is left out: nobody knows where it was.
+// moment: its detections are moved along the line between the frames before and after, each to the one of the other frame that is
+// its nearest and to which it is the nearest. What has no such partner is left out: nobody knows where it was.
 //
 // Memory: a few frames a camera. Threads: cameras are asked for frames side by side; what comes out does not depend on them.
 #pragma once

@@ -168,8 +168,7 @@ std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions
 
 }  // namespace
 
-Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options)
-    : camera_(camera), id_(id), options_(options) {
+Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : camera_(camera), id_(id), options_(options) {
   if (camera.source.empty() && camera.detections.empty()) {
     throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
                 camera.name);
@@ -290,8 +289,7 @@ std::vector<std::string> Feed::warnings() const {
 std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent) {
   const auto gives = [](const RigCamera& camera) { return !camera.source.empty() || !camera.detections.empty(); };
   if (allow_absent && std::none_of(rig.cameras.begin(), rig.cameras.end(), gives)) {
-    throw Error("{}",
-                "no camera of the rig has a source; name them in the rig, or give CAMERA=VIDEO or --observations");
+    throw Error("{}", "no camera of the rig has a source; name them in the rig, or give CAMERA=VIDEO or --observations");
   }
   std::vector<std::optional<Feed>> opened(rig.cameras.size());
   tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {

@@ -27,8 +27,9 @@ struct FeedOptions {
 
 class Feed {
  public:
-  /// Opens the camera's source, or its detections where it has no source. Throws Error, with the camera's name where it has one, where
-  /// it has neither, cannot be read, its region is not within its pictures, or its calibration is for pictures of another shape.
+  /// Opens the camera's source, or its detections where it has no source. Throws Error, with the camera's name where it has one,
+  /// where it has neither, cannot be read, its region is not within its pictures, or its calibration is for pictures of another
+  /// shape.
   Feed(const RigCamera& camera, CameraId id, const FeedOptions& options = {});
   ~Feed();
   Feed(Feed&&) noexcept;
@@ -87,12 +88,12 @@ class Feed {
   FeedState state_ = FeedState::connecting;
 };
 
-/// Every camera of the rig, opened side by side. With `allow_absent`, cameras without source and detections give nothing, and only a rig
-/// without any other is refused.
+/// Every camera of the rig, opened side by side. With `allow_absent`, cameras without source and detections give nothing, and only
+/// a rig without any other is refused.
 std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent = false);
 
-/// What another program saw of markers, from a file or folder that format/observations.h reads: a feed for each of the rig's cameras.
-/// `rate_hz` counts where the rig does not say; without either it is 100 Hz.
+/// What another program saw of markers, from a file or folder that format/observations.h reads: a feed for each of the rig's
+/// cameras. `rate_hz` counts where the rig does not say; without either it is 100 Hz.
 std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
 
 /// The error or warning with the camera's name before it, where it has one.

@@ -60,8 +60,8 @@ bool GroundArea::holds(const Vector<2>& world, double slack) const {
 
 KeptPeople people_in(const GroundArea& area, Recording recording) {
   if (recording.header.frame.kind != FrameOfReference::Kind::ground)
-    throw Error("{}: who is in the area is asked on the ground of the rig's world, and these positions are {}", recording.header.name,
-                to_string(recording.header.frame));
+    throw Error("{}: who is in the area is asked on the ground of the rig's world, and these positions are {}",
+                recording.header.name, to_string(recording.header.frame));
   std::vector<TrackColumns> tracks;
   for (TrackColumns& track : recording.take_tracks()) {
     TrackColumns kept = rows_in(area, track);

@@ -186,10 +186,12 @@ struct SharedPath {
   PathColumns truth, track;
 };
 
-/// The paths of people and of their tracks, over the instants that both have; `times` are those of the common numbers, by the truth.
+/// The paths of people and of their tracks, over the instants that both have; `times` are those of the common numbers, by the
+/// truth.
 std::vector<PathLengths> path_lengths(const std::vector<evaluate::PersonPlace>& truth,
-                                     const std::vector<evaluate::PersonPlace>& tracks,
-                                     const std::vector<evaluate::PersonFate>& people, const std::map<std::int32_t, double>& times) {
+                                      const std::vector<evaluate::PersonPlace>& tracks,
+                                      const std::vector<evaluate::PersonFate>& people,
+                                      const std::map<std::int32_t, double>& times) {
   std::map<int, int> track_of;
   for (const evaluate::PersonFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;

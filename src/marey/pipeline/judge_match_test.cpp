@@ -18,9 +18,9 @@ struct Runners {
   double rate_hz = 25;
   double shift_m = 0;
   bool with_velocity = true;
-  int every = 1;        ///< frame that is there
-  double stretch = 1;   ///< of the lengths
-  double later_s = 0;   ///< by the clock
+  int every = 1;       ///< frame that is there
+  double stretch = 1;  ///< of the lengths
+  double later_s = 0;  ///< by the clock
 };
 
 /// Two people who run straight at 2 and 4 m/s for 10 s.

@@ -94,10 +94,10 @@ class MarkersInPicture final : public Stage {
       summary.figures["measurement_px"] = noise_->measurement_sigma;
       summary.figures["acceleration_px_s2"] = noise_->acceleration;
     } else if (options_.fit_noise && !options_.live) {
-      summary.warnings.push_back(header_.name + ": too little moves in its beginning to tell the noise from; the defaults were kept");
+      summary.warnings.push_back(header_.name +
+                                 ": too little moves in its beginning to tell the noise from; the defaults were kept");
     }
-    for (const std::string& warning : detector_.warnings())
-      summary.warnings.push_back(header_.name + ": " + warning);
+    for (const std::string& warning : detector_.warnings()) summary.warnings.push_back(header_.name + ": " + warning);
     if (detections_ > 0) return;
     summary.warnings.push_back(header_.name +
                                ": no marker was seen in any frame; are they bright on dark (else --dark or --colour), "

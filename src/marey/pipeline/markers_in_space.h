@@ -1,5 +1,5 @@
-// Markers in space, from what the cameras of a calibrated rig saw of them: match blobs to predictions and to each other, place them,
-// follow them, give them names, fill their gaps.
+// Markers in space, from what the cameras of a calibrated rig saw of them: match blobs to predictions and to each other, place
+// them, follow them, give them names, fill their gaps.
 #pragma once
 
 #include <memory>

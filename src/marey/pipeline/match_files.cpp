@@ -133,9 +133,7 @@ class CameraFiles {
 class GroundTruth {
  public:
   GroundTruth(const Match& match, const fs::path& folder)
-      : match_(match),
-        motion_(match.options.seed, match.options.cameras.pitch),
-        writer_((folder / "truth.csv").string()) {
+      : match_(match), motion_(match.options.seed, match.options.cameras.pitch), writer_((folder / "truth.csv").string()) {
     RecordingHeader header;
     header.name = "truth.csv";
     header.frame.kind = FrameOfReference::Kind::user_ground;

@@ -81,7 +81,8 @@ class PeopleInPicture final : public Stage {
     header_.smoothed = !options.live;
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (feed.has_pictures()) {
-      people_ = std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
+      people_ =
+          std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
       if (!options.live) people_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
     }
     if (!options.outlines) return;

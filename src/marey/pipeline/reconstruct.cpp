@@ -29,7 +29,9 @@ class TakeSink final : public Sink {
   explicit TakeSink(const std::string& path) : path_(path) {}
   std::string name() const override { return path_; }
   Wants begin(const RecordingHeader& header) override {
-    writer_.emplace(path_, TakeHeader{.name = path_, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = header.rate_hz, .rig = header.rig});
+    writer_.emplace(
+        path_,
+        TakeHeader{.name = path_, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = header.rate_hz, .rig = header.rig});
     return {.seen = true};
   }
   void write(const Instant& instant) override {
@@ -38,7 +40,8 @@ class TakeSink final : public Sink {
     for (const SeenPoint& seen : instant.seen)
       frame.observations.push_back({seen.camera, seen.pixel, seen.sigma.value_or(0), seen.area.value_or(0), seen.track});
     for (const Sample& sample : instant.samples)
-      frame.points.push_back({sample.track, sample.position, sample.covariance, sample.provenance, sample.cameras, sample.residual_px, sample.residual_m});
+      frame.points.push_back({sample.track, sample.position, sample.covariance, sample.provenance, sample.cameras,
+                              sample.residual_px, sample.residual_m});
     writer_->write(frame);
   }
   void finish() override { writer_->finish(); }
@@ -75,8 +78,8 @@ void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {
     if (rig.cameras[c].camera() && clock.frames(c) == 0) {
       summary.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", name));
     } else if (clock.missed(c) > 0) {
-      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others went on without it", name,
-                                             clock.missed(c), summary.frames));
+      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others went on without it",
+                                             name, clock.missed(c), summary.frames));
     }
   }
   const auto step = [](const char* name, const StageTimes& times) {

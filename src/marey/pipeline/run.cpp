@@ -104,6 +104,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Summary summary;
   Counter counter(summary);
   sinks.begin(stage.header());
+  if (sinks.want_boxes()) stage.want_boxes();
   std::optional<Timestamp> first;
   while (const std::optional<FrameSet> frames = clock.next()) {
     for (const Instant& known : stage.step(*frames)) {

@@ -1,5 +1,6 @@
-// The one corridor that every job walks: a clock gives what the cameras saw at one moment, a stage makes of it what is known of that
-// moment, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else differs.
+// The one corridor that every job walks: a clock gives what the cameras saw at one moment, a stage makes of it what is known of
+// that moment, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else
+// differs.
 #pragma once
 
 #include <cstdint>
@@ -47,6 +48,8 @@ struct Summary {
     std::int64_t missed = 0;      ///< moments without a frame
     std::int64_t detections = 0;  ///< handed to the tracker
     std::int64_t outside = 0;     ///< detections where nothing counts: beyond the area, above the horizon
+    std::int64_t noise = 0;       ///< regions too small to be a part of a person
+    std::int64_t misfits = 0;     ///< regions that no body explains
   };
   /// How long one step took, s.
   struct StepTime {
@@ -62,10 +65,10 @@ struct Summary {
   std::int64_t labelled = 0;                                         ///< of these, with a label
   std::int64_t samples = 0;                                          ///< tracks times the moments they are in
   std::int64_t measured = 0, filled = 0, predicted = 0, solved = 0;  ///< of these
-  std::int64_t outlines = 0, held_outlines = 0;                      ///< samples with an outline; those of which too little was seen
-  std::int64_t detections = 0;                                       ///< handed to the tracker
-  std::map<std::string, std::int64_t, std::less<>> left_out;         ///< by reason: "noise", "too_brief", …
-  std::map<std::string, double, std::less<>> figures;                ///< what a stage found out besides: "noise_px", …
+  std::int64_t outlines = 0, held_outlines = 0;               ///< samples with an outline; those of which too little was seen
+  std::int64_t detections = 0;                                ///< handed to the tracker
+  std::map<std::string, std::int64_t, std::less<>> left_out;  ///< by reason: "noise", "too_brief", …
+  std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …
   std::vector<Camera> cameras;
   std::vector<StepTime> steps;
   std::vector<std::string> notes;     ///< what was found out beside, one sentence each
@@ -86,11 +89,13 @@ class Stage {
  public:
   virtual ~Stage() = default;
   virtual RecordingHeader header() const = 0;
-  /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a second
-  /// pass keeps all for that.
+  /// Sinks want `Instant::boxes`. Before the first step.
+  virtual void want_boxes() {}
+  /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
+  /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
-  /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing where
-  /// all was told.
+  /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
+  /// where all was told.
   virtual std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) { return nullptr; }
   /// Puts in what it counted and what it found out.
   virtual void report(Summary& summary) const = 0;
@@ -108,6 +113,7 @@ class Sinks {
   void add(std::unique_ptr<Sink> sink);
   void begin(const RecordingHeader& header);
   bool want_pictures() const;
+  bool want_boxes() const;
   /// Whether all still take what they are given.
   bool write(Instant instant);
   /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed.
@@ -118,8 +124,8 @@ class Sinks {
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 
-/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass tells of moments that are past and a sink wants their
-/// pictures, the clock is asked for them again. Throws Error where not one frame could be read, or a sink has failed.
+/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass tells of moments that are past and a sink wants
+/// their pictures, the clock is asked for them again. Throws Error where not one frame could be read, or a sink has failed.
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

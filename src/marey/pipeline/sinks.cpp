@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <memory>
@@ -99,10 +100,11 @@ void Sinks::begin(const RecordingHeader& header) {
 }
 
 bool Sinks::want_pictures() const {
-  for (const auto& lane : lanes_) {
-    if (lane->wants().pictures && !lane->failed()) return true;
-  }
-  return false;
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().pictures && !lane->failed(); });
+}
+
+bool Sinks::want_boxes() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
 }
 
 bool Sinks::write(Instant instant) {

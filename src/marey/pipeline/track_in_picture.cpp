@@ -26,8 +26,8 @@ Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayO
   if (!output.plot.empty()) sinks.add(std::make_unique<PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
-  sinks.add(
-      std::make_unique<draw::OverlayFilm>(output.overlay, feed.id(), feed.info().size, feed.info().rate_hz, drawn));
+  const draw::OverlayFilm::View view{.camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz};
+  sinks.add(std::make_unique<draw::OverlayFilm>(output.overlay, view, drawn));
   return sinks;
 }
 
@@ -40,7 +40,8 @@ Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
 
 }  // namespace
 
-Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options, const Hooks& hooks) {
+Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
+                     const Hooks& hooks) {
   Feed feed = open(camera);
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;

@@ -21,9 +21,9 @@ struct TrackOutput {
   std::string plot = {};     ///< an SVG picture of the trajectories, in the coordinates of the image
 };
 
-/// Follows people through what one camera saw: its `source`, or its `detections` by another program. Its name may be empty. The same input
-/// gives the same output, bit for bit. Throws Error where the input cannot be read at all, or an output not written; nothing half-written
-/// stays behind.
+/// Follows people through what one camera saw: its `source`, or its `detections` by another program. Its name may be empty. The
+/// same input gives the same output, bit for bit. Throws Error where the input cannot be read at all, or an output not written;
+/// nothing half-written stays behind.
 Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options = {},
                      const Hooks& hooks = {});
 

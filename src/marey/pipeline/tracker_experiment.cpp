@@ -51,10 +51,10 @@ struct Method {
 
 Method alone(std::string name, const filter::FilterOptions& options) {
   return {std::move(name), [options] {
-            return filter::with_filter<2>(
-                options, []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
-                  return std::make_unique<track::IndependentTracker<F>>(chosen);
-                });
+            return filter::with_filter<2>(options,
+                                          []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
+                                            return std::make_unique<track::IndependentTracker<F>>(chosen);
+                                          });
           }};
 }
 
