@@ -6,10 +6,11 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
@@ -58,25 +59,25 @@ Extent extent_of(const GroundRecording& recording) {
   return extent;
 }
 
-nlohmann::json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
+Json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
   const GroundRecording& recording = match.recording;
-  nlohmann::json people = nlohmann::json::array(), periods = nlohmann::json::array();
+  Json people = Json::array(), periods = Json::array();
   for (std::size_t i = 0; i < recording.people.size(); ++i) {
     const auto& person = recording.people[i];
     people.push_back({{"id", person.id}, {"label", person.label}, {"team", person.team}, {"instants", extent.seen[i]}});
   }
   for (const format::match::GroundPeriod& period : match.periods)
     periods.push_back({{"period", period.number}, {"first_frame", period.first_frame}, {"last_frame", period.last_frame}});
-  nlohmann::json result{{"format", format::match::ground_format_name(format)},
-                        {"rate_hz", match.rate_hz},
-                        {"instants", extent.instants},
-                        {"places", recording.samples.size()},
-                        {"people", people},
-                        {"periods", periods},
-                        {"home", match.home},
-                        {"away", match.away},
-                        {"pitch", {match.pitch.length, match.pitch.width}},
-                        {"cameras", recording.cameras}};
+  Json result{{"format", format::match::ground_format_name(format)},
+              {"rate_hz", match.rate_hz},
+              {"instants", extent.instants},
+              {"places", recording.samples.size()},
+              {"people", people},
+              {"periods", periods},
+              {"home", match.home},
+              {"away", match.away},
+              {"pitch", {match.pitch.length, match.pitch.width}},
+              {"cameras", recording.cameras}};
   if (!recording.samples.empty()) {
     result["first_frame"] = recording.samples.front().frame;
     result["last_frame"] = recording.samples.back().frame;
@@ -113,15 +114,15 @@ void print_table(const std::string& file, const format::match::GroundMatch& matc
 
 }  // namespace
 
-void tell_ground(const std::string& file, const std::string& metadata, bool json) {
+void report_ground(const std::string& file, const std::string& metadata, bool json, bool quiet) {
   const auto format = format::match::ground_format_of_content(file);
   if (!format) throw Error("{}: holds no people on the ground; these are read: {}", file, format::match::ground_format_names());
   const format::match::GroundMatch match = format::match::read_ground_as(file, *format, {metadata, {}, 25});
   for (const std::string& sentence : match.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   const Extent extent = extent_of(match.recording);
   if (json) {
-    fmt::print("{}\n", as_json(match, *format, extent).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+    print(as_json(match, *format, extent));
+  } else if (!quiet) {
     print_table(file, match, *format, extent);
   }
 }

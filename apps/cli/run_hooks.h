@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "marey/pipeline/run.h"
 
+#include "command_line.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -34,10 +34,10 @@ constexpr std::string_view words_of(pipeline::TrackProgress::Step step) {
   return {};
 }
 
-/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `tell(summary, elapsed)` says what came of it,
+/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `report(summary, elapsed)` says what came of it,
 /// elapsed in s. Warnings go to standard error before.
-template <typename Track, typename Tell>
-void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
+template <typename Track, typename Report>
+void run_with_progress(bool quiet, Track&& track, Report&& report) {
   catch_interrupts();
   const auto begin = std::chrono::steady_clock::now();
   const auto summary = [&] {
@@ -51,10 +51,10 @@ void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
   }();
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
-  tell(summary, elapsed);
+  report(summary, elapsed);
   if (summary.stopped) {
     fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
-    throw CLI::RuntimeError(kInterrupted);
+    throw EndWith{kInterrupted};
   }
 }
 

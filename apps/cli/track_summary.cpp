@@ -4,13 +4,14 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
 
-nlohmann::json path_or_null(const std::string& path) {
-  return path.empty() ? nlohmann::json() : nlohmann::json(path);
+Json path_or_null(const std::string& path) {
+  return path.empty() ? Json() : Json(path);
 }
 
 void print_pictures(const pipeline::TrackOutput& output) {
@@ -21,20 +22,20 @@ void print_pictures(const pipeline::TrackOutput& output) {
 }  // namespace
 
 void print_json(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  nlohmann::json json = {{"frames", summary.frames},
-                         {"seconds", summary.seconds},
-                         {"people", summary.people},
-                         {"rows", summary.rows},
-                         {"detections", summary.detections},
-                         {"dropped", {{"noise", summary.noise}, {"misfits", summary.misfits}, {"too_brief", summary.too_brief}}},
-                         {"elapsed", elapsed},
-                         {"stopped", summary.stopped},
-                         {"warnings", summary.warnings},
-                         {"tracks", output.tracks},
-                         {"overlay", path_or_null(output.overlay)},
-                         {"plot", path_or_null(output.plot)}};
+  Json json = {{"frames", summary.frames},
+               {"seconds", summary.seconds},
+               {"people", summary.people},
+               {"rows", summary.rows},
+               {"detections", summary.detections},
+               {"dropped", {{"noise", summary.noise}, {"misfits", summary.misfits}, {"too_brief", summary.too_brief}}},
+               {"elapsed", elapsed},
+               {"stopped", summary.stopped},
+               {"warnings", summary.warnings},
+               {"tracks", output.tracks},
+               {"overlay", path_or_null(output.overlay)},
+               {"plot", path_or_null(output.plot)}};
   if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  print(json);
 }
 
 void print_summary(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
@@ -52,16 +53,16 @@ void print_summary(const pipeline::TrackSummary& summary, const pipeline::TrackO
 }
 
 void print_json(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  nlohmann::json json = {{"frames", summary.frames},         {"seconds", summary.seconds},
-                         {"markers", summary.markers},       {"rows", summary.rows},
-                         {"detections", summary.detections}, {"elapsed", elapsed},
-                         {"stopped", summary.stopped},       {"warnings", summary.warnings},
-                         {"tracks", output.tracks},          {"overlay", path_or_null(output.overlay)},
-                         {"plot", path_or_null(output.plot)}};
+  Json json = {{"frames", summary.frames},         {"seconds", summary.seconds},
+               {"markers", summary.markers},       {"rows", summary.rows},
+               {"detections", summary.detections}, {"elapsed", elapsed},
+               {"stopped", summary.stopped},       {"warnings", summary.warnings},
+               {"tracks", output.tracks},          {"overlay", path_or_null(output.overlay)},
+               {"plot", path_or_null(output.plot)}};
   if (summary.noise) {
     json["noise"] = {{"measurement_px", summary.noise->measurement_sigma}, {"acceleration_px_s2", summary.noise->acceleration}};
   }
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  print(json);
 }
 
 void print_summary(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
