@@ -20,6 +20,13 @@ std::optional<T> whole_text(std::string_view text) {
   return value;
 }
 
+/// 1000000 as 1e6.
+std::string plain(double value) {
+  std::string text = fmt::format("{:g}", value);
+  if (const auto exponent = text.find("e+0"); exponent != std::string::npos) text.erase(exponent + 1, 2);
+  return text;
+}
+
 }  // namespace
 
 bool contains(const Interval& interval, double value) {
@@ -27,11 +34,7 @@ bool contains(const Interval& interval, double value) {
 }
 
 std::string notation(const Interval& interval) {
-  std::string text = fmt::format("{}{:g}, {:g}]", interval.open_low ? '(' : '[', interval.low, interval.high);
-  for (const std::string_view longer : {"e+0", "e+"}) {
-    for (auto at = text.find(longer); at != std::string::npos; at = text.find(longer)) text.replace(at, longer.size(), "e");
-  }
-  return text;
+  return fmt::format("{}{}, {}]", interval.open_low ? '(' : '[', plain(interval.low), plain(interval.high));
 }
 
 std::string notation(std::int64_t low, std::int64_t high) {

@@ -128,8 +128,6 @@ std::string filter_names() {
   return names;
 }
 
-}  // namespace
-
 void add_inputs(Command& command, TrackCommand& options) {
   const Option input = command.input_file(
       "INPUT", options.input.pictures,

@@ -101,7 +101,8 @@ void add_ground_options(Command& command, GroundFlags& flags) {
 std::vector<std::string> ground_files(const GroundCommand& command, const GroundFlags& flags) {
   std::vector<std::string> files;
   if (command.out.empty()) files.push_back(output_of(command, flags).tracks);
-  if (command.overlay.empty()) return files;
+  std::error_code error;
+  if (command.overlay.empty() || !std::filesystem::is_regular_file(command.rig, error)) return files;
   for (const RigCamera& camera : format::rig::read_rig(command.rig).cameras)
     files.push_back((std::filesystem::path(command.overlay) / (camera.name + ".mp4")).string());
   return files;
