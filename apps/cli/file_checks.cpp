@@ -56,7 +56,7 @@ bool one_file(const std::string& a, const std::string& b) {
   const auto there = status_of(a), also = status_of(b);
   if (there && also) return same(*there, *also);
   std::error_code error, other;
-  const fs::path first = fs::weakly_canonical(a, error), second = fs::weakly_canonical(b, other);
+  const fs::path first = fs::weakly_canonical(fs::absolute(a), error), second = fs::weakly_canonical(fs::absolute(b), other);
   return !error && !other && first == second;
 }
 

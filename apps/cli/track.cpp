@@ -51,7 +51,8 @@ std::string default_output(const pipeline::PeopleInput& input, format::tracks::T
 pipeline::TrackOutput output_of(const TrackCommand& command) {
   pipeline::TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
   const auto by_ending = format::tracks::track_format_of(command.out);
-  if (command.format.empty() && !command.out.empty() && !by_ending && !is_stream(command.out))
+  if (command.format.empty() && !command.out.empty() && !by_ending && !is_stream(command.out) &&
+      !std::filesystem::is_directory(command.out))
     throw WrongUsage("--output {}: its ending is of no format; end it in .txt (mot), .csv or .jsonl, or name one with --format",
                      command.out);
   if (!command.format.empty()) {
