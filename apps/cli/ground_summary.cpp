@@ -4,13 +4,14 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
 
-nlohmann::json path_or_null(const std::string& path) {
-  return path.empty() ? nlohmann::json() : nlohmann::json(path);
+Json path_or_null(const std::string& path) {
+  return path.empty() ? Json() : Json(path);
 }
 
 std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
@@ -26,7 +27,7 @@ double share(std::int64_t part, std::int64_t whole) {
 }  // namespace
 
 void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
-  nlohmann::json cameras = nlohmann::json::array();
+  Json cameras = Json::array();
   for (const auto& [name, counts] : summary.cameras) {
     cameras.push_back({{"name", name},
                        {"frames", counts.frames},
@@ -34,26 +35,26 @@ void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOu
                        {"detections", counts.detections},
                        {"dropped", {{"outside", counts.outside}, {"noise", counts.noise}, {"misfits", counts.misfits}}}});
   }
-  nlohmann::json teams = nlohmann::json::array();
+  Json teams = Json::array();
   for (const analyse::Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
-  const nlohmann::json json = {{"frames", summary.frames},
-                               {"seconds", summary.seconds},
-                               {"people", summary.people},
-                               {"rows", summary.rows},
-                               {"predicted", summary.predicted},
-                               {"off_pitch", summary.off_pitch},
-                               {"cameras", cameras},
-                               {"teams", teams},
-                               {"elapsed", elapsed},
-                               {"tracking_s", summary.tracking_s},
-                               {"joining_s", summary.joining_s},
-                               {"stopped", summary.stopped},
-                               {"notes", summary.notes},
-                               {"warnings", summary.warnings},
-                               {"tracks", output.tracks},
-                               {"overlays", path_or_null(output.overlays)},
-                               {"pitch_view", path_or_null(output.pitch_view)}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  const Json json = {{"frames", summary.frames},
+                     {"seconds", summary.seconds},
+                     {"people", summary.people},
+                     {"rows", summary.rows},
+                     {"predicted", summary.predicted},
+                     {"off_pitch", summary.off_pitch},
+                     {"cameras", cameras},
+                     {"teams", teams},
+                     {"elapsed", elapsed},
+                     {"tracking_s", summary.tracking_s},
+                     {"joining_s", summary.joining_s},
+                     {"stopped", summary.stopped},
+                     {"notes", summary.notes},
+                     {"warnings", summary.warnings},
+                     {"tracks", output.tracks},
+                     {"overlays", path_or_null(output.overlays)},
+                     {"pitch_view", path_or_null(output.pitch_view)}};
+  print(json);
 }
 
 void print_summary(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {

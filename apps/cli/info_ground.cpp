@@ -6,11 +6,12 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
@@ -62,9 +63,9 @@ std::vector<std::string> cameras_of(const Recording& recording) {
   return names;
 }
 
-nlohmann::json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
+Json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
   const Recording& recording = match.recording;
-  nlohmann::json people = nlohmann::json::array(), periods = nlohmann::json::array();
+  Json people = Json::array(), periods = Json::array();
   for (const std::size_t i : format::match::listed_tracks(match)) {
     const TrackColumns& track = recording.tracks()[i];
     people.push_back(
@@ -72,7 +73,7 @@ nlohmann::json as_json(const format::match::GroundMatch& match, format::match::G
   }
   for (const format::match::GroundPeriod& period : match.periods)
     periods.push_back({{"period", period.number}, {"first_frame", period.first_frame}, {"last_frame", period.last_frame}});
-  nlohmann::json result{{"format", format::match::ground_format_name(format)},
+  Json result{{"format", format::match::ground_format_name(format)},
                         {"rate_hz", recording.header.rate_hz},
                         {"instants", recording.instants().size()},
                         {"places", recording.samples()},
@@ -121,15 +122,15 @@ void print_table(const std::string& file, const format::match::GroundMatch& matc
 
 }  // namespace
 
-void tell_ground(const std::string& file, const std::string& metadata, bool json) {
+void report_ground(const std::string& file, const std::string& metadata, bool json, bool quiet) {
   const auto format = format::match::ground_format_of_content(file);
   if (!format) throw Error("{}: holds no people on the ground; these are read: {}", file, format::match::ground_format_names());
   const format::match::GroundMatch match = format::match::read_ground_as(file, *format, {metadata, {}, 25});
   for (const std::string& sentence : match.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   const Extent extent = extent_of(match.recording);
   if (json) {
-    fmt::print("{}\n", as_json(match, *format, extent).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+    print(as_json(match, *format, extent));
+  } else if (!quiet) {
     print_table(file, match, *format, extent);
   }
 }
