@@ -1,5 +1,7 @@
 #include "marker_options.h"
 
+#include "marey/pipeline/track_in_picture.h"
+
 #include "blob_options.h"
 #include "command_line.h"
 
@@ -21,8 +23,8 @@ void add_marker_options(Command& command, MarkerFlags& flags) {
   command.group("");
 }
 
-pipeline::TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
-  pipeline::TrackMarkersOptions options;
+pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
+  pipeline::MarkersInPictureOptions options;
   options.markers = flags.limits;
   if (!flags.colour.empty()) {
     options.markers.colour = detect::markers::parse_marker_colour(flags.colour);

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "marey/pipeline/track_markers.h"
+#include "marey/pipeline/markers_in_picture.h"
 
 #include "command_line.h"
 
@@ -22,6 +22,6 @@ struct MarkerFlags {
 void add_marker_options(Command& command, MarkerFlags& flags);
 
 /// Reads the files that the flags name. Throws Error where one cannot be read.
-pipeline::TrackMarkersOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
+pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

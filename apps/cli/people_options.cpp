@@ -44,8 +44,8 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   command.group("");
 }
 
-pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
-  pipeline::TrackPeopleOptions options;
+pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
+  pipeline::PeopleInPictureOptions options;
   options.background = detect::background::parse_background(flags.background);
   if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
     options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyHeight);

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "marey/pipeline/track_people.h"
+#include "marey/pipeline/people_in_picture.h"
 
 #include "command_line.h"
 
@@ -21,6 +21,6 @@ struct PeopleFlags {
 void add_people_options(Command& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.
-pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
+pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

@@ -21,55 +21,64 @@ namespace {
 struct ReconstructCommand {
   RigInputs inputs;
   std::string out, labels;
-  pipeline::ReconstructOptions options;
+  pipeline::MarkersInSpaceOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const pipeline::ReconstructSummary& summary, const std::string& out) {
+double figure(const pipeline::Summary& summary, const char* name) {
+  const auto found = summary.figures.find(name);
+  return found != summary.figures.end() ? found->second : 0;
+}
+
+Json as_json(const pipeline::Summary& summary, const std::string& out) {
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
-               {"markers", summary.markers},
+               {"markers", summary.tracks},
                {"labelled", summary.labelled},
-               {"observations", summary.observations},
-               {"unexplained", summary.unexplained},
+               {"observations", static_cast<std::int64_t>(figure(summary, "observations"))},
+               {"unexplained", static_cast<std::int64_t>(figure(summary, "unexplained"))},
                {"points", {{"measured", summary.measured}, {"filled", summary.filled}, {"predicted", summary.predicted}}},
-               {"noise_px", summary.noise_px},
+               {"left_out", summary.left_out},
+               {"noise_px", figure(summary, "noise_px")},
                {"stopped", summary.stopped},
                {"warnings", summary.warnings},
                {"take", out}};
-  json["residual_px"] = summary.residual_px ? Json(*summary.residual_px) : Json();
+  json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure(summary, "residual_px")) : Json();
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
-  for (const pipeline::StageReport& stage : summary.stages) {
-    json["stages"][stage.name] = {{"count", stage.count}, {"median_ms", 1000 * stage.median}, {"p99_ms", 1000 * stage.p99}};
+  for (const pipeline::Summary::StepTime& step : summary.steps) {
+    json["stages"][step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
   }
   return json;
 }
 
-void print_summary(const pipeline::ReconstructSummary& summary, const std::string& out) {
-  fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.markers,
-             summary.markers == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
+void print_summary(const pipeline::Summary& summary, const std::string& out) {
+  fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
+             summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
-             summary.filled, summary.predicted, summary.unexplained, summary.observations);
-  if (summary.residual_px) {
-    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", *summary.residual_px, summary.noise_px);
+             summary.filled, summary.predicted, figure(summary, "unexplained"), figure(summary, "observations"));
+  for (const auto& [reason, count] : summary.left_out) {
+    if (count > 0) fmt::print(stderr, "not placed, {} times: {}\n", count, reason);
   }
-  for (const pipeline::StageReport& stage : summary.stages) {
-    fmt::print(stderr, "  {:<14} median {:8.3f} ms, 99 % within {:8.3f} ms\n", stage.name, 1000 * stage.median, 1000 * stage.p99);
+  if (summary.measured > 0)
+    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", figure(summary, "residual_px"),
+               figure(summary, "noise_px"));
+  for (const pipeline::Summary::StepTime& step : summary.steps) {
+    fmt::print(stderr, "  {:<14} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
   }
   fmt::print(stderr, "take: {}\n", out);
 }
 
 void run(const ReconstructCommand& command) {
-  pipeline::ReconstructOptions options = command.options;
+  pipeline::MarkersInSpaceOptions options = command.options;
   if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   run_with_progress(
       command.quiet,
-      [&](const pipeline::RunHooks& hooks) {
+      [&](const pipeline::Hooks& hooks) {
         return pipeline::reconstruct(rig_of(command.inputs), command.inputs.observations, command.out, options, hooks);
       },
-      [&](const pipeline::ReconstructSummary& summary, double) {
+      [&](const pipeline::Summary& summary, double) {
         if (command.json) {
           print(as_json(summary, command.out));
         } else if (!command.quiet) {
@@ -84,7 +93,7 @@ void add_reconstruct(Command& program) {
   auto options = std::make_shared<ReconstructCommand>();
   Command command = program.subcommand("reconstruct", "Place and follow the markers that several calibrated cameras see");
   add_rig_inputs(command, options->inputs);
-  pipeline::ReconstructOptions& how = options->options;
+  pipeline::MarkersInSpaceOptions& how = options->options;
   command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")
       .required()
       .ends_in({".marey", ".c3d", ".trc", ".csv"});

@@ -83,7 +83,7 @@ class MarkersInSpace final : public Stage {
     summary.figures["noise_px"] = noise_.px();
     summary.figures["observations"] = static_cast<double>(observations_);
     summary.figures["unexplained"] = static_cast<double>(unexplained_);
-    summary.left_out["two_rays"] = by_two_rays_;
+    summary.left_out["points of two rays alone"] = by_two_rays_;
     for (const auto& [reason, count] : missed_) summary.left_out[std::string(reconstruct::meaning(reason))] = count;
     if (placed_ > 0) summary.figures["residual_px"] = std::sqrt(squares_ / static_cast<double>(placed_));
     const auto report_step = [&](const char* step, const StageTimes& times) {

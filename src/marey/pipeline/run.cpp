@@ -1,5 +1,6 @@
 #include "marey/pipeline/run.h"
 
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -103,6 +104,7 @@ void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& coun
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Summary summary;
   Counter counter(summary);
+  const auto begin = std::chrono::steady_clock::now();
   sinks.begin(stage.header());
   if (sinks.want_boxes()) stage.want_boxes();
   std::optional<Timestamp> first;
@@ -120,6 +122,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
     summary.stopped = hooks.report({"tracking", summary.frames, clock.count()}) == Continue::no;
     if (summary.stopped) break;
   }
+  summary.first_pass_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (summary.frames == 0) throw Error("{}: not one frame could be read", stage.header().name);
   if (const auto rest = stage.finish(hooks)) replay(*rest, clock, sinks, counter, hooks, summary);
   sinks.finish();

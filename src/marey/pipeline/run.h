@@ -61,6 +61,7 @@ struct Summary {
   std::int64_t frames = 0;                                           ///< moments
   double seconds = 0;                                                ///< from the first moment to the last
   double rate_hz = 0;                                                ///< of the moments
+  double first_pass_s = 0;                                           ///< wall time until the cameras had ended
   std::int64_t tracks = 0;                                           ///< distinct ones in the results
   std::int64_t labelled = 0;                                         ///< of these, with a label
   std::int64_t samples = 0;                                          ///< tracks times the moments they are in

@@ -48,8 +48,8 @@ GroundOutput to(const std::string& tracks) {
   return output;
 }
 
-TrackGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double margin = 2) {
-  TrackGroundOptions options;
+PeopleOnGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double margin = 2) {
+  PeopleOnGroundOptions options;
   options.pitch = pitch, options.margin = margin;
   return options;
 }
@@ -79,7 +79,7 @@ TEST(TrackGround, SixCamerasGiveEverybodyOneNumber) {
   const Rig rig = simulate(folder.path(), match(11, 24));
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch());
   EXPECT_EQ(summary.frames, 300);
-  EXPECT_EQ(summary.people, 25);
+  EXPECT_EQ(summary.tracks, 25);
   EXPECT_NEAR(summary.seconds, 299 / 12.5, 1e-6);
   const MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
   EXPECT_GT(*judgement.evaluation.scores.identity.f1, 0.97);
@@ -137,7 +137,7 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   Rig rig;
   rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 51, folder / "right.txt")};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
-  EXPECT_EQ(summary.people, 2);
+  EXPECT_EQ(summary.tracks, 2);
   const Recording found = format::match::read_ground(folder / "out.csv");
   std::map<int, CameraMask> seen_by;
   for (const TrackColumns& track : found.tracks()) {
@@ -174,8 +174,8 @@ TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
   rig.cameras = {plan("first", 0, folder / "first.txt"), plan("second", 0, folder / "second.txt")};
   rig.cameras[1].offset_s = 2;
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
-  EXPECT_EQ(summary.people, 1);
-  EXPECT_EQ(summary.cameras[1].counts.missed, 20) << "before it was started";
+  EXPECT_EQ(summary.tracks, 1);
+  EXPECT_EQ(summary.cameras[1].missed, 20) << "before it was started";
   const Recording found = format::match::read_ground(folder / "out.csv");
   ASSERT_EQ(found.tracks().size(), 1u);
   for (std::size_t row = 0; row < found.tracks()[0].size(); ++row) {
@@ -188,7 +188,7 @@ TEST(TrackGround, LiveAndLaterTheSameEveryTime) {
   const test::TemporaryFolder folder;
   const Rig rig = simulate(folder.path(), match(6, 8, 4));
   for (const bool live : {false, true}) {
-    TrackGroundOptions options = over_pitch();
+    PeopleOnGroundOptions options = over_pitch();
     options.live = live;
     const auto bytes = [&] {
       track_ground(rig, to(folder / "out.csv"), options);
@@ -241,7 +241,7 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
   const GroundOutput output{
       .tracks = folder / "out.csv", .boxes_of = "", .overlays = folder / "films", .pitch_view = folder / "above.mp4"};
   const GroundSummary summary = track_ground(rig, output, over_pitch());
-  EXPECT_GT(share(summary.cameras[0].counts.detections, summary.cameras[0].counts.frames), 8);
+  EXPECT_GT(share(summary.cameras[0].detections, summary.cameras[0].frames), 8);
   const auto& clear = judge(folder / "truth.csv", folder / "out.csv").evaluation.scores.clear;
   EXPECT_GT(share(clear.matches, clear.matches + clear.misses), 0.9);
   EXPECT_LT(share(clear.false_positives, clear.matches + clear.false_positives), 0.1);
@@ -253,7 +253,7 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
 TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {
   const test::TemporaryFolder folder;
   const Rig rig = simulate(folder.path(), match(1, 8, 2));
-  RunHooks hooks;
+  Hooks hooks;
   hooks.stop = [calls = 0]() mutable { return ++calls > 50; };
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch(), hooks);
   EXPECT_TRUE(summary.stopped);
