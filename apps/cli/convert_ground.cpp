@@ -83,7 +83,7 @@ GroundWritten convert_ground(const std::string& from, const std::string& to, con
   const std::vector<std::string> lost = format::match::write_ground_as(match, to, out);
   warnings.insert(warnings.end(), lost.begin(), lost.end());
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
-  return {std::string(format::match::ground_format_name(out)), static_cast<std::int64_t>(match.recording.samples.size())};
+  return {std::string(format::match::ground_format_name(out)), match.recording.samples()};
 }
 
 }  // namespace marey::cli

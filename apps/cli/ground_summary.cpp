@@ -78,7 +78,7 @@ void print_summary(const pipeline::GroundSummary& summary, const pipeline::Groun
   if (predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
                share(predicted, summary.samples));
-  if (const auto count = off_pitch(summary)) fmt::print(stderr, "left out: {} who were never on the pitch\n", count);
+  if (const auto off = off_pitch(summary)) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
   for (const pipeline::Summary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
                static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));

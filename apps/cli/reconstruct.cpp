@@ -40,12 +40,13 @@ Json as_json(const pipeline::Summary& summary, const std::string& out) {
                {"observations", static_cast<std::int64_t>(figure(summary, "observations"))},
                {"unexplained", static_cast<std::int64_t>(figure(summary, "unexplained"))},
                {"points", {{"measured", summary.measured}, {"filled", summary.filled}, {"predicted", summary.predicted}}},
-               {"left_out", summary.left_out},
                {"noise_px", figure(summary, "noise_px")},
                {"stopped", summary.stopped},
                {"warnings", summary.warnings},
                {"take", out}};
   json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure(summary, "residual_px")) : Json();
+  json["left_out"] = Json::object();
+  for (const auto& [reason, count] : summary.left_out) json["left_out"][reason] = count;
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
   for (const pipeline::Summary::StepTime& step : summary.steps) {
     json["stages"][step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};

@@ -53,7 +53,7 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
                        {"misfits", left_out(summary, "misfits")},
                        {"too_brief", left_out(summary, "too_brief")}};
   }
-  if (!summary.figures.empty()) json["noise"] = summary.figures;
+  for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
   if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};
   print(json);
 }

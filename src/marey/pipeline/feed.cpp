@@ -49,7 +49,6 @@ class Feed::Input {
   virtual const SourceInfo& info() const = 0;
   virtual std::optional<CameraFrame> next() = 0;
   virtual std::vector<std::string> warnings() const { return {}; }
-  virtual void look_at(const cv::Rect& /*part*/) {}
 };
 
 class Feed::Pictures final : public Input {
@@ -64,7 +63,6 @@ class Feed::Pictures final : public Input {
     if (!frame) return std::nullopt;
     return CameraFrame{.frame = std::move(*frame), .detections = {}};
   }
-  void look_at(const cv::Rect& part) override { source_ = source::crop(std::move(source_), part); }
 
  private:
   std::unique_ptr<Source> source_;
@@ -209,11 +207,6 @@ Feed Feed::absent(const RigCamera& camera, CameraId id) {
   return {camera, id, {}, std::make_unique<Nothing>()};
 }
 
-void Feed::look_at(const cv::Rect& part) {
-  part_ = part;
-  input_->look_at(part);
-}
-
 void Feed::find(std::unique_ptr<detect::Detector> detector) {
   detector_ = std::move(detector);
 }
@@ -254,11 +247,7 @@ bool Feed::can_rewind() const {
 }
 
 Feed Feed::again() const {
-  if (can_rewind()) {
-    Feed feed(camera_, id_, options_);
-    if (part_) feed.look_at(*part_);
-    return feed;
-  }
+  if (can_rewind()) return {camera_, id_, options_};
   throw Error("{}", said_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
 }
 
@@ -266,7 +255,6 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
   FeedOptions options = options_;
   options.ahead = 0;
   Feed feed(camera_, id_, options);
-  if (part_) feed.look_at(*part_);
   const double span = std::min<double>(seconds * feed.rate_hz(), most_frames);
   const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / count));
   std::vector<Frame> samples;

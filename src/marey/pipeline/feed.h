@@ -46,9 +46,6 @@ class Feed {
   /// A camera that gives nothing.
   static Feed absent(const RigCamera& camera, CameraId id);
 
-  /// Only this part of the camera's pictures is looked at (px); frames' pixels count from its corner. Before the first frame.
-  void look_at(const cv::Rect& part);
-
   /// The feed looks for things itself from now on, in the frames' order.
   void find(std::unique_ptr<detect::Detector> detector);
   /// Its own detector; nothing where it has none.
@@ -83,7 +80,6 @@ class Feed {
   FeedOptions options_;
   std::unique_ptr<Input> input_;
   std::unique_ptr<detect::Detector> detector_;
-  std::optional<cv::Rect> part_;
   std::optional<double> first_s_;
   FeedState state_ = FeedState::connecting;
 };

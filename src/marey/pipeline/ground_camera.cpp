@@ -76,7 +76,7 @@ GroundView view_of(const RigCamera& camera) {
 
 }  // namespace
 
-GroundCamera::GroundCamera(Feed& feed, const GroundArea& area, const GroundCameraOptions& options)
+GroundCamera::GroundCamera(const Feed& feed, const GroundArea& area, const GroundCameraOptions& options)
     : camera_(feed.camera()), id_(feed.id()), area_(area), view_(view_of(camera_)) {
   if (!feed.has_pictures()) {
     if (view_.camera() == nullptr) learned_.emplace();
@@ -86,11 +86,13 @@ GroundCamera::GroundCamera(Feed& feed, const GroundArea& area, const GroundCamer
   if (const Camera* whole = view_.camera()) {
     const cv::Rect part = part_with_people(*whole, area);
     people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
-    corner_ = part.tl();
-    if (part.size() != whole->size()) feed.look_at(part);
+    if (part.size() != whole->size()) part_ = part;
   }
   detector_ = std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), people);
-  if (options.prime) detector_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
+  if (!options.prime) return;
+  std::vector<Frame> samples = feed.sample(kSamples, kSampledSeconds, kMostFramesRead);
+  for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
+  detector_->prime(samples);
 }
 
 GroundCamera::~GroundCamera() = default;
@@ -108,17 +110,19 @@ std::optional<Box> GroundCamera::box_at(const Vector<2>& ground) const {
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
   detect::Detections found;
+  Frame frame = given.frame;
+  if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
   if (detector_) {
     expected_.clear();
-    const cv::Size size = given.frame.picture.size();
+    const cv::Size size = frame.picture.size();
     const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
     for (const Track<2>& track : expected) {
       const auto box = box_at(track.position);
       if (!box) continue;
-      const Box here = geometry::intersection(moved(*box, -corner_), picture);
+      const Box here = geometry::intersection(moved(*box, -corner()), picture);
       if (!here.empty()) expected_.push_back({here});
     }
-    found = detector_->detect(given.frame, expected_);
+    found = detector_->detect(frame, expected_);
   } else {
     found.detections = *given.detections;
     if (learned_) {
@@ -126,16 +130,16 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
       if (learned_->wants_fit()) learned_->fit();
     }
   }
-  place(given, found);
+  place(frame.picture, found);
   return {id_, given.frame.time, seen_};
 }
 
-void GroundCamera::place(const CameraFrame& given, detect::Detections& found) {
+void GroundCamera::place(const Picture& picture, detect::Detections& found) {
   std::vector<std::optional<Appearance>> appearances;
   for (std::size_t i = 0; i < found.detections.size(); ++i) {
-    appearances.push_back(detect::upper_body(given.frame.picture, found.foreground, found.detections, i));
+    appearances.push_back(detect::upper_body(picture, found.foreground, found.detections, i));
   }
-  for (Detection& detection : found.detections) detection.box = moved(detection.box, corner_);
+  for (Detection& detection : found.detections) detection.box = moved(detection.box, corner());
   reconstruct::PlacePeopleOptions placing;
   if (detector_) placing.toe = kToe;
   const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_, id_, placing);

@@ -44,13 +44,15 @@ class GroundCamera {
   std::int64_t frames() const { return frames_; }
 
  private:
-  void place(const CameraFrame& given, detect::Detections& found);
+  cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
+  Picture looked_at(const Picture& picture) const { return part_ ? picture.part(*part_) : picture; }
+  void place(const Picture& picture, detect::Detections& found);
 
   RigCamera camera_;
   CameraId id_;
   GroundArea area_;
   GroundView view_;
-  cv::Point corner_;                                          // of the part of the picture that is looked at
+  std::optional<cv::Rect> part_;                              // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::people::PeopleDetector> detector_;  // none where another program's detections come
   std::optional<detect::people::PersonSizeModel> learned_;    // where neither a camera nor a detector knows how tall people are
   std::vector<Expected> expected_;

@@ -62,7 +62,7 @@ std::array<std::uint8_t, 3> bytes_of(const draw::Colour& colour) {
 
 class GroundStage final : public PeopleOnGround {
  public:
-  GroundStage(std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)
+  GroundStage(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)
       : options_(options),
         rig_(as_fed(rig, feeds)),
         area_(rig.ground_from_world, options.pitch, options.margin),
@@ -160,7 +160,7 @@ class GroundStage final : public PeopleOnGround {
     std::size_t next_ = 0;
   };
 
-  void open_cameras(std::vector<Feed>& feeds) {
+  void open_cameras(const std::vector<Feed>& feeds) {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
     const GroundCameraOptions how{.background = options_.background, .people = {}, .prime = !options_.live};
@@ -318,7 +318,7 @@ class GroundStage final : public PeopleOnGround {
 
 }  // namespace
 
-std::unique_ptr<PeopleOnGround> people_on_ground(std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options) {
+std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options) {
   return std::make_unique<GroundStage>(feeds, rig, options);
 }
 

@@ -154,11 +154,11 @@ TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {
   test::write_file(folder / "boxes.txt", boxes);
   Rig rig;
   rig.cameras = {plan("above", 0, folder / "boxes.txt")};
-  const auto people = [&](double margin) { return track_ground(rig, to(folder / "out.csv"), over_pitch({50, 40}, margin)).people; };
+  const auto people = [&](double margin) { return track_ground(rig, to(folder / "out.csv"), over_pitch({50, 40}, margin)).tracks; };
   EXPECT_EQ(people(0), 1);
   EXPECT_EQ(people(4), 2);
   EXPECT_EQ(people(8), 3);
-  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).people, 3) << "without a pitch everybody counts";
+  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).tracks, 3) << "without a pitch everybody counts";
 }
 
 TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
