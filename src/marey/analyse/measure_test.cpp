@@ -115,7 +115,7 @@ TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
 
 TEST(Measure, PathsAreCutAtLongGapsAndNobodyIsNoError) {
   const std::vector<double> times = {0, 0.1, 5, 5.1, 5.1, 9}, x = {0, 1, 50, 51, 70, 0}, y(6, 0.0);
-  const auto paths = smooth_paths(times, x, y);
+  const auto paths = smooth_paths(times, x, y, {.method = PathOptions::Method::raw});
   ASSERT_EQ(paths.size(), 2u) << "a lone place is no path";
   EXPECT_EQ(paths[1].place.back().x(), 51) << "of two rows at one time the first counts";
   EXPECT_TRUE(measure(Recording(on_the_ground())).people.empty());

@@ -9,7 +9,7 @@ namespace marey::evaluate {
 namespace {
 
 PersonPlace at(int frame, int id, double x, double y = 0) {
-  return {frame, id, {x, y}, {1, 0}};
+  return {frame, id, {x, y}, Vector<2>(1, 0)};
 }
 
 TEST(GroundEvaluation, ErrorsAreInMetres) {
