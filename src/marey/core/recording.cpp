@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ std::string to_string(const FrameOfReference& frame) {
 
 void OptionalColumn::set(std::size_t row, std::span<const double> values) {
   const auto width = static_cast<std::size_t>(width_);
-  if (known_.empty() && rows_ > row) known_.reserve(rows_), values_.reserve(rows_ * width);
+  if (values_.size() == values_.capacity()) values_.reserve(std::max(rows_, row + 1) * width);
   known_.resize(row, false);
   known_.push_back(true);
   values_.resize(row * width);
@@ -94,6 +95,7 @@ std::optional<std::size_t> TrackColumns::row_at(std::int32_t instant) const {
 void TrackColumns::add(std::int32_t instant, const Sample& sample) {
   if (!is_new(at_, instant)) throw Error("track {} has two samples at one instant", number(name.id));
   const std::size_t row = at_.size();
+  if (row == at_.capacity()) reserve(row + row / 4 + 16);
   at_.push_back(instant);
   x_.push_back(sample.position.x());
   y_.push_back(sample.position.y());
@@ -120,6 +122,11 @@ void TrackColumns::reserve(std::size_t rows) {
   at_.reserve(rows), x_.reserve(rows), y_.reserve(rows), provenance_.reserve(rows), cameras_.reserve(rows);
   if (dimensions_ == 3) z_.reserve(rows);
   for (OptionalColumn* column : {&velocity_, &covariance_, &score_, &box_, &residual_px_, &residual_m_}) column->reserve(rows);
+}
+
+void TrackColumns::set_at(std::vector<std::int32_t> instants) {
+  assert(instants.size() == at_.size() && std::is_sorted(instants.begin(), instants.end()));
+  at_ = std::move(instants);
 }
 
 const TrackColumns* Recording::find(TrackId id) const {

@@ -125,8 +125,11 @@ class TrackColumns {
 
   /// `instant` is later than the last one's.
   void add(std::int32_t instant, const Sample& sample);
-  /// So many rows will come, so that memory is what they need.
+  /// So many rows will come, so that memory is what they need. Without it, it is a quarter more at most.
   void reserve(std::size_t rows);
+  /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
+  void set_at(std::vector<std::int32_t> instants);
+  void forget_velocities() { velocity_ = OptionalColumn(dimensions_); }
 
  private:
   int dimensions_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "marey/core/error.h"
@@ -11,41 +12,32 @@ namespace {
 
 constexpr double kFarthest = 1e5;  // m
 
-bool by_frame(const GroundBuilder::Row& a, const GroundBuilder::Row& b) {
-  return a.frame < b.frame;
+Sample sample_of(const GroundBuilder::Row& row) {
+  Sample sample;
+  sample.position.head<2>() = row.place;
+  if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), 0);
+  sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
+  sample.cameras = row.cameras;
+  return sample;
 }
 
-/// Puts the frames of a person's rows, which are sorted, among those that are there already.
-void add_moments(const std::deque<GroundBuilder::Row>& rows, std::vector<Recording::Moment>& moments) {
-  const auto by_index = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index < b.index; };
-  std::vector<Recording::Moment> fresh;
-  auto at = moments.begin();
-  for (const GroundBuilder::Row& row : rows) {
-    const Recording::Moment moment{row.frame, timestamp_from_seconds(row.time)};
-    if (at == moments.begin()) at = std::lower_bound(at, moments.end(), moment, by_index);
-    while (at != moments.end() && at->index < row.frame) ++at;
-    if (at == moments.end() || at->index != row.frame) fresh.push_back(moment);
-  }
-  const auto known = std::ssize(moments);
-  moments.insert(moments.end(), fresh.begin(), fresh.end());
-  std::inplace_merge(moments.begin(), moments.begin() + known, moments.end(), by_index);
+/// Each frame once, in order.
+void put_in_order(std::vector<Recording::Moment>& moments) {
+  const auto before = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index < b.index; };
+  if (!std::is_sorted(moments.begin(), moments.end(), before)) std::stable_sort(moments.begin(), moments.end(), before);
+  const auto same = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index == b.index; };
+  moments.erase(std::unique(moments.begin(), moments.end(), same), moments.end());
 }
 
-TrackColumns columns_of(const TrackName& name, const std::deque<GroundBuilder::Row>& rows,
-                        const std::vector<Recording::Moment>& moments) {
-  TrackColumns track(name, 2);
-  track.reserve(rows.size());
+std::vector<std::int32_t> instants_of(std::span<const std::int32_t> frames, const std::vector<Recording::Moment>& moments) {
+  std::vector<std::int32_t> instants;
+  instants.reserve(frames.size());
   std::size_t at = 0;
-  for (const GroundBuilder::Row& row : rows) {
-    while (moments[at].index < row.frame) ++at;
-    Sample sample;
-    sample.position.head<2>() = row.place;
-    if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), 0);
-    sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
-    sample.cameras = row.cameras;
-    track.add(static_cast<std::int32_t>(at), sample);
+  for (const std::int32_t frame : frames) {
+    while (moments[at].index < frame) ++at;
+    instants.push_back(static_cast<std::int32_t>(at));
   }
-  return track;
+  return instants;
 }
 
 }  // namespace
@@ -59,8 +51,8 @@ std::int32_t GroundBuilder::person(const std::string& key, int wanted, const std
 
 std::int32_t GroundBuilder::person(int id, const std::string& label, const std::string& team) {
   const auto [entry, is_new] = by_id_.try_emplace(id, static_cast<std::int32_t>(people_.size()));
-  if (is_new) people_.push_back({{TrackId{id}, {}, {}}, {}});
-  TrackName& name = people_[static_cast<std::size_t>(entry->second)].name;
+  if (is_new) people_.push_back({TrackColumns({TrackId{id}, {}, {}}, 2), {}});
+  TrackName& name = people_[static_cast<std::size_t>(entry->second)].rows.name;
   if (name.label.empty()) name.label = label;
   if (name.team.empty()) name.team = team;
   return entry->second;
@@ -72,43 +64,69 @@ void GroundBuilder::add(std::int32_t frame, double time, std::int32_t person, do
   add(person, {.frame = frame, .time = time, .place = {x, y}});
 }
 
-void GroundBuilder::for_each_row(const std::function<void(Row&)>& change) {
-  for (Person& person : people_) {
-    for (Row& row : person.rows) change(row);
+void GroundBuilder::add(std::int32_t person, const Row& row) {
+  if (moments_.empty() || moments_.back().index != row.frame) moments_.push_back({row.frame, timestamp_from_seconds(row.time)});
+  Person& one = people_[static_cast<std::size_t>(person)];
+  if (!one.rows.empty() && one.rows.at().back() >= row.frame) {
+    one.late.push_back(row);
+  } else {
+    one.rows.add(row.frame, sample_of(row));
   }
 }
 
+void GroundBuilder::forget_velocities() {
+  for (Person& person : people_) {
+    person.rows.forget_velocities();
+    for (Row& row : person.late) row.velocity.reset();
+  }
+}
+
+/// Rows of one frame stay late but for one, so that they are found.
+void GroundBuilder::put_in_order(Person& person) const {
+  if (person.late.empty()) return;
+  std::vector<std::pair<std::int32_t, Sample>> rows;
+  for (std::size_t i = 0; i < person.rows.size(); ++i) rows.emplace_back(person.rows.at()[i], person.rows.sample(i));
+  for (const Row& row : person.late) rows.emplace_back(row.frame, sample_of(row));
+  person.late.clear();
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  TrackColumns ordered(person.rows.name, 2);
+  ordered.reserve(rows.size());
+  for (const auto& [frame, sample] : rows) {
+    if (ordered.empty() || ordered.at().back() < frame) {
+      ordered.add(frame, sample);
+    } else {
+      person.late.push_back({.frame = frame});
+    }
+  }
+  person.rows = std::move(ordered);
+}
+
 void GroundBuilder::require_once() const {
-  const Person* who = nullptr;
+  const TrackName* who = nullptr;
   std::pair<std::int32_t, int> first;  // frame and id
   for (const Person& person : people_) {
-    const auto twice = std::adjacent_find(person.rows.begin(), person.rows.end(),
-                                          [](const Row& a, const Row& b) { return a.frame == b.frame; });
-    if (twice == person.rows.end()) continue;
-    const std::pair found(twice->frame, number(person.name.id));
-    if (who == nullptr || found < first) who = &person, first = found;
+    if (person.late.empty()) continue;
+    const std::pair found(person.late.front().frame, number(person.rows.id()));
+    if (who == nullptr || found < first) who = &person.rows.name, first = found;
   }
   if (who == nullptr) return;
-  const TrackName& name = who->name;
-  if (index_of_.empty()) throw Error("{}: person {} is twice in frame {}", name_, number(name.id), first.first);
-  throw Error("{}: someone (\"{}\", team \"{}\") is twice in frame {}", name_, name.label, name.team, first.first);
+  if (index_of_.empty()) throw Error("{}: person {} is twice in frame {}", name_, number(who->id), first.first);
+  throw Error("{}: someone (\"{}\", team \"{}\") is twice in frame {}", name_, who->label, who->team, first.first);
 }
 
 std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
   std::vector<TrackId> order;
   for (Person& person : people_) {
-    order.push_back(person.name.id);
-    if (!std::is_sorted(person.rows.begin(), person.rows.end(), by_frame))
-      std::stable_sort(person.rows.begin(), person.rows.end(), by_frame);
+    order.push_back(person.rows.id());
+    put_in_order(person);
   }
   require_once();
-  std::vector<Recording::Moment> moments;
-  for (const auto& [id, index] : by_id_) add_moments(people_[static_cast<std::size_t>(index)].rows, moments);
-  for (const Recording::Moment& moment : moments) recording.add_moment(moment);
+  match::put_in_order(moments_);
+  for (const Recording::Moment& moment : moments_) recording.add_moment(moment);
   for (const auto& [id, index] : by_id_) {
-    Person& person = people_[static_cast<std::size_t>(index)];
-    recording.put(columns_of(person.name, person.rows, moments));
-    person.rows = {};
+    TrackColumns& rows = people_[static_cast<std::size_t>(index)].rows;
+    rows.set_at(instants_of(rows.at(), moments_));
+    recording.put(std::move(rows));
   }
   return order;
 }

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,25 +34,27 @@ class GroundBuilder {
 
   /// x and y in m. Throws Error, which says `where`, for what is no place on the ground near a pitch.
   void add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where);
-  void add(std::int32_t person, const Row& row) { people_[static_cast<std::size_t>(person)].rows.push_back(row); }
+  void add(std::int32_t person, const Row& row);
 
-  /// All that was added, for what is known of frames at the end only.
-  void for_each_row(const std::function<void(Row&)>& change);
+  /// None of those that were added is known after all.
+  void forget_velocities();
 
-  /// Moves everything into `recording`, whose header is known: a frame is an instant, whose time is that of its first person. Gives
-  /// the people in the order in which they came. Throws Error where a person is twice in a frame.
+  /// Moves everything into `recording`, whose header is known: a frame is an instant, whose time is that of its first row. Gives the
+  /// people in the order in which they came. Throws Error where a person is twice in a frame.
   std::vector<TrackId> finish(Recording& recording);
 
  private:
   struct Person {
-    TrackName name;
-    std::deque<Row> rows;
+    TrackColumns rows;      // a frame stands where the instant will
+    std::vector<Row> late;  // came after one of the same or a later frame
   };
 
+  void put_in_order(Person& person) const;
   void require_once() const;
 
   const std::string& name_;
-  std::vector<Person> people_;  // in the order in which they came
+  std::vector<Person> people_;               // in the order in which they came
+  std::vector<Recording::Moment> moments_;  // of each frame, once at least
   std::map<std::string, std::int32_t> index_of_;
   std::map<int, std::int32_t> by_id_;
 };

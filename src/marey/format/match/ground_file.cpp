@@ -55,14 +55,14 @@ class Reader {
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
     read_header(line);
+    if (!where_[frame]) number_frames(text);
     while (lines.next(line)) {
       line_ = lines.number();
       if (line.empty()) continue;
       split_fields(line, ',', fields_);
       add();
     }
-    if (!where_[frame]) number_frames();
-    if (!moves_) builder_.for_each_row([](GroundBuilder::Row& row) { row.velocity.reset(); });
+    if (!moves_) builder_.forget_velocities();
     return finish();
   }
 
@@ -119,6 +119,7 @@ class Reader {
     GroundBuilder::Row row;
     if (where_[frame]) row.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
     row.time = where_[time_s] ? number(time_s, -1e7, 1e7) : row.frame / rate_hz_;
+    if (!where_[frame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
     const std::int32_t person = builder_.person(static_cast<int>(number(id, 1, 1e9)), text(label), text(team));
     row.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
     if (field(vx) && field(vy)) row.velocity = Vector<2>(number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest));
@@ -132,20 +133,28 @@ class Reader {
   }
 
   /// Frames from times alone: as many a second as there are instants, from time 0 or the first instant on, which is the earlier.
-  void number_frames() {
+  void number_frames(std::string_view text) {
     std::vector<double> times;
-    builder_.for_each_row([&](const GroundBuilder::Row& row) { times.push_back(row.time); });
+    TextLines lines(text);
+    std::string_view line;
+    lines.next(line);  // the header
+    while (lines.next(line)) {
+      line_ = lines.number();
+      if (line.empty()) continue;
+      split_fields(line, ',', fields_);
+      times.push_back(number(time_s, -1e7, 1e7));
+    }
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     std::vector<double> steps;
     for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+    if (!times.empty()) start_s_ = times.front();
     if (steps.empty()) return;
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
-    const double start = std::min(0.0, times.front());
-    if ((times.back() - start) / *middle > 1e9) throw Error("{}: its times are {:g} s apart, which makes no rate", name_, *middle);
-    builder_.for_each_row(
-        [&](GroundBuilder::Row& row) { row.frame = static_cast<std::int32_t>(std::lround((row.time - start) / *middle)); });
+    step_s_ = *middle;
+    start_s_ = std::min(0.0, times.front());
+    if ((times.back() - start_s_) / step_s_ > 1e9) throw Error("{}: its times are {:g} s apart, which makes no rate", name_, step_s_);
   }
 
   CameraMask cameras_of(const std::string& names) {
@@ -169,7 +178,8 @@ class Reader {
   GroundBuilder builder_;
   std::vector<std::string> cameras_;
   bool has_boxes_ = false;
-  bool moves_ = false;  // a velocity that is not 0 was read
+  bool moves_ = false;                // a velocity that is not 0 was read
+  double start_s_ = 0, step_s_ = 1;  // of frames that times alone tell
   std::array<std::optional<std::size_t>, columns> where_;
   std::vector<std::string_view> fields_, names_;
 };
