@@ -74,15 +74,15 @@ Json as_json(const format::match::GroundMatch& match, format::match::GroundForma
   for (const format::match::GroundPeriod& period : match.periods)
     periods.push_back({{"period", period.number}, {"first_frame", period.first_frame}, {"last_frame", period.last_frame}});
   Json result{{"format", format::match::ground_format_name(format)},
-                        {"rate_hz", recording.header.rate_hz},
-                        {"instants", recording.instants().size()},
-                        {"places", recording.samples()},
-                        {"people", people},
-                        {"periods", periods},
-                        {"home", match.home},
-                        {"away", match.away},
-                        {"pitch", {match.pitch.length, match.pitch.width}},
-                        {"cameras", cameras_of(recording)}};
+              {"rate_hz", recording.header.rate_hz},
+              {"instants", recording.instants().size()},
+              {"places", recording.samples()},
+              {"people", people},
+              {"periods", periods},
+              {"home", match.home},
+              {"away", match.away},
+              {"pitch", {match.pitch.length, match.pitch.width}},
+              {"cameras", cameras_of(recording)}};
   if (recording.samples() > 0) {
     result["first_frame"] = recording.instants().front().index;
     result["last_frame"] = recording.instants().back().index;
@@ -103,9 +103,9 @@ void print_table(const std::string& file, const format::match::GroundMatch& matc
   if (recording.samples() == 0) return row("people", "nobody is in it");
   const auto &first = recording.instants().front(), &last = recording.instants().back();
   const double rate_hz = recording.header.rate_hz;
-  row("length", fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz",
-                            seconds(last.time) - seconds(first.time) + 1 / rate_hz, recording.instants().size(), first.index,
-                            last.index, rate_hz));
+  row("length",
+      fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz", seconds(last.time) - seconds(first.time) + 1 / rate_hz,
+                  recording.instants().size(), first.index, last.index, rate_hz));
   for (const format::match::GroundPeriod& period : match.periods)
     row("period", fmt::format("{}: frames {} to {}", period.number, period.first_frame, period.last_frame));
   row("pitch", fmt::format("{:g} x {:g} m", match.pitch.length, match.pitch.width));

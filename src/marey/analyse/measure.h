@@ -62,9 +62,9 @@ struct Measurement {
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
 };
 
-/// Distances, speeds, efforts and places of everyone, from `paths_of`: smoothed by the options, or as recorded where the recording is
-/// smoothed already, so that a run has one speed. Throws Error for a recording that is not of the ground in m. Cost: linear in the
-/// samples.
+/// Distances, speeds, efforts and places of everyone, from `paths_of`: smoothed by the options, or as recorded where the recording
+/// is smoothed already, so that a run has one speed. Throws Error for a recording that is not of the ground in m. Cost: linear in
+/// the samples.
 Measurement measure(const Recording& recording, const MeasureOptions& options = {});
 
 }  // namespace marey::analyse

@@ -131,12 +131,8 @@ Recording with_velocities(bool smoothed) {
   for (int i = 0; i < 250; ++i) {
     Sample sample = sample_at(3, {0.24 * i, 20});
     sample.velocity = Vector<3>(i == 100 ? 6.75 : 6.5, 0, 0);
-    recording.add({.index = i,
-                   .time = timestamp_from_seconds(i / 25.0),
-                   .samples = {sample},
-                   .seen = {},
-                   .named = {},
-                   .frames = {}});
+    recording.add(
+        {.index = i, .time = timestamp_from_seconds(i / 25.0), .samples = {sample}, .seen = {}, .named = {}, .frames = {}});
   }
   return recording;
 }

@@ -44,8 +44,8 @@ struct Path {
   double seconds() const { return step_s * static_cast<double>(place.empty() ? 0 : place.size() - 1); }
 };
 
-/// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over, pieces
-/// of fewer than two places left out.
+/// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over,
+/// pieces of fewer than two places left out.
 std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
                                const PathOptions& options = {});
 

@@ -217,8 +217,10 @@ class Finder {
     const Presence& presence = presence_[static_cast<std::size_t>(who)];
     for (const int end : {0, 1}) {
       if (presence.near_goal[end] < keepers_time * presence.seconds || presence.seconds == 0) continue;
-      member = {Teams::Role::keeper, teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, static_cast<std::size_t>(who), end) : std::nullopt,
-                confidence};
+      member = {
+          Teams::Role::keeper,
+          teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, static_cast<std::size_t>(who), end) : std::nullopt,
+          confidence};
       return;
     }
     if (share_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};

@@ -49,8 +49,7 @@ struct Teams {
 
 /// `wears` of each track of the recording, in their order, where known. `recording` is of the ground, in the pitch's frame where
 /// `pitch` is given; throws Error for another.
-Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears,
-                 const TeamOptions& options = {});
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options = {});
 
 /// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
 /// none.

@@ -34,8 +34,8 @@ TEST(OtherGround, PlacesVelocitiesAndCovariancesAreTurned) {
   quarter << 0, -1, 1, 0;
   const FrameOfReference user{FrameOfReference::Kind::user_ground, {}};
   const Recording before = one_step();
-  const Recording after =
-      on_other_ground(before, user, {[&](const Vector<2>& place) { return Vector<2>(quarter * place + Vector<2>(10, 0)); }, quarter});
+  const Recording after = on_other_ground(
+      before, user, {[&](const Vector<2>& place) { return Vector<2>(quarter * place + Vector<2>(10, 0)); }, quarter});
   EXPECT_EQ(after.header.frame, user);
   EXPECT_EQ(after.header.rate_hz, 25);
   ASSERT_EQ(after.tracks().size(), 2u);

@@ -13,7 +13,7 @@ namespace marey::evaluate {
 struct PersonPlace {
   std::int32_t frame = 0;
   std::int32_t id = 0;
-  Vector<2> place = Vector<2>::Zero();  ///< m
+  Vector<2> place = Vector<2>::Zero();     ///< m
   std::optional<Vector<2>> velocity = {};  ///< m/s
 };
 

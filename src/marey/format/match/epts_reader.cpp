@@ -174,7 +174,8 @@ class Reader {
       if (!x || !y) throw Error("{}: {}, {} is no place", where_, shown(place[0]), shown(place[1]));
       const double right = normalized_ ? match_.pitch.length * *x : *x;
       const double up = normalized_ ? match_.pitch.width * (1 - *y) : *y;
-      builder_.add(static_cast<std::int32_t>(*frame), static_cast<double>(*frame) / match_.recording.header.rate_hz, person, right, up, where_);
+      builder_.add(static_cast<std::int32_t>(*frame), static_cast<double>(*frame) / match_.recording.header.rate_hz, person, right,
+                   up, where_);
     }
   }
 

@@ -200,7 +200,8 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
   file.finish();
   const auto left_out = tracks.size() - plan.people.size();
   if (left_out > 0)
-    plan.line_ups.warnings.push_back(fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));
+    plan.line_ups.warnings.push_back(
+        fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));
   return plan.line_ups.warnings;
 }
 

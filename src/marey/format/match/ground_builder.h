@@ -39,8 +39,8 @@ class GroundBuilder {
   /// None of those that were added is known after all.
   void forget_velocities();
 
-  /// Moves everything into `recording`, whose header is known: a frame is an instant, whose time is that of its first row. Gives the
-  /// people in the order in which they came. Throws Error where a person is twice in a frame.
+  /// Moves everything into `recording`, whose header is known: a frame is an instant, whose time is that of its first row. Gives
+  /// the people in the order in which they came. Throws Error where a person is twice in a frame.
   std::vector<TrackId> finish(Recording& recording);
 
  private:
@@ -53,7 +53,7 @@ class GroundBuilder {
   void require_once() const;
 
   const std::string& name_;
-  std::vector<Person> people_;               // in the order in which they came
+  std::vector<Person> people_;              // in the order in which they came
   std::vector<Recording::Moment> moments_;  // of each frame, once at least
   std::map<std::string, std::int32_t> index_of_;
   std::map<int, std::int32_t> by_id_;

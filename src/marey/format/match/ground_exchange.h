@@ -38,8 +38,8 @@ RecordingHeader ground_header(const std::string& name);
 /// over the rate.
 struct GroundMatch {
   Recording recording{ground_header({})};  ///< an instant a frame
-  std::vector<TrackId> order;         ///< in which the file names its people, and line-ups list them; who is in it not, by id behind
-  geometry::PitchSize pitch;          ///< as the file says, or as was given to the reader
+  std::vector<TrackId> order;  ///< in which the file names its people, and line-ups list them; who is in it not, by id behind
+  geometry::PitchSize pitch;   ///< as the file says, or as was given to the reader
   std::vector<GroundPeriod> periods;  ///< in order; empty where the file does not know any
   std::string home, away;             ///< names of the teams; empty where the file does not know them
   std::vector<std::string> warnings;  ///< one sentence each
@@ -68,8 +68,8 @@ GroundMatch read_ground_any(const std::string& path, const GroundReadOptions& op
 GroundMatch read_ground_as(const std::string& path, GroundFormat format, const GroundReadOptions& options = {});
 
 /// Writes one, whole or not at all, with its second file beside it where the format has two. Returns what a user should know of
-/// what the format could not hold, one sentence each. Throws Error where it cannot hold the recording at all: none holds one that is
-/// not of the ground in m.
+/// what the format could not hold, one sentence each. Throws Error where it cannot hold the recording at all: none holds one that
+/// is not of the ground in m.
 std::vector<std::string> write_ground_as(const GroundMatch& match, const std::string& path, GroundFormat format);
 
 /// Turns coordinates between the corner below on the left with y upwards and another frame, either way: `y_down` has y grow

@@ -49,8 +49,10 @@ GroundMatch made_up(unsigned seed) {
     }
   }
   for (int id = 1; id <= 7; ++id) {
-    match.recording.set_name(
-        {TrackId{id}, id == 7 ? "" : std::to_string(id + 10), id == 7 ? "referee" : id <= 3 ? "red" : "green"});
+    match.recording.set_name({TrackId{id}, id == 7 ? "" : std::to_string(id + 10),
+                              id == 7   ? "referee"
+                              : id <= 3 ? "red"
+                                        : "green"});
   }
   return match;
 }

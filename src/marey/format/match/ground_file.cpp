@@ -80,8 +80,9 @@ class Reader {
       if (!where_[needed])
         throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kNames[needed], fmt::join(kNames, ","));
     }
-    has_boxes_ = std::all_of(kBox.begin(), kBox.end(),
-                             [&](std::string_view edge) { return std::find(fields_.begin(), fields_.end(), edge) != fields_.end(); });
+    has_boxes_ = std::all_of(kBox.begin(), kBox.end(), [&](std::string_view edge) {
+      return std::find(fields_.begin(), fields_.end(), edge) != fields_.end();
+    });
   }
 
   GroundFile finish() {
@@ -154,7 +155,8 @@ class Reader {
     std::nth_element(steps.begin(), middle, steps.end());
     step_s_ = *middle;
     start_s_ = std::min(0.0, times.front());
-    if ((times.back() - start_s_) / step_s_ > 1e9) throw Error("{}: its times are {:g} s apart, which makes no rate", name_, step_s_);
+    if ((times.back() - start_s_) / step_s_ > 1e9)
+      throw Error("{}: its times are {:g} s apart, which makes no rate", name_, step_s_);
   }
 
   CameraMask cameras_of(const std::string& names) {
@@ -178,7 +180,7 @@ class Reader {
   GroundBuilder builder_;
   std::vector<std::string> cameras_;
   bool has_boxes_ = false;
-  bool moves_ = false;                // a velocity that is not 0 was read
+  bool moves_ = false;               // a velocity that is not 0 was read
   double start_s_ = 0, step_s_ = 1;  // of frames that times alone tell
   std::array<std::optional<std::size_t>, columns> where_;
   std::vector<std::string_view> fields_, names_;

@@ -17,9 +17,9 @@ namespace marey::format::match {
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
-/// missing are not known, nor are any where all are 0. The recording's rate is that of most of its steps; its rig, where cameras are
-/// named, has their names alone. A file that has boxes too (left, top, width, height) is one of tracks in a picture: its frame of
-/// reference says that it is in px. Throws Error, with the line, where something is not as it should be.
+/// missing are not known, nor are any where all are 0. The recording's rate is that of most of its steps; its rig, where cameras
+/// are named, has their names alone. A file that has boxes too (left, top, width, height) is one of tracks in a picture: its frame
+/// of reference says that it is in px. Throws Error, with the line, where something is not as it should be.
 Recording read_ground(const std::string& path, double rate_hz = 25);
 
 /// The same from text; `name` is what messages call it.

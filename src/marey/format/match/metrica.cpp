@@ -92,8 +92,9 @@ class Reader {
     for (const Column& column : columns) {
       const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
       if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
-      builder_.add(frame, frame / match_.recording.header.rate_hz, column.person, match_.pitch.length * number(column.at, -1e3, 1e3),
-                   match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)), where());
+      builder_.add(frame, frame / match_.recording.header.rate_hz, column.person,
+                   match_.pitch.length * number(column.at, -1e3, 1e3), match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)),
+                   where());
     }
   }
 

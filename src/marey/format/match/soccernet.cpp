@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kImages = 1'000'000;              // image ids of one clip
+constexpr std::int64_t kImages = 1'000'000;  // image ids of one clip
 constexpr std::string_view kPerson =
     "\n{{\"id\":\"{}\",\"image_id\":\"{}\",\"track_id\":{},\"supercategory\":\"object\",\"category_id\":{},"
     "\"attributes\":{},\"bbox_pitch\":{{\"x_bottom_left\":{:.3f},\"y_bottom_left\":{:.3f},\"x_bottom_right\":{:.3f},"
