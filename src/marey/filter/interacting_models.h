@@ -1,7 +1,7 @@
 #pragma once
 
 // Interacting multiple models: Kalman filters side by side, one for a target that cruises, one for a target that accelerates,
-// one for a target that turns, one for a target that swerves. Each measurement tells how likely each model is; before each
+// one for a target that turns, one for a target that swerves. Each measurement says how likely each model is; before each
 // prediction the models' states are mixed by the chance that the target has changed from one to another. The estimate is their
 // mean, weighted by their probabilities. Steady while the target is steady and quick when it is not, without a threshold.
 //

@@ -70,7 +70,7 @@ Melted melt(const Track<2>& track, Timestamp now, std::span<const CameraObservat
   Melted melted;
   for (const ObservationMatch& claim : claims) {
     if (claim.track != track.id) continue;
-    const CameraObservations& look = looks[claim.look];
+    const CameraObservations& look = looks[claim.view];
     melted.add(look.seen[claim.observation], seconds(now - look.time) * track.velocity);
   }
   return melted;
