@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "marey/geometry/decompositions.h"
 
 namespace marey::track {
 namespace {
@@ -168,10 +169,10 @@ std::optional<RigidNeighbours::Place> RigidNeighbours::place_of(int number) cons
   from /= total;
   to /= total;
   moment -= total * to * from.transpose();
-  const Eigen::JacobiSVD<Matrix<3>> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const geometry::SingularValues3 svd = geometry::singular_values(moment);
   Matrix<3> flip = Matrix<3>::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  const Matrix<3> rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+  flip(2, 2) = (svd.U * svd.V.transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix<3> rotation = svd.U * flip * svd.V.transpose();
   const Vector<3> last = hidden.places[static_cast<std::size_t>(number)] - from_origin;
   return Place{rotation * (last - from) + to + to_origin, spread / total};
 }
