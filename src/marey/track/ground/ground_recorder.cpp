@@ -16,8 +16,7 @@ namespace {
 
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
 
-constexpr double kUnseenPush =
-    1.6;  // times: a target that is not seen may have moved in any manner, and a wrong join costs an identity
+constexpr double kUnseenPush = 1.6;  // times the usual: an unseen target may have done anything; a wrong join costs an identity
 
 std::int8_t rounded(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));
