@@ -78,7 +78,7 @@ void follow_outlines(benchmark::State& state) {
     now.index = frame;
     now.time = timestamp_from_seconds(frame / 25.0);
     ++frame;
-    follower.look(now, Foreground{scene().masks[k], {}}, seen);
+    follower.observe(now, Foreground{scene().masks[k], {}}, seen);
     benchmark::DoNotOptimize(follower.attach(tracks, seen));
   };
   for (int k = 0; k < 4; ++k) step(true);

@@ -50,7 +50,7 @@ class Crowd {
 void tracker_step(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   Crowd crowd(count);
-  const auto tracker = track::make_tracker<2>({.steady_camera = true});
+  const auto tracker = track::make_tracker({.steady_camera = true});
   int frame = 0;
   for (; frame < 10; ++frame) tracker->step(timestamp_from_seconds(frame / rate), crowd.next());
   for (auto _ : state) {

@@ -48,8 +48,8 @@ void print_parameters(const filter::CondensationOptions& o) {
   fmt::print("particles={}\n", o.particles);
 }
 void print_parameters(const filter::InteractingModelsOptions& o) {
-  fmt::print("cruise_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} initial_speed={} ",
-             o.cruise_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
+  fmt::print("steady_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} initial_speed={} ",
+             o.steady_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
   fmt::print("swerve_rate={} swerve_speed={} swerve_share={} share_0={} share_1={} share_2={}\n", o.swerve_rate, o.swerve_speed,
              o.swerve_share, o.shares[0], o.shares[1], o.shares[2]);
 }

@@ -19,8 +19,8 @@ void GatedAssigner::find_components(int rows, int columns, std::span<const Gated
 }
 
 std::span<const int> GatedAssigner::assign(int rows, int columns, std::span<const GatedPair> pairs) {
-  column_of_row_.assign(rows, nobody);
-  column_slot_.assign(columns, nobody);
+  column_of_row_.assign(rows, kNoIndex);
+  column_slot_.assign(columns, kNoIndex);
   taken_.assign(columns, 0);
   find_components(rows, columns, pairs);
   const std::span<GatedPair> all(grouped_);
@@ -41,7 +41,7 @@ void GatedAssigner::name_nodes(std::span<const GatedPair> pairs) {
   column_names_.clear();
   for (const GatedPair& pair : pairs) {
     if (row_names_.empty() || row_names_.back() != pair.row) row_names_.push_back(pair.row);
-    if (column_slot_[pair.column] != nobody) continue;
+    if (column_slot_[pair.column] != kNoIndex) continue;
     column_slot_[pair.column] = static_cast<int>(column_names_.size());
     column_names_.push_back(pair.column);
   }
@@ -65,7 +65,7 @@ void GatedAssigner::solve_component(std::span<GatedPair> pairs) {
   const auto slots = dense_.assign(rows, columns, costs_);
   for (row = 0; row < rows; ++row) {
     const int slot = slots[row];
-    if (slot != LinearAssigner::nobody && costs_[at(row, slot)] < 0) column_of_row_[row_names_[row]] = column_names_[slot];
+    if (slot != kNoIndex && costs_[at(row, slot)] < 0) column_of_row_[row_names_[row]] = column_names_[slot];
   }
 }
 
@@ -74,7 +74,7 @@ void GatedAssigner::solve_greedily(std::span<GatedPair> pairs) {
     return a.gain != b.gain ? a.gain > b.gain : std::tuple(a.row, a.column) < std::tuple(b.row, b.column);
   });
   for (const GatedPair& pair : pairs) {
-    if (taken_[pair.column] || column_of_row_[pair.row] != nobody) continue;
+    if (taken_[pair.column] || column_of_row_[pair.row] != kNoIndex) continue;
     column_of_row_[pair.row] = pair.column;
     taken_[pair.column] = 1;
   }

@@ -1,9 +1,9 @@
-// Who is whom, where most pairs are out of the question. A gate leaves few pairs; the graph they form falls apart into small
+// Assignment where most pairs are out of the question. A gate leaves few pairs; the graph they form falls apart into small
 // connected components; each is solved on its own, optimally. With targets spread over the scene the components stay small, so
 // that the whole costs little more than listing the pairs.
 //
 // A row may stay without a column: the gains of the chosen pairs are maximised, not their number. A pair outside the gate costs
-// 0 to the dense solver (linear_assignment.h), as nobody does, and means nobody: gains are positive, so that any choice can be
+// 0 to the dense solver (linear_assignment.h), as no pair does, and means none: gains are positive, so that any choice can be
 // completed by such pairs. A component of more than `largest_component` rows or columns, which no gate worth its name leaves, is
 // settled greedily, the greatest gain first, so that time and memory stay bounded.
 // Cost: pairs · log + Σ rows² · columns over the components. Deterministic: equal gains are settled by index.
@@ -26,10 +26,9 @@ struct GatedPair {
 
 class GatedAssigner {
  public:
-  static constexpr int nobody = -1;
   static constexpr int largest_component = 1000;
 
-  /// For every row its column, or `nobody`; valid until the next call. Rows lie in [0, rows), columns in [0, columns), gains are
+  /// For every row its column, or `kNoIndex`; valid until the next call. Rows lie in [0, rows), columns in [0, columns), gains are
   /// finite. Allocates only where a frame is larger than all before.
   std::span<const int> assign(int rows, int columns, std::span<const GatedPair> pairs);
 

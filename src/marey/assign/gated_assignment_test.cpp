@@ -18,7 +18,7 @@ double gain_of(std::span<const int> columns, std::span<const GatedPair> pairs) {
   return sum;
 }
 
-/// The slow twin: tries, row by row, nobody and every column of the pairs that is still free.
+/// The slow twin: tries, row by row, none and every column of the pairs that is still free.
 double best_gain(int row, int rows, std::vector<char>& taken, std::span<const GatedPair> pairs) {
   if (row == rows) return 0;
   double best = best_gain(row + 1, rows, taken, pairs);
@@ -53,7 +53,7 @@ TEST(GatedAssigner, IsAsGoodAsTryingEverything) {
     const auto result = assigner.assign(rows, columns, pairs);
     std::vector<int> used;
     for (int row = 0; row < rows; ++row) {
-      if (result[row] == GatedAssigner::nobody) continue;
+      if (result[row] == kNoIndex) continue;
       used.push_back(result[row]);
       EXPECT_TRUE(std::any_of(pairs.begin(), pairs.end(), [&](const GatedPair& pair) {
         return pair.row == row && pair.column == result[row] && pair.gain > 0;
@@ -95,7 +95,7 @@ TEST(GatedAssigner, NothingToAssign) {
   GatedAssigner assigner;
   EXPECT_TRUE(assigner.assign(0, 0, {}).empty());
   const auto result = assigner.assign(2, 0, {});
-  EXPECT_EQ(std::vector<int>(result.begin(), result.end()), std::vector<int>(2, GatedAssigner::nobody));
+  EXPECT_EQ(std::vector<int>(result.begin(), result.end()), std::vector<int>(2, kNoIndex));
 }
 
 }  // namespace

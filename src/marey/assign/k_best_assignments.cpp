@@ -89,7 +89,7 @@ KBestAssigner::Part KBestAssigner::pop() {
   return part;
 }
 
-/// The next to look at is the one of greatest gain.
+/// The next to split is the one of greatest gain.
 bool KBestAssigner::is_later(const Part& a, const Part& b) {
   return a.gain != b.gain ? a.gain < b.gain : std::tuple(a.problem, a.age) > std::tuple(b.problem, b.age);
 }
@@ -100,10 +100,10 @@ bool KBestAssigner::solve(Part& part) {
   const std::size_t nodes = static_cast<std::size_t>(table.rows) + table.columns + 1;
   part.choices = choices_.size();
   part.prices = prices_.size();
-  choices_.resize(choices_.size() + table.rows, nobody);
+  choices_.resize(choices_.size() + table.rows, kNoIndex);
   prices_.resize(prices_.size() + nodes, 0);
   part.solved = true;
-  if (part.from == nobody) {
+  if (part.from == kNoIndex) {
     solve_whole(part);
     return true;
   }
@@ -116,8 +116,8 @@ bool KBestAssigner::solve(Part& part) {
   ban(part, 1);
   const int row = free_rows_[part.free];
   const int choice = choices_[part.choices + row];
-  const int left = choice == nobody ? table.rows + table.columns : table.rows + arcs_[choice].column;
-  if (choice != nobody) owner_[arcs_[choice].column] = nobody;
+  const int left = choice == kNoIndex ? table.rows + table.columns : table.rows + arcs_[choice].column;
+  if (choice != kNoIndex) owner_[arcs_[choice].column] = kNoIndex;
   const bool found = reroute(part, row, left);
   ban(part, 0);
   if (found) settle_gain(part);
@@ -145,13 +145,13 @@ void KBestAssigner::solve_whole(Part& part) {
   settle_gain(part);
 }
 
-/// Sums in the order of rows, so that rounding does not depend on the way an answer was found.
+/// Sums in the order of rows, so that rounding does not depend on how an answer was found.
 void KBestAssigner::settle_gain(Part& part) const {
   const Table& table = tables_[part.problem];
   part.gain = table.gain;
   for (int row = 0; row < table.rows; ++row) {
     const int choice = choices_[part.choices + row];
-    if (choice != nobody) part.gain -= arcs_[choice].cost;
+    if (choice != kNoIndex) part.gain -= arcs_[choice].cost;
   }
 }
 
@@ -161,7 +161,7 @@ void KBestAssigner::give_answer(const Part& part) {
   answer_at_.push_back(answer_columns_.size());
   for (int row = 0; row < table.rows; ++row) {
     const int choice = choices_[part.choices + row];
-    answer_columns_.push_back(choice == nobody ? nobody : arcs_[choice].column);
+    answer_columns_.push_back(choice == kNoIndex ? kNoIndex : arcs_[choice].column);
   }
 }
 
@@ -204,7 +204,7 @@ double KBestAssigner::least_loss(const Part& part, int row) const {
     if (arc == choice || arc_banned_[arc] || !column_open_[column]) continue;
     least = std::min(least, arcs_[arc].cost + price[row] - price[table.rows + column]);
   }
-  if (choice != nobody && !nobody_banned_[row]) least = std::min(least, price[row] - price[table.rows + table.columns]);
+  if (choice != kNoIndex && !none_banned_[row]) least = std::min(least, price[row] - price[table.rows + table.columns]);
   return std::max(0.0, least);
 }
 
@@ -212,22 +212,22 @@ double KBestAssigner::least_loss(const Part& part, int row) const {
 void KBestAssigner::open(const Part& part) {
   const Table& table = tables_[part.problem];
   row_free_.assign(table.rows, 0);
-  nobody_banned_.assign(table.rows, 0);
+  none_banned_.assign(table.rows, 0);
   column_open_.assign(table.columns, 1);
-  owner_.assign(table.columns, nobody);
+  owner_.assign(table.columns, kNoIndex);
   for (int i = 0; i < part.free_count; ++i) row_free_[free_rows_[part.free + i]] = 1;
   for (int row = 0; row < table.rows; ++row) {
     const int choice = choices_[part.choices + row];
-    if (choice == nobody) continue;
+    if (choice == kNoIndex) continue;
     owner_[arcs_[choice].column] = row;
     if (!row_free_[row]) column_open_[arcs_[choice].column] = 0;
   }
 }
 
 void KBestAssigner::ban(const Part& part, char value) {
-  for (int i = part.banned; i != nobody; i = bans_[i].next) {
-    if (bans_[i].choice == nobody) {
-      nobody_banned_[bans_[i].row] = value;
+  for (int i = part.banned; i != kNoIndex; i = bans_[i].next) {
+    if (bans_[i].choice == kNoIndex) {
+      none_banned_[bans_[i].row] = value;
     } else {
       arc_banned_[bans_[i].choice] = value;
     }
@@ -241,8 +241,8 @@ bool KBestAssigner::reroute(const Part& part, int from, int to) {
   const int sink = table.rows + table.columns;
   distance_.assign(sink + 1, infinity);
   settled_.assign(sink + 1, 0);
-  by_.assign(sink + 1, nobody);
-  by_arc_.assign(sink + 1, nobody);
+  by_.assign(sink + 1, kNoIndex);
+  by_arc_.assign(sink + 1, kNoIndex);
   reached_.assign(1, {0, from});
   distance_[from] = 0;
   while (!reached_.empty() && !settled_[to]) {
@@ -256,7 +256,7 @@ bool KBestAssigner::reroute(const Part& part, int from, int to) {
       leave_row(part, node, node == from);
     } else if (node < sink) {
       const int owner = owner_[node - table.rows];
-      reach(owner != nobody ? owner : sink, node, nobody, owner != nobody ? 0 : price(part, node) - price(part, sink));
+      reach(owner != kNoIndex ? owner : sink, node, kNoIndex, owner != kNoIndex ? 0 : price(part, node) - price(part, sink));
     } else {
       leave_sink(part, to);
     }
@@ -289,7 +289,7 @@ void KBestAssigner::leave_row(const Part& part, int row, bool anew) {
     reach(node, row, arc, arcs_[arc].cost + price(part, row) - price(part, node));
   }
   const int sink = table.rows + table.columns;
-  if ((choice != nobody || anew) && !nobody_banned_[row]) reach(sink, row, nobody, price(part, row) - price(part, sink));
+  if ((choice != kNoIndex || anew) && !none_banned_[row]) reach(sink, row, kNoIndex, price(part, row) - price(part, sink));
 }
 
 /// From the sink flow is taken back: from a row that has nothing, or from a column that is taken. `left` is a column that was taken
@@ -298,12 +298,12 @@ void KBestAssigner::leave_sink(const Part& part, int left) {
   const Table& table = tables_[part.problem];
   const int sink = table.rows + table.columns;
   for (int row = 0; row < table.rows; ++row) {
-    if (row_free_[row] && choices_[part.choices + row] == nobody) reach(row, sink, nobody, 0);
+    if (row_free_[row] && choices_[part.choices + row] == kNoIndex) reach(row, sink, kNoIndex, 0);
   }
   for (int column = 0; column < table.columns; ++column) {
     const int node = table.rows + column;
-    const bool taken = owner_[column] != nobody || node == left;
-    if (column_open_[column] && taken) reach(node, sink, nobody, price(part, sink) - price(part, node));
+    const bool taken = owner_[column] != kNoIndex || node == left;
+    if (column_open_[column] && taken) reach(node, sink, kNoIndex, price(part, sink) - price(part, node));
   }
 }
 
@@ -312,13 +312,13 @@ void KBestAssigner::follow_path(const Part& part, int from, int to) {
   int* choices = choices_.data() + part.choices;
   for (int node = to; node != from; node = by_[node]) {
     const int row = by_[node];
-    if (row < table.rows && choices[row] != nobody) owner_[arcs_[choices[row]].column] = nobody;
+    if (row < table.rows && choices[row] != kNoIndex) owner_[arcs_[choices[row]].column] = kNoIndex;
   }
   for (int node = to; node != from; node = by_[node]) {
     const int row = by_[node];
     if (row >= table.rows) continue;
     choices[row] = by_arc_[node];
-    if (choices[row] != nobody) owner_[arcs_[choices[row]].column] = row;
+    if (choices[row] != kNoIndex) owner_[arcs_[choices[row]].column] = row;
   }
 }
 

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
+#include "marey/assign/no_index.h"
 
 namespace marey::assign {
 
@@ -35,12 +36,10 @@ struct AssignmentProblem {
 
 class KBestAssigner {
  public:
-  static constexpr int nobody = -1;
-
   struct Answer {
     int problem = 0;                     ///< index into the problems given
     double gain = 0;                     ///< the problem's plus those of the pairs
-    std::span<const int> column_of_row;  ///< or `nobody`
+    std::span<const int> column_of_row;  ///< or `kNoIndex`
   };
 
   /// The `most` best answers to all problems together, the best first, leaving out those whose gain is less than the best's by
@@ -65,19 +64,19 @@ class KBestAssigner {
     int problem = 0;
     double gain = 0;  ///< of its best answer, or no less
     bool solved = false;
-    int from = nobody;     ///< the part it was split from; nobody: the whole problem
-    int banned = nobody;   ///< into bans_: the choices that are forbidden, the last of them that of the first free row
-    std::size_t free = 0;  ///< into free_rows_: the rows that are not settled
+    int from = kNoIndex;    ///< the part it was split from; kNoIndex: the whole problem
+    int banned = kNoIndex;  ///< into bans_: the choices that are forbidden, the last of them that of the first free row
+    std::size_t free = 0;   ///< into free_rows_: the rows that are not settled
     int free_count = 0;
-    std::size_t choices = 0;  ///< into choices_: for every row an arc, or nobody
+    std::size_t choices = 0;  ///< into choices_: for every row an arc, or kNoIndex
     std::size_t prices = 0;   ///< into prices_: for every row, every column and the sink
     int age = 0;              ///< of its place in the queue
   };
   /// A link in a chain of choices that are forbidden.
   struct Ban {
     int row = 0;
-    int choice = nobody;
-    int next = nobody;
+    int choice = kNoIndex;
+    int next = kNoIndex;
   };
 
   void clear();
@@ -114,8 +113,8 @@ class KBestAssigner {
   std::vector<std::size_t> answer_at_;
   std::vector<std::pair<double, int>> order_;  // of a part's free rows
   // The network of the part at hand. Nodes are its rows, its columns and the sink, in this order.
-  std::vector<char> row_free_, nobody_banned_, arc_banned_, column_open_;
-  std::vector<int> owner_;  // the row that has the column, or nobody
+  std::vector<char> row_free_, none_banned_, arc_banned_, column_open_;
+  std::vector<int> owner_;  // the row that has the column, or kNoIndex
   std::vector<double> distance_;
   std::vector<char> settled_;
   std::vector<int> by_, by_arc_;                 // the node, and the arc of a row, that each was reached by

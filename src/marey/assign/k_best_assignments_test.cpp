@@ -22,7 +22,7 @@ void try_all(int problem, const AssignmentProblem& given, std::vector<int>& colu
     found.push_back({problem, gain, columns});
     return;
   }
-  columns.push_back(KBestAssigner::nobody);
+  columns.push_back(kNoIndex);
   try_all(problem, given, columns, gain, found);
   for (const GatedPair& pair : given.pairs) {
     if (pair.row != row || std::find(columns.begin(), columns.end(), pair.column) != columns.end()) continue;

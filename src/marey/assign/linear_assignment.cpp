@@ -9,7 +9,7 @@ namespace marey::assign {
 
 std::span<const int> LinearAssigner::assign(int rows, int columns, std::span<const double> costs) {
   assert(costs.size() == static_cast<std::size_t>(rows) * columns && "one cost for each pair");
-  result_.assign(rows, nobody);
+  result_.assign(rows, kNoIndex);
   if (rows <= columns) {
     solve(rows, columns, costs.data());
     std::copy_n(column_of_row_.begin(), rows, result_.begin());
@@ -29,9 +29,9 @@ std::span<const int> LinearAssigner::assign(int rows, int columns, std::span<con
 void LinearAssigner::solve(int rows, int columns, const double* costs) {
   row_price_.assign(rows, 0);
   column_price_.assign(columns, 0);
-  column_of_row_.assign(rows, nobody);
-  row_of_column_.assign(columns, nobody);
-  from_row_.assign(columns, nobody);
+  column_of_row_.assign(rows, kNoIndex);
+  row_of_column_.assign(columns, kNoIndex);
+  from_row_.assign(columns, kNoIndex);
   for (int row = 0; row < rows; ++row) {
     int column = find_path(row, columns, costs);
     row_price_[row] += path_cost_;
@@ -41,7 +41,7 @@ void LinearAssigner::solve(int rows, int columns, const double* costs) {
     for (int other = 0; other < columns; ++other) {
       if (column_seen_[other]) column_price_[other] -= path_cost_ - shortest_[other];
     }
-    for (int owner = nobody; owner != row;) {
+    for (int owner = kNoIndex; owner != row;) {
       owner = from_row_[column];
       row_of_column_[column] = owner;
       std::swap(column_of_row_[owner], column);
@@ -63,7 +63,7 @@ int LinearAssigner::find_path(int row, int columns, const double* costs) {
     row_seen_[row] = 1;
     const double* row_costs = costs + static_cast<std::size_t>(row) * columns;
     double lowest = infinity;
-    int best = nobody;
+    int best = kNoIndex;
     for (int i = 0; i < static_cast<int>(remaining_.size()); ++i) {
       const int column = remaining_[i];
       const double reached = path_cost_ + row_costs[column] - row_price_[row] - column_price_[column];
@@ -71,8 +71,8 @@ int LinearAssigner::find_path(int row, int columns, const double* costs) {
         from_row_[column] = row;
         shortest_[column] = reached;
       }
-      const bool wins_draw = shortest_[column] == lowest && row_of_column_[column] == nobody;
-      if (best == nobody || shortest_[column] < lowest || wins_draw) {
+      const bool wins_draw = shortest_[column] == lowest && row_of_column_[column] == kNoIndex;
+      if (best == kNoIndex || shortest_[column] < lowest || wins_draw) {
         lowest = shortest_[column];
         best = i;
       }
@@ -80,7 +80,7 @@ int LinearAssigner::find_path(int row, int columns, const double* costs) {
     path_cost_ = lowest;
     const int column = remaining_[best];
     column_seen_[column] = 1;
-    if (row_of_column_[column] == nobody) return column;
+    if (row_of_column_[column] == kNoIndex) return column;
     row = row_of_column_[column];
     remaining_[best] = remaining_.back();
     remaining_.pop_back();

@@ -12,13 +12,13 @@
 #include <span>
 #include <vector>
 
+#include "marey/assign/no_index.h"
+
 namespace marey::assign {
 
 class LinearAssigner {
  public:
-  static constexpr int nobody = -1;
-
-  /// For every row its column, or `nobody` where there are more rows than columns; valid until the next call. `costs` is
+  /// For every row its column, or `kNoIndex` where there are more rows than columns; valid until the next call. `costs` is
   /// row-major, rows × columns, all finite. Allocates only where a problem is larger than all before.
   std::span<const int> assign(int rows, int columns, std::span<const double> costs);
 

@@ -38,7 +38,7 @@ TEST(LinearAssignment, AsCheapAsTryingAll) {
     double total = 0;
     std::vector<int> taken;
     for (int row = 0; row < rows; ++row) {
-      if (columns_of[row] == LinearAssigner::nobody) continue;
+      if (columns_of[row] == kNoIndex) continue;
       total += costs[row * columns + columns_of[row]];
       taken.push_back(columns_of[row]);
     }
@@ -55,14 +55,14 @@ TEST(LinearAssignment, DrawsAreSettledByIndex) {
   const auto flat = assigner.assign(3, 4, equal);
   EXPECT_EQ(std::vector<int>(flat.begin(), flat.end()), (std::vector<int>{0, 1, 2}));
   const auto tall = assigner.assign(4, 3, equal);
-  EXPECT_EQ(std::vector<int>(tall.begin(), tall.end()), (std::vector<int>{0, 1, 2, LinearAssigner::nobody}));
+  EXPECT_EQ(std::vector<int>(tall.begin(), tall.end()), (std::vector<int>{0, 1, 2, kNoIndex}));
 }
 
 TEST(LinearAssignment, NothingToAssign) {
   LinearAssigner assigner;
   EXPECT_TRUE(assigner.assign(0, 3, {}).empty());
   const auto lonely = assigner.assign(2, 0, {});
-  EXPECT_EQ(std::vector<int>(lonely.begin(), lonely.end()), std::vector<int>(2, LinearAssigner::nobody));
+  EXPECT_EQ(std::vector<int>(lonely.begin(), lonely.end()), std::vector<int>(2, kNoIndex));
 }
 
 }  // namespace

@@ -8,19 +8,18 @@
 namespace marey::assign {
 namespace {
 
-constexpr int nobody = GatedAssigner::nobody;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 class Solver {
  public:
   Solver(int rows, int columns, std::span<const GatedPair> pairs)
       : first_(static_cast<std::size_t>(rows) + 1, 0),
-        column_of_row_(static_cast<std::size_t>(rows), nobody),
-        row_of_column_(static_cast<std::size_t>(columns), nobody),
+        column_of_row_(static_cast<std::size_t>(rows), kNoIndex),
+        row_of_column_(static_cast<std::size_t>(columns), kNoIndex),
         row_price_(static_cast<std::size_t>(rows), 0),
         column_price_(static_cast<std::size_t>(columns), 0),
         distance_(static_cast<std::size_t>(columns), infinite),
-        from_(static_cast<std::size_t>(columns), nobody),
+        from_(static_cast<std::size_t>(columns), kNoIndex),
         done_(static_cast<std::size_t>(columns), 0) {
     for (const GatedPair& pair : pairs) {
       if (pair.gain > 0) edges_.push_back(pair);
@@ -47,23 +46,23 @@ class Solver {
     row_price_[root] = 0;
     relax(root, 0);
     double best = 0;  // the root stays alone
-    int end_row = root, end_column = nobody;
+    int end_row = root, end_column = kNoIndex;
     while (!queue_.empty() && queue_.top().first < best) {
       const auto [distance, column] = queue_.top();
       queue_.pop();
       if (done_[column] || distance > distance_[column]) continue;
       done_[column] = 1;
       const int row = row_of_column_[column];
-      if (row == nobody) {
+      if (row == kNoIndex) {
         best = distance;
         end_column = column;
-        end_row = nobody;
+        end_row = kNoIndex;
         break;
       }
       if (distance - row_price_[row] < best) {
         best = distance - row_price_[row];
         end_row = row;
-        end_column = nobody;
+        end_column = kNoIndex;
       }
       relax(row, distance);
     }
@@ -93,7 +92,7 @@ class Solver {
       if (!done_[column] || distance_[column] >= best) continue;
       const double change = best - distance_[column];
       column_price_[column] -= change;
-      if (row_of_column_[column] != nobody) row_price_[row_of_column_[column]] += change;
+      if (row_of_column_[column] != kNoIndex) row_price_[row_of_column_[column]] += change;
     }
   }
 
@@ -101,9 +100,9 @@ class Solver {
   void flip(int root, int end_row, int end_column) {
     if (end_row == root) return;
     int column = end_column;
-    if (end_row != nobody) {
+    if (end_row != kNoIndex) {
       column = column_of_row_[end_row];
-      column_of_row_[end_row] = nobody;
+      column_of_row_[end_row] = kNoIndex;
     }
     for (;;) {
       const int row = from_[column];

@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
+#include "marey/assign/no_index.h"
 
 namespace marey::assign {
 
-/// For every row its column, or GatedAssigner::nobody; the sum of gains is the greatest there is. Rows lie in [0, rows), columns in
+/// For every row its column, or kNoIndex; the sum of gains is the greatest there is. Rows lie in [0, rows), columns in
 /// [0, columns), gains are finite; pairs with gain ≤ 0 are never chosen; each pair occurs once.
 std::vector<int> sparse_assignment(int rows, int columns, std::span<const GatedPair> pairs);
 

@@ -24,7 +24,7 @@ double worth(std::span<const int> columns, const std::vector<GatedPair>& pairs) 
   double sum = 0;
   std::set<int> used;
   for (int row = 0; row < static_cast<int>(columns.size()); ++row) {
-    if (columns[row] == GatedAssigner::nobody) continue;
+    if (columns[row] == kNoIndex) continue;
     EXPECT_TRUE(used.insert(columns[row]).second) << "column " << columns[row] << " is given twice";
     bool found = false;
     for (const GatedPair& pair : pairs) {

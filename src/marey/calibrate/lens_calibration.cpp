@@ -28,7 +28,8 @@ bundle::LensFreedom freedom_of(const LensOptions& options, int step) {
   if (step < 2) return freedom;
   freedom.principal = bundle::LensFreedom::free;
   freedom.aspect = options.square_pixels ? 0 : bundle::LensFreedom::free;
-  const int count = options.model == geometry::TsaiLens::name ? 1 : options.coefficients;
+  const auto model = geometry::lens_named(options.model);
+  const int count = model ? std::min(options.coefficients, geometry::coefficients_of(*model)) : options.coefficients;
   for (std::size_t i = 0; i < freedom.distortion.size(); ++i)
     freedom.distortion[i] = static_cast<int>(i) < count ? bundle::LensFreedom::free : 0;
   return freedom;
@@ -205,7 +206,8 @@ void warn(LensCalibration& result, double spread, int used) {
 }  // namespace
 
 std::vector<std::string> lens_models() {
-  return {std::string(geometry::BrownLens::name), std::string(geometry::FisheyeLens::name), std::string(geometry::TsaiLens::name)};
+  const auto names = geometry::lens_names();
+  return {names.begin(), names.end()};
 }
 
 LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/ranges.h>
+
 #include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
 
@@ -30,10 +32,15 @@ std::optional<double> misfit(const board::Board& board, std::span<const LensView
 }  // namespace
 
 geometry::Lens plain_lens(const std::string& model, double focal, const Vector<2>& principal) {
-  if (model == geometry::BrownLens::name) return geometry::BrownLens{{focal, focal}, principal, {}};
-  if (model == geometry::FisheyeLens::name) return geometry::FisheyeLens{{focal, focal}, principal, {}};
-  if (model == geometry::TsaiLens::name) return geometry::TsaiLens{{focal, focal}, principal, {}};
-  throw Error("lens model \"{}\" is not known; take brown, fisheye or tsai", model);
+  auto lens = geometry::lens_named(model);
+  if (!lens) throw Error("lens model \"{}\" is not known; choose one of {}", model, fmt::join(geometry::lens_names(), ", "));
+  std::visit(
+      [&](auto& one) {
+        one.focal = {focal, focal};
+        one.principal = principal;
+      },
+      *lens);
+  return *lens;
 }
 
 std::optional<geometry::Lens> first_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,

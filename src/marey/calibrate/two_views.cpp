@@ -5,8 +5,10 @@
 #include <numeric>
 #include <random>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate {
 namespace {
@@ -26,15 +28,15 @@ std::size_t draw(std::mt19937_64& engine, std::size_t end) {
 Matrix<3> whitening(std::span<const Match> matches, Ray Match::* side) {
   Matrix<3> moments = Matrix<3>::Zero();
   for (const Match& match : matches) moments += (match.*side) * (match.*side).transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix<3>> eigen(moments / static_cast<double>(matches.size()));
-  const Vector<3> scale = eigen.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  return eigen.eigenvectors() * scale.asDiagonal() * eigen.eigenvectors().transpose();
+  const geometry::Eigenpairs<3> eigen = geometry::eigenpairs<3>(moments / static_cast<double>(matches.size()));
+  const Vector<3> scale = eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  return eigen.vectors * scale.asDiagonal() * eigen.vectors.transpose();
 }
 
 /// The 3 × 3 matrix whose rows of constraints are the given ones in the least-squares sense: smallest singular vector.
 Matrix<3> null_matrix(const Eigen::Matrix<double, 9, 9>& normal) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(normal);
-  const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
+  const geometry::Eigenpairs<9> eigen = geometry::eigenpairs<9>(normal);
+  const Eigen::Matrix<double, 9, 1> v = eigen.vectors.col(0);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data());
 }
 
@@ -49,8 +51,8 @@ Matrix<3> essential_of(std::span<const Match> matches) {
     normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
   }
   const Matrix<3> E = B.transpose() * null_matrix(normal.selfadjointView<Eigen::Lower>()) * A;
-  const Eigen::JacobiSVD<Matrix<3>> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * Vector<3>(1, 1, 0).asDiagonal() * svd.matrixV().transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(E);
+  return svd.U * Vector<3>(1, 1, 0).asDiagonal() * svd.V.transpose();
 }
 
 /// b ~ H a for all matches.
@@ -71,9 +73,9 @@ Matrix<3> homography_of(std::span<const Match> matches) {
 Matrix<3> rotation_of(std::span<const Match> matches) {
   Matrix<3> moments = Matrix<3>::Zero();
   for (const Match& match : matches) moments += match.b * match.a.transpose();
-  const Eigen::JacobiSVD<Matrix<3>> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(moments);
+  const double sign = (svd.U * svd.V.transpose()).determinant();
+  return svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose();
 }
 
 constexpr double kGate = 3;  // standard deviations within which a match is one
@@ -233,14 +235,14 @@ Vector<2> depths(const Rigid3& b_from_a, const Match& match) {
 }
 
 Rigid3 pose_of(const Matrix<3>& E, std::span<const Match> matches) {
-  const Eigen::JacobiSVD<Matrix<3>> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const geometry::SingularValues3 svd = geometry::singular_values(E);
   Matrix<3> W;
   W << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   Rigid3 best;
   int most = -1;
   for (const Matrix<3>& turn : {W, Matrix<3>(W.transpose())}) {
     for (const double sign : {1.0, -1.0}) {
-      Rigid3 pose{svd.matrixU() * turn * svd.matrixV().transpose(), sign * svd.matrixU().col(2)};
+      Rigid3 pose{svd.U * turn * svd.V.transpose(), sign * svd.U.col(2)};
       if (pose.rotation.determinant() < 0) pose.rotation = -pose.rotation;
       int ahead = 0;
       for (const Match& match : matches) ahead += (depths(pose, match).array() > 0).all() ? 1 : 0;

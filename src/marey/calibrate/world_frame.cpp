@@ -2,8 +2,11 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
+
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate {
 namespace {
@@ -23,9 +26,9 @@ std::size_t index_of(const Rig& rig, const std::string& name) {
 }
 
 Matrix<3> nearest_rotation(const Matrix<3>& m) {
-  const Eigen::JacobiSVD<Matrix<3>> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(m);
+  const double sign = (svd.U * svd.V.transpose()).determinant();
+  return svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose();
 }
 
 /// Onto the poses that were given: rotations averaged, centres matched; scale by the centres' spread where it is not known.

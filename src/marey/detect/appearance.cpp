@@ -48,7 +48,7 @@ std::array<float, 3> lab_of(float luma, float cb, float cr, Picture::Range range
   return lab_from_srgb(y + 1.402F * v, y - 0.344136F * u - 0.714136F * v, y + 1.772F * u);
 }
 
-/// The four pixels of a chroma sample: their mean luma, and whether half of them are somebody's.
+/// The four pixels of a chroma sample: their mean luma, and whether half of them are a person's.
 struct Quad {
   float luma = 0;
   bool seen = false;

@@ -1,4 +1,4 @@
-// What a person wears, at a glance: the colour of the shirt.
+// A person's appearance: the colour of the shirt.
 //
 // Of the person's box the rows between a fifth and a half of the way down are looked at: chest and belly, between the head and the
 // shorts. Of those the pixels in the middle, and of those the ones that the background model says are not the scene. The median of
@@ -18,9 +18,9 @@
 
 namespace marey::detect {
 
-/// The colour of the upper body of whom detections[which] shows. Where others share the region, what lies in the box of somebody
-/// who stands nearer is not looked at, and the rest is believed less. Nothing where the picture is grey, no foreground is told, the
-/// head is outside the picture, or too few pixels are seen.
+/// The colour of the upper body of the person that detections[which] shows. Where others share the region, what lies in the box of
+/// a person who stands nearer is left out, and the rest is believed less. Nothing where the picture is grey, no foreground is
+/// given, the head is outside the picture, or too few pixels are seen.
 std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 

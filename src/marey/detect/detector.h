@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -7,12 +9,27 @@
 #include "marey/core/detection.h"
 #include "marey/core/foreground.h"
 #include "marey/core/frame.h"
+#include "marey/core/geometry.h"
 
 namespace marey::detect {
 
 struct Detections {
   std::vector<Detection> detections;
   Foreground foreground;  ///< empty where the detector has no background model
+};
+
+/// What a detector's results mean: a value, so that our own silhouettes, a network's boxes and another program's stand side by
+/// side.
+struct DetectorTraits {
+  double toe_m = 0;              ///< a box ends this far before the middle of the feet, on the ground, seen along the view
+  bool has_foreground = false;   ///< whether `Detections::foreground` is filled
+  bool knows_body_size = false;  ///< whether `body_at` answers, if not from the first frame on
+};
+
+/// What was seen and not reported, or reported with doubt, since the beginning; nothing where a detector does not count it.
+struct DetectionCounts {
+  std::optional<std::int64_t> noise;    ///< regions too small to be what is searched for, or a part of it
+  std::optional<std::int64_t> misfits;  ///< regions that what is searched for does not explain
 };
 
 /// Finds things in frames.
@@ -29,6 +46,15 @@ class Detector {
 
   /// What a user should know of what was seen so far, one sentence each.
   virtual std::vector<std::string> warnings() const { return {}; }
+
+  /// The same for its whole life.
+  virtual DetectorTraits traits() const { return {}; }
+
+  /// For the summary of a run.
+  virtual DetectionCounts detection_counts() const { return {}; }
+
+  /// The box, px, of a person whose feet are at this pixel; nothing where that is not known.
+  virtual std::optional<Box> body_at(const Vector<2>& /*foot*/) const { return std::nullopt; }
 };
 
 }  // namespace marey::detect

@@ -45,15 +45,13 @@ void append_runs(const std::uint8_t* pixels, int row, int width, std::vector<Pix
   }
 }
 
-/// Joins every two runs of neighbouring rows that overlap when one is widened by `reach` columns: 0 joins by edges, 1 by corners
-/// too.
-void join_neighbours(std::span<const PixelRun> runs, int reach, Forest& forest) {
+void join_neighbours(std::span<const PixelRun> runs, int reach, assign::DisjointSets& sets) {
   std::size_t above = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const PixelRun& run = runs[i];
     while (runs[above].row < run.row - 1 || (runs[above].row == run.row - 1 && runs[above].end + reach <= run.begin)) ++above;
     for (std::size_t j = above; runs[j].row == run.row - 1 && runs[j].begin < run.end + reach; ++j) {
-      forest.join(static_cast<int>(j), static_cast<int>(i));
+      sets.join(static_cast<int>(j), static_cast<int>(i));
     }
   }
 }

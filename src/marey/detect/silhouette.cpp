@@ -43,17 +43,17 @@ std::vector<PixelRun> gaps_between(std::span<const PixelRun> runs, cv::Size size
 
 std::vector<PixelRun> holes_between(std::span<const PixelRun> runs, cv::Size size, double max_hole) {
   const std::vector<PixelRun> gaps = gaps_between(runs, size);
-  Forest forest(gaps.size());
-  join_neighbours(gaps, 0, forest);
+  assign::DisjointSets sets(gaps.size());
+  join_neighbours(gaps, 0, sets);
   std::vector<double> area(gaps.size(), 0);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const PixelRun& gap = gaps[i];
     const bool at_border = gap.row == 0 || gap.row == size.height - 1 || gap.begin == 0 || gap.end == size.width;
-    area[forest.root(static_cast<int>(i))] += at_border ? std::numeric_limits<double>::infinity() : gap.end - gap.begin;
+    area[sets.find(static_cast<int>(i))] += at_border ? std::numeric_limits<double>::infinity() : gap.end - gap.begin;
   }
   std::vector<PixelRun> holes;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
-    const double hole = area[forest.root(static_cast<int>(i))];
+    const double hole = area[sets.find(static_cast<int>(i))];
     if (hole <= max_hole && hole < std::numeric_limits<double>::infinity()) holes.push_back(gaps[i]);
   }
   return holes;
@@ -137,16 +137,16 @@ std::vector<Region> find_regions(const cv::Mat& mask, const RegionOptions& optio
   CV_Assert(mask.empty() || mask.type() == CV_8UC1);
   std::vector<PixelRun> runs = runs_of(mask);
   if (options.max_hole > 0) fill_holes(runs, mask.size(), options.max_hole);
-  Forest forest(runs.size());
-  join_neighbours(runs, 1, forest);
+  assign::DisjointSets sets(runs.size());
+  join_neighbours(runs, 1, sets);
 
   std::vector<double> area(runs.size(), 0);
-  for (std::size_t i = 0; i < runs.size(); ++i) area[forest.root(static_cast<int>(i))] += runs[i].end - runs[i].begin;
+  for (std::size_t i = 0; i < runs.size(); ++i) area[sets.find(static_cast<int>(i))] += runs[i].end - runs[i].begin;
   constexpr int kNone = -1;
   std::vector<int> part_of(runs.size(), kNone);
   std::vector<std::vector<PixelRun>> parts;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const int root = forest.root(static_cast<int>(i));
+    const int root = sets.find(static_cast<int>(i));
     if (area[root] < options.min_area) continue;
     if (part_of[root] == kNone) {
       part_of[root] = static_cast<int>(parts.size());
@@ -161,14 +161,14 @@ std::vector<Region> find_regions(const cv::Mat& mask, const RegionOptions& optio
 }
 
 std::vector<PixelRun> largest_part(std::span<const PixelRun> runs) {
-  Forest forest(runs.size());
-  join_neighbours(runs, 1, forest);
+  assign::DisjointSets sets(runs.size());
+  join_neighbours(runs, 1, sets);
   std::vector<int> area(runs.size(), 0);
-  for (std::size_t i = 0; i < runs.size(); ++i) area[forest.root(static_cast<int>(i))] += runs[i].end - runs[i].begin;
+  for (std::size_t i = 0; i < runs.size(); ++i) area[sets.find(static_cast<int>(i))] += runs[i].end - runs[i].begin;
   const auto largest = std::max_element(area.begin(), area.end()) - area.begin();
   std::vector<PixelRun> part;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (forest.root(static_cast<int>(i)) == largest) part.push_back(runs[i]);
+    if (sets.find(static_cast<int>(i)) == largest) part.push_back(runs[i]);
   }
   return part;
 }

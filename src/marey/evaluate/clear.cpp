@@ -13,7 +13,7 @@
 namespace marey::evaluate {
 
 void ClearCounter::add(const FramePairs& frame) {
-  column_of_row_.assign(frame.objects().size(), assign::LinearAssigner::nobody);
+  column_of_row_.assign(frame.objects().size(), assign::kNoIndex);
   column_matched_.assign(frame.tracks().size(), 0);
   if (frame.has_both()) {
     keep_last_matches(frame);
@@ -27,12 +27,12 @@ void ClearCounter::keep_last_matches(const FramePairs& frame) {
   for (std::size_t column = 0; column < tracks.size(); ++column) column_of_track_[tracks[column]] = static_cast<int>(column);
   for (std::size_t row = 0; row < frame.objects().size(); ++row) {
     const int track = objects_[frame.objects()[row]].track;
-    if (track == assign::LinearAssigner::nobody) continue;
+    if (track == assign::kNoIndex) continue;
     const int column = column_of_track_[track];
-    if (column == assign::LinearAssigner::nobody || column_matched_[column]) continue;
+    if (column == assign::kNoIndex || column_matched_[column]) continue;
     if (close_enough(frame.distances_of(row)[column])) match(frame, row, column);
   }
-  for (const int track : tracks) column_of_track_[track] = assign::LinearAssigner::nobody;
+  for (const int track : tracks) column_of_track_[track] = assign::kNoIndex;
 }
 
 void ClearCounter::match_the_rest(const FramePairs& frame) {
@@ -42,9 +42,7 @@ void ClearCounter::match_the_rest(const FramePairs& frame) {
   const auto assigned = assigner_.assign(rows, columns, costs_);
   for (int row = 0; row < rows; ++row) {
     const int column = assigned[row];
-    if (column == assign::LinearAssigner::nobody || column_of_row_[row] != assign::LinearAssigner::nobody ||
-        column_matched_[column])
-      continue;
+    if (column == assign::kNoIndex || column_of_row_[row] != assign::kNoIndex || column_matched_[column]) continue;
     if (close_enough(frame.distances_of(row)[column])) match(frame, row, column);
   }
 }
@@ -57,7 +55,7 @@ bool ClearCounter::fill_costs(const FramePairs& frame) {
   const std::size_t columns = frame.tracks().size();
   double largest = -1;
   for (std::size_t row = 0; row < column_of_row_.size(); ++row) {
-    if (column_of_row_[row] != assign::LinearAssigner::nobody) continue;
+    if (column_of_row_[row] != assign::kNoIndex) continue;
     const auto distances = frame.distances_of(row);
     for (std::size_t column = 0; column < columns; ++column) {
       const double distance = distances[column];
@@ -77,7 +75,7 @@ void ClearCounter::match(const FramePairs& frame, std::size_t row, std::size_t c
   column_matched_[column] = 1;
   Object& object = objects_[frame.objects()[row]];
   const int track = frame.tracks()[column];
-  if (object.track != assign::LinearAssigner::nobody && object.track != track) {
+  if (object.track != assign::kNoIndex && object.track != track) {
     ++counts_.switches;
     ++object.switches;
   }
@@ -93,7 +91,7 @@ void ClearCounter::count_unmatched(const FramePairs& frame) {
   for (std::size_t row = 0; row < column_of_row_.size(); ++row) {
     Object& object = objects_[frame.objects()[row]];
     ++object.frames;
-    if (column_of_row_[row] != assign::LinearAssigner::nobody) continue;
+    if (column_of_row_[row] != assign::kNoIndex) continue;
     object.lost = object.found > 0;
     ++counts_.misses;
   }

@@ -14,21 +14,21 @@ class ClearCounter {
  public:
   /// What lies farther than `most_distance` is no match.
   ClearCounter(int objects, int tracks, double most_distance)
-      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, assign::LinearAssigner::nobody) {}
+      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, assign::kNoIndex) {}
 
   void add(const FramePairs& frame);
   ClearScores scores() const;
 
   /// What became of one object.
   struct Object {
-    int track = assign::LinearAssigner::nobody;  ///< its last match
+    int track = assign::kNoIndex;  ///< its last match
     std::int64_t frames = 0;
     std::int64_t found = 0;
     std::int64_t switches = 0;
     bool lost = false;  ///< found before, and missed since
   };
   const std::vector<Object>& objects() const { return objects_; }
-  /// Of the frame added last: each row's column, or LinearAssigner::nobody.
+  /// Of the frame added last: each row's column, or assign::kNoIndex.
   std::span<const int> column_of_row() const { return column_of_row_; }
 
  private:

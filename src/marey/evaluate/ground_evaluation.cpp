@@ -43,7 +43,7 @@ GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<c
   const auto matched = [&](const auto& walk, const ClearCounter& clear) {
     for (std::size_t row = 0; row < walk.rows().size(); ++row) {
       const int column = clear.column_of_row()[row];
-      if (column == assign::LinearAssigner::nobody) continue;
+      if (column == assign::kNoIndex) continue;
       const PersonPlace &is = walk.rows()[row], &said = walk.columns()[static_cast<std::size_t>(column)];
       position.push_back((is.place - said.place).norm());
       if (!is.velocity || !said.velocity) continue;
@@ -59,7 +59,7 @@ GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<c
     const ClearCounter::Object& object = judged.objects[i];
     PersonFate& fate = result.people.emplace_back();
     fate.id = people.id(static_cast<int>(i));
-    if (judged.track_of_object[i] != assign::LinearAssigner::nobody) fate.track = names.id(judged.track_of_object[i]);
+    if (judged.track_of_object[i] != assign::kNoIndex) fate.track = names.id(judged.track_of_object[i]);
     fate.frames = object.frames, fate.found = object.found, fate.switches = object.switches;
     fate.agreeing = judged.agreeing[i];
   }

@@ -67,7 +67,7 @@ void HotaCounter::match(const FramePairs& frame) {
   if (!any) return;
   const auto column_of_row = assigner_.assign(static_cast<int>(frame.objects().size()), static_cast<int>(columns), costs_);
   for (std::size_t row = 0; row < column_of_row.size(); ++row) {
-    if (column_of_row[row] == assign::LinearAssigner::nobody) continue;
+    if (column_of_row[row] == assign::kNoIndex) continue;
     const double overlap = frame.similarities_of(row)[column_of_row[row]];
     const int level = levels_reached(overlap);
     if (level == 0) continue;

@@ -31,7 +31,7 @@ void judge_identities(const PairTable& pairs, Judged& judged) {
   const auto rows = static_cast<int>(std::min(sizes.objects, sizes.tracks));
   const auto columns = static_cast<int>(std::max(sizes.objects, sizes.tracks));
   const auto column_of_row = assigner.assign(rows, columns, gated);
-  judged.track_of_object.assign(static_cast<std::size_t>(sizes.objects), assign::LinearAssigner::nobody);
+  judged.track_of_object.assign(static_cast<std::size_t>(sizes.objects), assign::kNoIndex);
   judged.agreeing.assign(static_cast<std::size_t>(sizes.objects), 0);
   IdentityScores scores;
   for (const assign::GatedPair& pair : gated) {

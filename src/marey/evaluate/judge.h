@@ -15,7 +15,7 @@ namespace marey::evaluate {
 struct Judged {
   Evaluation scores;
   std::vector<ClearCounter::Object> objects;
-  std::vector<int> track_of_object;    ///< whom the identity scores give each; LinearAssigner::nobody where none
+  std::vector<int> track_of_object;    ///< whom the identity scores give each; assign::kNoIndex where none
   std::vector<std::int64_t> agreeing;  ///< in how many frames that track found the object
 };
 

@@ -1,5 +1,5 @@
-// Alpha-beta filter: the target is taken to move straight at a steady speed between two looks; the residual is shared between
-// position and velocity by two constants. The cheapest filter there is, and one without a memory of its own certainty.
+// Alpha-beta filter: the target is taken to move straight at a steady speed between two measurements; the residual is shared
+// between position and velocity by two constants. The cheapest filter there is, and one without a memory of its own certainty.
 //
 // Source: Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion Capture
 // System", eq. 1-3. Deviations: the step Δt of eq. 3 is the time since the last correction, so that frames may be missed or

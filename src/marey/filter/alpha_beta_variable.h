@@ -2,7 +2,7 @@
 
 // Alpha-beta filter with a search area that grows with the target's speed: what the conclusion of Queiroz, Gomide, de
 // Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion Capture System" proposes without
-// saying how. Here the radius is a least radius and, on top of it, a share of the way that the target is expected to go since
+// saying how. Here the radius is a least radius and, on top of it, a share of the path that the target is expected to go since
 // it was last seen: with a share of 2, a target that turns straight back between two frames is still found. Before a second
 // measurement the speed is not known and the radius is the fixed one of the original.
 
@@ -15,18 +15,18 @@ class AlphaBetaVariable;
 
 /// Lengths in px where the filter runs in the image, in m on the ground and in space.
 struct AlphaBetaVariableOptions {
-  double alpha = 1.0;         ///< share of the residual that position takes, in (0, 1]
-  double beta = 0.8;          ///< share that velocity takes, in (0, 4 − 2 alpha)
-  double first_radius = 40;   ///< before the speed is known, px or m
-  double least_radius = 15;   ///< of a target that stands still, px or m
-  double share_of_way = 2.0;  ///< of the way expected since the last measurement, added to the least radius
+  double alpha = 1.0;          ///< share of the residual that position takes, in (0, 1]
+  double beta = 0.8;           ///< share that velocity takes, in (0, 4 − 2 alpha)
+  double first_radius = 40;    ///< before the speed is known, px or m
+  double least_radius = 15;    ///< of a target that stands still, px or m
+  double share_of_path = 2.0;  ///< of the path expected since the last measurement, added to the least radius
 
   template <int D>
   using Model = AlphaBetaVariable<D>;
 
   /// The same filter where one unit of length is `factor` of the new ones.
   AlphaBetaVariableOptions scaled(double factor) const {
-    return {alpha, beta, first_radius * factor, least_radius * factor, share_of_way};
+    return {alpha, beta, first_radius * factor, least_radius * factor, share_of_path};
   }
 };
 
@@ -57,7 +57,7 @@ class AlphaBetaVariable {
 
   double search_radius() const {
     if (!speed_known_) return options_.first_radius;
-    return options_.least_radius + options_.share_of_way * since_correction_ * filter_.velocity().norm();
+    return options_.least_radius + options_.share_of_path * since_correction_ * filter_.velocity().norm();
   }
 
   /// The search area is a circle (a ball) of `search_radius()`.

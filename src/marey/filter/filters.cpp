@@ -35,7 +35,7 @@ const std::vector<NamedFilter>& named_filters() {
       {"ukf", "unscented Kalman, coordinated turn", UnscentedKalmanOptions{}},
       {"condensation", "particles with a position alone", CondensationOptions{}},
       {"condensation-velocity", "particles with position and velocity", CondensationOptions::velocity()},
-      {"imm", "interacting models: cruise, pull and turn", InteractingModelsOptions{}},
+      {"imm", "interacting models: steady, pull and turn", InteractingModelsOptions{}},
   };
   return filters;
 }

@@ -96,7 +96,7 @@ TEST(Filters, NoneKnowsTheUnitOfLength) {
 }
 
 TEST(AlphaBetaVariable, TheSearchAreaGrowsWithTheSpeedAndTheGap) {
-  AlphaBetaVariable<2> filter({.first_radius = 50, .least_radius = 10, .share_of_way = 2}, {0, 0}, kR);
+  AlphaBetaVariable<2> filter({.first_radius = 50, .least_radius = 10, .share_of_path = 2}, {0, 0}, kR);
   filter.predict(0.1);
   EXPECT_EQ(filter.search_radius(), 50);
   filter.correct({10, 0}, kR);  // β = 0.8: 80 px/s

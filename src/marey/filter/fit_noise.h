@@ -30,7 +30,7 @@ struct NoiseFit {
   double acceleration = 0;        ///< root mean square acceleration over a typical step: acceleration_noise / √step, px/s² or m/s²
   double speed = 0;               ///< root mean square speed per axis, px/s or m/s
   double log_likelihood = 0;      ///< of the innovations
-  std::size_t innovations = 0;    ///< how many positions told something
+  std::size_t innovations = 0;    ///< how many positions were informative
 };
 
 /// Nothing where the paths together have fewer than 10 positions beyond the first two of each, or nothing in them moves or errs.

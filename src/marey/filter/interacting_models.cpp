@@ -83,7 +83,7 @@ double turn_rate(const Vector<D>& velocity, const Matrix<D>& covariance, const V
 template <int D>
 InteractingModels<D>::InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R)
     : options_(options),
-      probabilities_({options.shares[kCruise], options.shares[kPull], options.shares[kTurn], 0}),
+      probabilities_({options.shares[kSteady], options.shares[kPull], options.shares[kTurn], 0}),
       position_(z),
       covariance_(R) {
   states_.fill(kinematics::at_rest<D, 3>(z, R, {options.initial_speed, options.acceleration}));
@@ -127,9 +127,9 @@ void InteractingModels<D>::predict(double dt) {
   const State& turning = states_[kTurn];
   const double rate = turn_rate<D>(turning.mean[1], turning.cov(1, 1), turning.mean[2], options_.turn_limit);
   const double jerk_density = 2 * acceleration * acceleration / options_.acceleration_time;
-  const double cruise_density = options_.cruise_noise * options_.cruise_noise;
+  const double steady_density = options_.steady_noise * options_.steady_noise;
   const double swerve_sigma = options_.swerve_speed + options_.swerve_share * speed;
-  predict_straight(states_[kCruise], dt, kinematics::constant_velocity(dt, cruise_density).Q, acceleration);
+  predict_straight(states_[kSteady], dt, kinematics::constant_velocity(dt, steady_density).Q, acceleration);
   kinematics::predict(states_[kPull], kinematics::singer(dt, acceleration, options_.acceleration_time));
   kinematics::predict(states_[kTurn], kinematics::turn(dt, rate, jerk_density));
   predict_straight(states_[kSwerve], dt, jump(dt, swerve_sigma), acceleration);
@@ -152,7 +152,7 @@ void InteractingModels<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
   if (sum > 0 && std::isfinite(sum)) {
     for (double& probability : probabilities_) probability /= sum;
   } else {  // so far from all that doubles cannot tell which is nearest
-    probabilities_ = {options_.shares[kCruise], options_.shares[kPull], options_.shares[kTurn], 0};
+    probabilities_ = {options_.shares[kSteady], options_.shares[kPull], options_.shares[kTurn], 0};
   }
   summarise();
 }

@@ -1,11 +1,11 @@
 #pragma once
 
-// Interacting multiple models: Kalman filters side by side, one for a target that cruises, one for a target that accelerates,
-// one for a target that turns, one for a target that swerves. Each measurement tells how likely each model is; before each
-// prediction the models' states are mixed by the chance that the target has changed from one to another. The estimate is their
+// Interacting multiple models: Kalman filters side by side, one for a target whose velocity is steady, one for a target that
+// accelerates, one for a target that turns, one for a target that swerves. Each measurement says how likely each model is; before
+// each prediction the models' states are mixed by the chance that the target has changed from one to another. The estimate is their
 // mean, weighted by their probabilities. Steady while the target is steady and quick when it is not, without a threshold.
 //
-//   cruise  constant velocity under small white acceleration.
+//   steady  constant velocity under small white acceleration.
 //   pull    Singer's acceleration, which fades: quadratic at first and bounded in a gap.
 //   turn    the turn in the plane of velocity and acceleration at the rate |v × a| / |v|² of the mixed state, in the plane and in
 //           space alike (Bar-Shalom, Li, Kirubarajan, section 11.7), the rate held back where the velocity is uncertain.
@@ -15,7 +15,7 @@
 // All share one state, position, velocity and acceleration, so mixing needs no translation. UnoccludedMotion and swerve know no
 // acceleration: theirs is one that begins now, of mean 0 and the variance of pull's, so that a target that starts to accelerate
 // is met with an open mind, not with the certainty that its acceleration is 0. Sizes follow the speed: a thing that moves fast
-// through the image, being near or quick, also swerves by more pixels. Of cruise, pull and turn, a target still is in the one it
+// through the image, being near or quick, also swerves by more pixels. Of steady, pull and turn, a target still is in the one it
 // was in after dt with probability exp(−dt/mode_time), and else in any by `shares`.
 //
 // Source: Blom, Bar-Shalom, "The interacting multiple model algorithm for systems with Markovian switching coefficients", IEEE
@@ -36,7 +36,7 @@ class InteractingModels;
 
 /// Lengths in px where the filter runs in the image, in m on the ground and in space.
 struct InteractingModelsOptions {
-  double cruise_noise = 20;        ///< white acceleration of the cruising model, square root of its density, px/s^1.5
+  double steady_noise = 20;        ///< white acceleration of the steady model, square root of its density, px/s^1.5
   double acceleration = 100;       ///< standard deviation of the acceleration at rest, px/s²
   double agility = 8;              ///< what is added to it for each unit of speed, 1/s
   double acceleration_time = 0.3;  ///< how long an acceleration lasts, s
@@ -44,7 +44,7 @@ struct InteractingModelsOptions {
   double swerve_rate = 1;          ///< how often the velocity jumps, 1/s
   double swerve_speed = 250;       ///< standard deviation of a jump at rest, per axis, px/s
   double swerve_share = 0.7;       ///< what is added to it for each unit of speed
-  double mode_time = 0.5;          ///< how long a target keeps to one of cruise, pull, turn, s
+  double mode_time = 0.5;          ///< how long a target keeps to one of steady, pull, turn, s
   std::array<double, 3> shares = {0.5, 0.35, 0.15};  ///< of the time spent in each of them; they add up to 1
   double initial_speed = 1000;                       ///< standard deviation per axis before anything is known, px/s
   double gate_sigmas = 4;  ///< border of the search area, in standard deviations of the innovation of each model
@@ -55,7 +55,7 @@ struct InteractingModelsOptions {
   /// The same filter where one unit of length is `factor` of the new ones.
   InteractingModelsOptions scaled(double factor) const {
     InteractingModelsOptions options = *this;
-    options.cruise_noise *= factor;
+    options.steady_noise *= factor;
     options.acceleration *= factor;
     options.swerve_speed *= factor;
     options.initial_speed *= factor;
@@ -70,7 +70,7 @@ class InteractingModels {
   static constexpr int dimension = D;
   static constexpr bool mixture = true;
   static constexpr std::size_t kModels = 4;
-  enum : std::size_t { kCruise, kPull, kTurn, kSwerve };
+  enum : std::size_t { kSteady, kPull, kTurn, kSwerve };
 
   InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R);
 
@@ -92,7 +92,7 @@ class InteractingModels {
   /// position(): cheap to ask before gate_distance.
   double search_reach(double variance) const;
 
-  /// Of cruise, pull, turn, swerve; they add up to 1.
+  /// Of steady, pull, turn, swerve; they add up to 1.
   const std::array<double, kModels>& probabilities() const { return probabilities_; }
   /// Their states, position, velocity and acceleration.
   const std::array<kinematics::State<D, 3>, kModels>& states() const { return states_; }

@@ -80,7 +80,7 @@ struct Textbook {
     const double rate =
         turn_rate<D>(x[2].template segment<D>(D), P[2].template block<D, D>(D, D), x[2].template tail<D>(), options.turn_limit);
     std::array<kinematics::Model<3>, 4> models;
-    const auto straight = kinematics::constant_velocity(dt, options.cruise_noise * options.cruise_noise);
+    const auto straight = kinematics::constant_velocity(dt, options.steady_noise * options.steady_noise);
     models[0].F.setZero();
     models[0].F.topLeftCorner<2, 2>() = straight.F;
     models[0].Q.topLeftCorner<2, 2>() = straight.Q;
@@ -163,13 +163,13 @@ InteractingModels<2> followed(Place place, double duration, const InteractingMod
 }
 
 TEST(InteractingModels, KnowsWhatTheTargetIsDoing) {
-  const auto cruising = followed([](double t) { return Vector<2>(100 * t, 50 * t); }, 1.5);
-  EXPECT_GT(cruising.probabilities()[InteractingModels<2>::kCruise], 0.6);
+  const auto steady = followed([](double t) { return Vector<2>(100 * t, 50 * t); }, 1.5);
+  EXPECT_GT(steady.probabilities()[InteractingModels<2>::kSteady], 0.6);
   const InteractingModelsOptions calm{.acceleration = 600, .agility = 1};
   const auto pulling = followed([](double t) { return Vector<2>(600 * t * t, 0); }, 1.5, calm);
-  EXPECT_LT(pulling.probabilities()[InteractingModels<2>::kCruise], 0.4);
+  EXPECT_LT(pulling.probabilities()[InteractingModels<2>::kSteady], 0.4);
   const auto turning = followed([](double t) { return Vector<2>(100 * std::cos(4 * t), 100 * std::sin(4 * t)); }, 1.5);
-  EXPECT_LT(turning.probabilities()[InteractingModels<2>::kCruise], 0.4);
+  EXPECT_LT(turning.probabilities()[InteractingModels<2>::kSteady], 0.4);
   EXPECT_NEAR(turning.velocity().norm(), 400, 20);
 }
 
@@ -184,7 +184,7 @@ TEST(InteractingModels, ACornerIsInsideTheSearchAreaAndRecognised) {
       filter.correct(zigzag(k / rate), R);
       const auto& probabilities = filter.probabilities();
       if (k == rate) {
-        EXPECT_GT(probabilities[InteractingModels<2>::kCruise], 0.6);
+        EXPECT_GT(probabilities[InteractingModels<2>::kSteady], 0.6);
       } else if (k == rate + 1) {
         EXPECT_GT(probabilities[InteractingModels<2>::kSwerve], 0.9);
       }

@@ -1,5 +1,7 @@
 #include "marey/geometry/camera.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -37,11 +39,16 @@ double widest(const Model& lens, double end) {
 
 constexpr double kWidestTangent = 20;  // 87°: nothing flat is seen further aside
 
-double widest(const Lens& lens) {
-  if (const auto* brown = std::get_if<BrownLens>(&lens)) return widest(*brown, kWidestTangent);
-  if (const auto* fisheye = std::get_if<FisheyeLens>(&lens)) return widest(*fisheye, std::numbers::pi);
-  const double k = std::get<TsaiLens>(lens).distortion[0];
-  // undistorted(d) = d (1 + κ d²) grows up to d² = -1 / 3κ.
+double widest(const BrownLens& lens) {
+  return widest(lens, kWidestTangent);
+}
+double widest(const FisheyeLens& lens) {
+  return widest(lens, std::numbers::pi);
+}
+
+/// undistorted(d) = d (1 + κ d²) grows up to d² = -1 / 3κ.
+double widest(const TsaiLens& lens) {
+  const double k = lens.distortion[0];
   return k < 0 ? std::min(kWidestTangent, 2.0 / 3.0 / std::sqrt(-3 * k)) : kWidestTangent;
 }
 
@@ -124,11 +131,12 @@ Camera::Camera(const Lens& lens, const Rigid3& camera_from_world, cv::Size size)
       camera_from_world_(camera_from_world),
       size_(size),
       centre_(camera_from_world.inverse().translation),
-      widest_(widest(lens)) {}
+      widest_(std::visit([](const auto& model) { return widest(model); }, lens)),
+      ahead_only_(ahead_only(lens)) {}
 
 bool Camera::visible(const Vector<3>& in_camera) const {
   const double aside = in_camera.head<2>().norm();
-  if (std::holds_alternative<FisheyeLens>(lens_)) {
+  if (!ahead_only_) {
     return (aside > 0 || in_camera.z() > 0) && std::atan2(aside, in_camera.z()) <= widest_;
   }
   return in_camera.z() > 0 && aside <= widest_ * in_camera.z();

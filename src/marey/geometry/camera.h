@@ -53,7 +53,8 @@ class Camera {
   Rigid3 camera_from_world_;
   cv::Size size_;
   Vector<3> centre_;
-  double widest_ = 0;  // tangent of the angle to the axis (fisheye: the angle, rad) up to which the lens model is one-to-one
+  double widest_ = 0;       // up to which the lens model is one-to-one: tangent of the angle to the axis, or that angle, rad,
+  bool ahead_only_ = true;  // where points beside and behind the camera have pixels too
 };
 
 }  // namespace marey::geometry

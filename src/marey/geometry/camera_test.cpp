@@ -167,5 +167,18 @@ TEST(Rigid, InverseAndProductAreThoseOfMotions) {
   EXPECT_LT((rotation_from(angle_axis_of(b.rotation)) - b.rotation).norm(), 1e-14);
 }
 
+TEST(Lens, EveryModelIsFoundByItsName) {
+  ASSERT_EQ(lens_names().size(), std::variant_size_v<Lens>);
+  for (const std::string_view name : lens_names()) {
+    const auto lens = lens_named(name);
+    ASSERT_TRUE(lens) << name;
+    EXPECT_EQ(name_of(*lens), name);
+    EXPECT_GT(coefficients_of(*lens), 0) << name;
+  }
+  EXPECT_FALSE(lens_named("pinhole"));
+  EXPECT_TRUE(ahead_only(BrownLens{}));
+  EXPECT_FALSE(ahead_only(FisheyeLens{}));
+}
+
 }  // namespace
 }  // namespace marey::geometry

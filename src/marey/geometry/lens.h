@@ -4,6 +4,7 @@
 //   fisheye  Kannala-Brandt: the angle to the axis is mapped by an odd polynomial, so that 90° and more are seen
 //   tsai     Tsai 1987: one coefficient that leads from the distorted place to the undistorted one
 //
+// A new model is a struct here, named in Lens, and its inverse in camera.cpp: nothing compiles until that is there.
 // Each model is one template on the scalar, so that a solver can differentiate it (ceres::Jet) and projection stays one piece of
 // code. References: Brown, "Close-range camera calibration", 1971; Kannala & Brandt, "A generic camera model", PAMI 2006; Tsai, "A
 // versatile camera calibration technique", 1987. Numbers agree with OpenCV's projectPoints and fisheye::projectPoints.
@@ -11,6 +12,8 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <variant>
 
@@ -19,10 +22,11 @@
 namespace marey::geometry {
 
 /// Every model: pixel = principal + focal · distort(point), per axis. `focal` and `principal` are in px; the coefficients have no
-/// unit.
+/// unit. `ahead_only`: only points before the camera (z > 0) have a pixel.
 struct BrownLens {
   static constexpr std::string_view name = "brown";
   static constexpr int coefficients = 8;
+  static constexpr bool ahead_only = true;
 
   Vector<2> focal = Vector<2>::Ones();
   Vector<2> principal = Vector<2>::Zero();
@@ -42,6 +46,7 @@ struct BrownLens {
 struct FisheyeLens {
   static constexpr std::string_view name = "fisheye";
   static constexpr int coefficients = 4;
+  static constexpr bool ahead_only = false;
 
   Vector<2> focal = Vector<2>::Ones();
   Vector<2> principal = Vector<2>::Zero();
@@ -65,6 +70,7 @@ struct FisheyeLens {
 struct TsaiLens {
   static constexpr std::string_view name = "tsai";
   static constexpr int coefficients = 1;
+  static constexpr bool ahead_only = true;
 
   Vector<2> focal = Vector<2>::Ones();
   Vector<2> principal = Vector<2>::Zero();
@@ -86,7 +92,16 @@ struct TsaiLens {
 
 using Lens = std::variant<BrownLens, FisheyeLens, TsaiLens>;
 
+/// The names of all models, in the order of the register.
+std::span<const std::string_view> lens_names();
+
+/// The lens of that name without distortion, focal length 1 px; nothing where there is no such model.
+std::optional<Lens> lens_named(std::string_view name);
+
 std::string_view name_of(const Lens& lens);
+/// How many numbers its distortion has.
+int coefficients_of(const Lens& lens);
+bool ahead_only(const Lens& lens);
 const Vector<2>& focal_of(const Lens& lens);
 const Vector<2>& principal_of(const Lens& lens);
 

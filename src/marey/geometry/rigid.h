@@ -23,7 +23,7 @@ inline Matrix<3> rotation_from(const Vector<3>& angle_axis) {
   return Eigen::AngleAxisd(angle, angle_axis / angle).toRotationMatrix();
 }
 
-/// The other way: Rodrigues' vector of a rotation, its length in [0, π].
+/// The inverse: Rodrigues' vector of a rotation, its length in [0, π].
 inline Vector<3> angle_axis_of(const Matrix<3>& rotation) {
   const Eigen::AngleAxisd angle_axis(rotation);
   return angle_axis.angle() * angle_axis.axis();

@@ -40,7 +40,7 @@ class SingleCamera {
     const Timestamp now = given->frame.time;
     const auto seen = camera_.observe(*given, tracker_->expected(now));
     tracker_->step(now, {&seen, 1});
-    log_.add({&seen, 1}, tracker_->claims());
+    log_.add({&seen, 1}, tracker_->matches());
     return true;
   }
 
@@ -103,7 +103,7 @@ std::string after(double offset_s, double deviation_s, const std::string& first)
 void GroundPathLog::add(std::span<const track::ground::CameraObservations> looks,
                         std::span<const track::ground::ObservationMatch> claims) {
   for (const track::ground::ObservationMatch& claim : claims) {
-    const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.look)];
+    const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.view)];
     const auto camera = static_cast<std::size_t>(number(look.camera));
     const double own = seconds(look.time) - offsets_[camera];
     if (own > kLogged_s) continue;

@@ -219,7 +219,7 @@ track::RosterTrackerOptions space_tracker_options() {
           .max_speed = 15,
           .marker_width = 0.02,
           .place_noise = 1e-4,
-          .companions = true};
+          .rigid_neighbours = true};
 }
 
 std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {

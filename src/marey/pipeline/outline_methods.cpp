@@ -61,8 +61,8 @@ class TrackedMethod final : public OutlineMethod {
       : detector_(detect::background::make_background()) {
     track::TrackerOptions tracker;
     tracker.steady_camera = true;
-    tracker.reclaim = true;  // nothing is joined afterwards
-    tracker_ = track::make_tracker<2>(tracker);
+    tracker.reidentify = true;  // nothing is joined afterwards
+    tracker_ = track::make_tracker(tracker);
     if (options) outlines_.emplace(*options);
   }
 
@@ -78,7 +78,7 @@ class TrackedMethod final : public OutlineMethod {
     std::vector<Observation<2>> observations = observations_of(seen.detections);
     if (outlines_) {
       const Stopwatch watch(seconds_);
-      const auto hints = outlines_->look(frame, seen.foreground, seen.detections);
+      const auto hints = outlines_->observe(frame, seen.foreground, seen.detections);
       observations.insert(observations.end(), hints.begin(), hints.end());
     }
     std::span<const Track<2>> tracks = tracker_->step(frame.time, observations);

@@ -44,7 +44,7 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
 track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOptions& options) {
   track::TrackerOptions tracker = options.tracker;
   tracker.steady_camera = feed.has_pictures();
-  tracker.reclaim = tracker.steady_camera && options.live;
+  tracker.reidentify = tracker.steady_camera && options.live;
   return tracker;
 }
 
@@ -74,7 +74,7 @@ class JoinedRows final : public InstantSource {
 class PeopleInPicture final : public Stage {
  public:
   PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
-      : options_(options), tracker_(track::make_tracker<2>(tracker_options(feed, options))) {
+      : options_(options), tracker_(track::make_tracker(tracker_options(feed, options))) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.rate_hz = feed.rate_hz();
@@ -132,7 +132,7 @@ class PeopleInPicture final : public Stage {
   std::span<const Track<2>> follow(const Frame& frame, const detect::Detections& seen) {
     std::vector<Observation<2>> observations = observations_of(seen.detections, frame.camera);
     if (!follower_) return tracker_->step(frame.time, observations);
-    const auto hints = follower_->look(frame, seen.foreground, seen.detections);
+    const auto hints = follower_->observe(frame, seen.foreground, seen.detections);
     observations.insert(observations.end(), hints.begin(), hints.end());
     return follower_->attach(tracker_->step(frame.time, observations), seen.detections);
   }

@@ -87,7 +87,7 @@ class GroundStage final : public PeopleOnGround {
   std::span<const Instant> step(const FrameSet& frames) override {
     const auto seen = observe(frames, tracker_->expected(frames.time));
     const auto tracks = tracker_->step(frames.time, seen);
-    paths_.add(seen, tracker_->claims());
+    paths_.add(seen, tracker_->matches());
     for (std::size_t i = 0; i < logs_.size() && wants_boxes_; ++i) {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
@@ -187,15 +187,15 @@ class GroundStage final : public PeopleOnGround {
   void record(std::span<const track::ground::GroundDecision> decisions) {
     for (const track::ground::GroundDecision& decision : decisions) {
       const KeptObservations& kept = waiting_.front();
-      recorder_.add(static_cast<std::int32_t>(kept.index), decision.now, decision.tracks, kept.cameras, decision.claims);
-      if (wants_boxes_) log_boxes(kept, decision.claims);
+      recorder_.add(static_cast<std::int32_t>(kept.index), decision.now, decision.tracks, kept.cameras, decision.matches);
+      if (wants_boxes_) log_boxes(kept, decision.matches);
       waiting_.pop_front();
     }
   }
 
   void log_boxes(const KeptObservations& kept, std::span<const ObservationMatch> matches) {
     for (const ObservationMatch& match : matches) {
-      const CameraObservations& camera = kept.cameras[static_cast<std::size_t>(match.look)];
+      const CameraObservations& camera = kept.cameras[static_cast<std::size_t>(match.view)];
       const Observation<2>& seen = camera.seen[static_cast<std::size_t>(match.observation)];
       if (!seen.box || seen.shared) continue;
       logs_[static_cast<std::size_t>(number(camera.camera))].add_box(static_cast<std::int32_t>(kept.index), match.track, *seen.box);
@@ -222,7 +222,7 @@ class GroundStage final : public PeopleOnGround {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
-    log_boxes(KeptObservations(frames.index, seen), tracker_->claims());
+    log_boxes(KeptObservations(frames.index, seen), tracker_->matches());
     for (ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;

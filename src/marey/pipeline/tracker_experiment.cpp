@@ -50,12 +50,7 @@ struct Method {
 };
 
 Method alone(std::string name, const filter::FilterOptions& options) {
-  return {std::move(name), [options] {
-            return filter::with_filter<2>(options,
-                                          []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
-                                            return std::make_unique<track::IndependentTracker<F>>(chosen);
-                                          });
-          }};
+  return {std::move(name), [options] { return std::make_unique<track::IndependentTracker>(options); }};
 }
 
 /// The paper's three, with its parameters; every other filter in their place; and Marey's own tracker.

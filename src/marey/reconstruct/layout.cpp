@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "marey/geometry/decompositions.h"
 
 namespace marey::reconstruct {
 namespace {
@@ -117,10 +119,10 @@ Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to)
   to_mean /= static_cast<double>(to.size());
   Matrix<3> moment = Matrix<3>::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) moment += (to[i] - to_mean) * (from[i] - from_mean).transpose();
-  const Eigen::JacobiSVD<Matrix<3>> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const geometry::SingularValues3 svd = geometry::singular_values(moment);
   Matrix<3> keep = Matrix<3>::Identity();
-  keep(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  const Matrix<3> rotation = svd.matrixU() * keep * svd.matrixV().transpose();
+  keep(2, 2) = (svd.U * svd.V.transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix<3> rotation = svd.U * keep * svd.V.transpose();
   return {rotation, to_mean - rotation * from_mean};
 }
 

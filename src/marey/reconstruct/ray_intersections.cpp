@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "marey/assign/no_index.h"
+
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kNobody = -1;
 constexpr double kWorstMeeting = 0.15;  // sine of the angle below which two rays may tell where, but not to a third camera
 
 }  // namespace
@@ -25,7 +26,7 @@ void RayIntersections::find(const FrameRays& frame, RayGroups& groups) {
   small_.clear();
   members_.clear();
   lonely_.clear();
-  small_of_ray_.assign(static_cast<std::size_t>(frame.size()), kNobody);
+  small_of_ray_.assign(static_cast<std::size_t>(frame.size()), assign::kNoIndex);
   for (EpipolarMatcher& matcher : matchers_) {
     pairs_.clear();
     matcher.match(frame, groups.taken(), sigmas_, pairs_);
@@ -39,7 +40,7 @@ void RayIntersections::find(const FrameRays& frame, RayGroups& groups) {
 /// Collects a ray from every camera that has one where the pair meets, and keeps the group if three and more agree.
 void RayIntersections::propose(const FrameRays& frame, const EpipolarPair& pair, const EpipolarMatcher& cameras,
                                const RayGroups& groups) {
-  if (small_of_ray_[pair.a] != kNobody && small_of_ray_[pair.a] == small_of_ray_[pair.b]) return;  // it has been proposed
+  if (small_of_ray_[pair.a] != assign::kNoIndex && small_of_ray_[pair.a] == small_of_ray_[pair.b]) return;  // it has been proposed
   extend(frame, pair, cameras, groups);
   if (list_.size() < 3) {
     lonely_.push_back(pair);
@@ -78,12 +79,12 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
     if (!pixel || !frame.camera(c).in_picture(*pixel)) continue;
     const double depth = (pair.position - frame.camera(c).centre()).norm();
     double nearest = sigmas_ * std::hypot(frame.largest_sigma(c), spread * frame.line(frame.first(c)).scale() / depth);
-    int best = kNobody;
+    int best = assign::kNoIndex;
     frame.for_each_near(c, *pixel, nearest, [&](int ray) {
       const double distance = (frame.pixel(ray) - *pixel).norm();
       if (distance < nearest && !groups.taken(ray)) nearest = distance, best = ray;
     });
-    if (best != kNobody) list_.add(frame, best);
+    if (best != assign::kNoIndex) list_.add(frame, best);
   }
 }
 

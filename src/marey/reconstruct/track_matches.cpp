@@ -5,10 +5,11 @@
 
 #include <Eigen/LU>
 
+#include "marey/assign/no_index.h"
+
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kNobody = -1;
 constexpr int kMostCandidates = 3;  // blobs for a prediction in one picture
 
 }  // namespace
@@ -18,7 +19,7 @@ void TrackMatches::claim(const FrameRays& frame, std::span<const Track<3>> expec
   const auto cameras = static_cast<std::size_t>(frame.cameras());
   missed.assign(expected.size(), std::nullopt);
   if (expected.empty()) return;
-  claimed_.assign(expected.size() * cameras, kNobody);
+  claimed_.assign(expected.size() * cameras, assign::kNoIndex);
   for (int c = 0; c < frame.cameras(); ++c) claim_in(frame, c, expected);
   for (int i = 0; i < std::ssize(expected); ++i) missed[i] = place(frame, i, expected[i], groups);
 }
@@ -59,7 +60,7 @@ void TrackMatches::claim_in(const FrameRays& frame, int camera, std::span<const 
   }
   const auto columns = assigner_.assign(static_cast<int>(expected.size()), frame.last(camera) - first, pairs_);
   for (int row = 0; row < std::ssize(expected); ++row) {
-    if (columns[row] != assign::GatedAssigner::nobody) give(row, columns[row]);
+    if (columns[row] != assign::kNoIndex) give(row, columns[row]);
   }
 }
 
@@ -68,7 +69,7 @@ std::optional<NoPoint> TrackMatches::place(const FrameRays& frame, int index, co
   list_.clear();
   for (std::size_t c = 0; c < cameras; ++c) {
     const int ray = claimed_[static_cast<std::size_t>(index) * cameras + c];
-    if (ray != kNobody && !groups.taken(ray)) list_.add(frame, ray);
+    if (ray != assign::kNoIndex && !groups.taken(ray)) list_.add(frame, ray);
   }
   Triangulation result = triangulator_(list_.lines(), expected.position);
   if (const auto* reason = std::get_if<NoPoint>(&result)) return *reason;
@@ -103,12 +104,12 @@ bool TrackMatches::complete(const FrameRays& frame, const SpacePoint& point, con
     const double sigma = frame.largest_sigma(c);
     const double spread = (at->by_world * point.covariance * at->by_world.transpose()).trace() / 2;
     double nearest = sigmas_ * std::sqrt(sigma * sigma + spread);
-    int best = kNobody;
+    int best = assign::kNoIndex;
     frame.for_each_near(c, at->pixel, nearest, [&](int ray) {
       const double distance = (frame.pixel(ray) - at->pixel).norm();
       if (distance < nearest && !groups.taken(ray)) nearest = distance, best = ray;
     });
-    if (best == kNobody) continue;
+    if (best == assign::kNoIndex) continue;
     better_.add(frame, best);
     more = true;
   }

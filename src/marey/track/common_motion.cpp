@@ -1,6 +1,6 @@
 // A turn of the camera moves near and far alike by the same number of pixels. Each pair of an expected and a seen person of the
-// same size proposes a shift; the shift under which most people find somebody wins, if it explains clearly more of them than no
-// shift does. Cost: pairs × people, bounded by looking at the largest people only.
+// same size proposes a shift; the shift under which most targets find an observation wins, if it explains clearly more of them than
+// no shift does. Cost: pairs × people, bounded by taking the largest people only.
 #include "marey/track/common_motion.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct Support {
   Vector<2> mean = Vector<2>::Zero();
 };
 
-/// How many people find somebody under `shift`, and the mean of their own shifts. Proposals are grouped by person.
+/// How many targets find an observation under `shift`, and the mean of their own shifts. Proposals are grouped by person.
 Support support_of(const Vector<2>& shift, std::span<const Proposal> proposals) {
   Support support;
   double weights = 0;

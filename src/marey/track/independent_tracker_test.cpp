@@ -2,12 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/filter/alpha_beta.h"
-
 namespace marey::track {
 namespace {
-
-using PaperTracker = IndependentTracker<filter::AlphaBeta<2>>;
 
 std::vector<Observation<2>> at(std::initializer_list<Vector<2>> places) {
   std::vector<Observation<2>> seen;
@@ -20,7 +16,7 @@ Timestamp frame(int index) {
 }
 
 TEST(IndependentTracker, EachTargetTakesTheNearestPointInItsOwnCircle) {
-  PaperTracker tracker(filter::AlphaBetaOptions{});
+  IndependentTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}, {200, 100}}));
   const auto tracks = tracker.step(frame(1), at({{205, 100}, {110, 100}, {120, 100}}));
   ASSERT_EQ(tracks.size(), 2u);
@@ -29,14 +25,14 @@ TEST(IndependentTracker, EachTargetTakesTheNearestPointInItsOwnCircle) {
 }
 
 TEST(IndependentTracker, TwoTargetsMayTakeTheSamePoint) {
-  PaperTracker tracker(filter::AlphaBetaOptions{});
+  IndependentTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}, {110, 100}}));
   const auto tracks = tracker.step(frame(1), at({{104, 100}}));
   EXPECT_EQ(tracks[0].position, tracks[1].position);
 }
 
 TEST(IndependentTracker, WithNothingInTheCircleItCoasts) {
-  PaperTracker tracker(filter::AlphaBetaOptions{});
+  IndependentTracker tracker(filter::AlphaBetaOptions{});
   tracker.step(frame(0), at({{100, 100}}));
   tracker.step(frame(1), at({{110, 100}}));
   const Vector<2> expected = tracker.expected(frame(2))[0].position;

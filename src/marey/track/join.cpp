@@ -130,13 +130,13 @@ class Joiner {
   static void merge(std::vector<Tracklet>& tracklets, std::span<const int> successors) {
     std::vector<char> follows(tracklets.size(), 0);
     for (const int successor : successors) {
-      if (successor != assign::GatedAssigner::nobody) follows[successor] = 1;
+      if (successor != assign::kNoIndex) follows[successor] = 1;
     }
     std::vector<Tracklet> joined;
     for (std::size_t first = 0; first < tracklets.size(); ++first) {
       if (follows[first]) continue;
       Tracklet whole = std::move(tracklets[first]);
-      for (int next = successors[first]; next != assign::GatedAssigner::nobody; next = successors[next]) {
+      for (int next = successors[first]; next != assign::kNoIndex; next = successors[next]) {
         whole.insert(whole.end(), tracklets[next].begin(), tracklets[next].end());
         Tracklet().swap(tracklets[next]);
       }

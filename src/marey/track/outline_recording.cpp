@@ -150,14 +150,14 @@ void OutlineRecording::add(std::int64_t frame, std::span<const Track<2>> tracks)
 
 const OutlineRecording::Frame& OutlineRecording::at(std::int64_t frame) {
   static const Frame none;
-  if (!reading_ || frame < last_asked_) {
+  if (!reading_ || (last_asked_ && frame < *last_asked_)) {
     if (std::fflush(file_.get()) != 0) append(nullptr, 1);
     std::rewind(file_.get());
     reading_ = true;
-    read_ = -1;
+    read_.reset();
   }
   last_asked_ = frame;
-  while (read_ < frame) read_frame();
+  while (!read_ || *read_ < frame) read_frame();
   return read_ == frame ? frame_ : none;
 }
 

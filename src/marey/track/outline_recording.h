@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,8 +49,8 @@ class OutlineRecording {
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::vector<float> numbers_;  // of one outline
   bool reading_ = false;
-  std::int64_t last_asked_ = -1;
-  std::int64_t read_ = -1;  // the frame in `frame_`; past the last frame, the greatest number
+  std::optional<std::int64_t> last_asked_;
+  std::optional<std::int64_t> read_;  // the frame in `frame_`; past the last frame, the greatest number
   Frame frame_;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -11,53 +10,30 @@
 
 namespace marey::track {
 
-/// Before a camera that stands still, nobody vanishes but behind something: somebody of his size who appears where he may have
-/// gone by now, and whom nobody else claims, is he. So is who was seen a moment ago, and turned so sharply that he left his gate.
-template <typename F>
+/// Re-identification before a camera that stands still, where no target vanishes but behind something: an observation of its size
+/// that appears where it may have gone by now, and that matches no other target, is it. So is one that was seen a moment ago, and
+/// turned so sharply that it left its gate.
 class Reidentification {
  public:
-  /// Gives such observations, of at least `least_score`, to confirmed targets that have none and are not hidden by another. Where
-  /// an observation is seen for a target says `place_of`; sizes that differ by more than `gate` (squared deviations) are another's.
-  template <typename PlaceOf>
-  void claim(std::span<Target<F>> targets, std::span<const Observation<2>> seen, Timestamp now, double least_score,
-             const BoxSizeOptions& sizes, double gate, PlaceOf&& place_of) {
-    claimed_.assign(seen.size(), 0);
-    for (const Target<F>& target : targets) {
-      if (target.observation >= 0) claimed_[target.observation] = 1;
-    }
-    pairs_.clear();
-    for (int row = 0; row < static_cast<int>(targets.size()); ++row) {
-      const Target<F>& target = targets[row];
-      if (!target.confirmed || target.observation >= 0 || target.hidden || !target.size) continue;
-      for (int i = 0; i < static_cast<int>(seen.size()); ++i) {
-        if (claimed_[i] || !seen[i].box || seen[i].shared || seen[i].score < least_score) continue;
-        if (target.size->distance(*seen[i].box, sizes) > gate) continue;
-        const double worth = nearness(target, place_of(seen[i], target), now);
-        if (worth > 0) pairs_.push_back({row, i, worth});
-      }
-    }
-    if (pairs_.empty()) return;
-    const auto columns = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), pairs_);
-    for (int row = 0; row < static_cast<int>(targets.size()); ++row) {
-      if (columns[row] != assign::GatedAssigner::nobody) targets[row].observation = columns[row];
-    }
-  }
+  /// What decides whether an observation may be a target that was lost.
+  struct Limits {
+    double least_score = 0;  ///< of an observation
+    BoxSizeOptions sizes;
+    double gate = 0;  ///< squared deviations by which sizes may differ, at most
+  };
+
+  /// Matches such observations with confirmed targets that have none and are not hidden by another. Filters run in coordinates
+  /// that lie `camera_shift` px beside the picture's.
+  void match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits,
+             const Vector<2>& camera_shift);
 
  private:
-  /// 0 where it is too far from where the target is expected, by its filter or by how it moved while all of it was seen.
-  static double nearness(const Target<F>& target, const Vector<2>& place, Timestamp now) {
-    const double farthest = target.unit * (within + speed * seconds(now - target.last_seen));
-    double distance = (place - target.filter.position()).norm();
-    if (const auto cruised = target.cruise.place_at(now)) distance = std::min(distance, (place - *cruised).norm());
-    return distance > farthest ? 0 : 1 + farthest - distance;
-  }
-
-  static constexpr double within = 0.3;  // sizes: this far from where it is expected,
-  static constexpr double speed = 0.5;   // sizes/s: and so much farther for each second
-
-  std::vector<char> claimed_;
+  std::vector<char> taken_;
   std::vector<assign::GatedPair> pairs_;
   assign::GatedAssigner assigner_;
 };
+
+/// Where a box puts the centre of a target, in its filter's coordinates: if need be corrected for a size that is not believed.
+Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes, const Vector<2>& camera_shift);
 
 }  // namespace marey::track

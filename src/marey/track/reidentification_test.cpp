@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kRate = 25;
 
-/// Somebody 60 px tall walks to the right at 50 px/s, unseen from frame 50 on for `hidden` frames, and comes out `aside` px farther
-/// than he would have. Returns whether he keeps his number.
-bool keeps_his_number(const TrackerOptions& options, int hidden, double aside, double size_after = 1) {
-  const auto tracker = make_tracker<2>(options);
+/// A person 60 px tall walks to the right at 50 px/s, unseen from frame 50 on for `hidden` frames, and comes out `aside` px farther
+/// than it would have. Returns whether it keeps its id.
+bool keeps_its_id(const TrackerOptions& options, int hidden, double aside, double size_after = 1) {
+  const auto tracker = make_tracker(options);
   std::optional<TrackId> before, after;
   for (int i = 0; i < 100 + hidden; ++i) {
     std::vector<Observation<2>> seen;
@@ -31,29 +31,29 @@ bool keeps_his_number(const TrackerOptions& options, int hidden, double aside, d
   return before == after;
 }
 
-TrackerOptions reclaiming() {
+TrackerOptions reidentifying() {
   TrackerOptions options;
   options.steady_camera = true;
-  options.reclaim = true;
+  options.reidentify = true;
   return options;
 }
 
-TEST(Reidentification, WhoWasHiddenForTwoSecondsKeepsHisNumber) {
+TEST(Reidentification, ATargetHiddenForTwoSecondsKeepsItsId) {
   for (const int hidden : {10, 25, 40, 50}) {
-    EXPECT_TRUE(keeps_his_number(reclaiming(), hidden, 0)) << hidden << " frames";
-    EXPECT_TRUE(keeps_his_number(reclaiming(), hidden, -12)) << hidden << " frames";
+    EXPECT_TRUE(keeps_its_id(reidentifying(), hidden, 0)) << hidden << " frames";
+    EXPECT_TRUE(keeps_its_id(reidentifying(), hidden, -12)) << hidden << " frames";
   }
 }
 
-TEST(Reidentification, SomebodyElsewhereOrOfAnotherSizeIsSomebodyElse) {
-  EXPECT_FALSE(keeps_his_number(reclaiming(), 30, 200));
-  EXPECT_FALSE(keeps_his_number(reclaiming(), 30, 0, 2.5));
+TEST(Reidentification, APersonElsewhereOrOfAnotherSizeIsAnother) {
+  EXPECT_FALSE(keeps_its_id(reidentifying(), 30, 200));
+  EXPECT_FALSE(keeps_its_id(reidentifying(), 30, 0, 2.5));
 }
 
 TEST(Reidentification, IsLeftToTheJoinWhereNotAskedFor) {
-  TrackerOptions options = reclaiming();
-  options.reclaim = false;
-  EXPECT_FALSE(keeps_his_number(options, 50, 0));
+  TrackerOptions options = reidentifying();
+  options.reidentify = false;
+  EXPECT_FALSE(keeps_its_id(options, 50, 0));
 }
 
 }  // namespace

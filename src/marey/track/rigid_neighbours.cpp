@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "marey/geometry/decompositions.h"
 
 namespace marey::track {
 namespace {
@@ -14,12 +15,12 @@ constexpr std::size_t kMostMembers = 600;  // 180,000 pairs
 constexpr std::size_t kShare = 2;          // frames in which every pair is learned from once
 constexpr int kMemory = 1000;              // samples that a mean is taken over
 constexpr int kEnough = 8;                 // samples from which a spread is believed
-constexpr int kEnoughToName = 12;          // samples from which it is told who somebody is
+constexpr int kEnoughToName = 12;          // samples from which its neighbours identify a marker
 constexpr double kOpening = 0.02;          // m, of spread that a distance may yet show, fading with the samples
 constexpr double kLeastSpread = 0.001;     // m
 constexpr double kSteady = 0.05;           // m; markers whose distance varies by more say nothing of each other
-constexpr std::size_t kFewest = 3;         // companions
-constexpr std::size_t kRanked = 14;        // companions that are asked who somebody is; those that are seen count
+constexpr std::size_t kFewest = 3;         // neighbours
+constexpr std::size_t kRanked = 14;        // neighbours that are asked whether a place is a marker's; those that are seen count
 constexpr std::size_t kAsked = 9;
 constexpr int kHardlyEver = 60;      // samples of both seen, of names that may be one marker's
 constexpr int kWellKnown = 400;      // samples of each with a third
@@ -145,8 +146,8 @@ std::optional<RigidNeighbours::Place> RigidNeighbours::place_of(int number) cons
   Vector<3> from = Vector<3>::Zero(), to = Vector<3>::Zero();
   Matrix<3> moment = Matrix<3>::Zero();
   double total = 0, spread = 0;
-  std::size_t companions = 0;
-  // Sums about the first companion's places, so that no digits are lost.
+  std::size_t neighbours = 0;
+  // Sums about the first neighbour's places, so that no digits are lost.
   Vector<3> from_origin = Vector<3>::Zero(), to_origin = Vector<3>::Zero();
   for (int i = 0; i < static_cast<int>(hidden.places.size()); ++i) {
     const Member& other = members_[static_cast<std::size_t>(i)];
@@ -155,7 +156,7 @@ std::optional<RigidNeighbours::Place> RigidNeighbours::place_of(int number) cons
     if (distance.count < kEnough) continue;
     const double variance = distance.variance + kLeastSpread * kLeastSpread + kOpening * kOpening / distance.count;
     if (variance > kSteady * kSteady) continue;
-    if (companions++ == 0) from_origin = hidden.places[static_cast<std::size_t>(i)], to_origin = other.position;
+    if (neighbours++ == 0) from_origin = hidden.places[static_cast<std::size_t>(i)], to_origin = other.position;
     const double weight = 1e-12 / (variance * variance);
     const Vector<3> p = hidden.places[static_cast<std::size_t>(i)] - from_origin, q = other.position - to_origin;
     from += weight * p;
@@ -164,14 +165,14 @@ std::optional<RigidNeighbours::Place> RigidNeighbours::place_of(int number) cons
     total += weight;
     spread += weight * variance;
   }
-  if (companions < kFewest) return std::nullopt;
+  if (neighbours < kFewest) return std::nullopt;
   from /= total;
   to /= total;
   moment -= total * to * from.transpose();
-  const Eigen::JacobiSVD<Matrix<3>> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const geometry::SingularValues3 svd = geometry::singular_values(moment);
   Matrix<3> flip = Matrix<3>::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  const Matrix<3> rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+  flip(2, 2) = (svd.U * svd.V.transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix<3> rotation = svd.U * flip * svd.V.transpose();
   const Vector<3> last = hidden.places[static_cast<std::size_t>(number)] - from_origin;
   return Place{rotation * (last - from) + to + to_origin, spread / total};
 }

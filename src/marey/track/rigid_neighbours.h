@@ -1,13 +1,13 @@
-// Where a hidden marker must be, told by the markers that move with it.
+// Where a hidden marker must be, predicted from the markers that move rigidly with it.
 //
 // Markers on one bone keep their distances, whatever the body does. The mean and the spread of the distance of every two markers
 // are learned while both are seen. When a marker vanishes, the places of all others at that moment are kept; while it is hidden,
 // the rigid motion that takes those places to where they are now, each weighted by the fourth power of how steady its distance to
 // the hidden one has been, moves the hidden one too. A marker on the same bone thus outweighs the rest of the body, which only
 // settles what its own bone leaves open. Good for as long as the bone stays seen; after seconds of coasting no motion model is.
-// The same distances tell who somebody is: a place whose distances to a marker's steadiest companions are not what they always were
-// is not that marker's. The median over the companions decides, so that one of them who is mistaken himself does no harm.
-// Cost: a share of the pairs a frame for learning, and 50 operations a companion and one 3 × 3 decomposition for each hidden
+// The same distances identify a marker: a place whose distances to a marker's steadiest neighbours are not what they always were
+// is not that marker's. The median over the neighbours decides, so that one of them that is mistaken itself does no harm.
+// Cost: a share of the pairs a frame for learning, and 50 operations a neighbour and one 3 × 3 decomposition for each hidden
 // marker. Reference: Arun, Huang, Blostein, "Least-squares fitting of two 3-D point sets", PAMI 1987.
 #pragma once
 
@@ -28,7 +28,7 @@ class RigidNeighbours {
   /// A new marker's number: 0, 1, … Nothing when there are too many for pairs to be kept.
   std::optional<int> enrol();
 
-  /// Tells where marker `number` was seen in the frame at hand. Between `begin_frame` and `end_frame`, each at most once.
+  /// Marker `number` was seen there in the frame at hand. Between `begin_frame` and `end_frame`, each at most once.
   void begin_frame();
   void see(int number, const Vector<3>& position);
   void end_frame();
@@ -37,11 +37,11 @@ class RigidNeighbours {
   /// it or of those that move with it.
   std::optional<Place> place_of(int number) const;
 
-  /// How badly a place in the frame at hand fits a marker: the median over its steadiest companions that are seen of the squared
+  /// How badly a place in the frame at hand fits a marker: the median over its steadiest neighbours that are seen of the squared
   /// change of distance, in variances; below 1 for the marker itself. Nothing where too few are seen or known well enough.
   std::optional<double> misfit(int number, const Vector<3>& place) const;
 
-  /// Whether two numbers are one marker under two names: they keep the same distances to everybody, and are hardly ever seen both.
+  /// Whether two numbers are one marker under two names: they keep the same distances to all others, and are hardly ever seen both.
   bool same(int a, int b) const;
 
   /// What was thought to be this marker is not: the places kept of it are worth nothing.
@@ -55,7 +55,7 @@ class RigidNeighbours {
   struct Member {
     Vector<3> position = Vector<3>::Zero();
     bool seen = false, was_seen = false;
-    std::vector<int> steadiest;     // its companions, the steadiest distance first
+    std::vector<int> steadiest;     // its neighbours, the steadiest distance first
     std::vector<Vector<3>> places;  // of all when it was last seen
     std::vector<char> known;        // which of them were seen then
   };

@@ -10,44 +10,42 @@
 
 #include "marey/core/ids.h"
 #include "marey/core/observation.h"
+#include "marey/filter/any_filter.h"
 #include "marey/track/roster_tracker.h"
 
 namespace marey::track {
 
 /// One point that the roster tracker follows.
-template <typename F>
+template <int D>
 struct RosterTarget {
-  static constexpr int kNone = -1;
-
   /// A newcomer is not reported; a provisional target, from the first frame, is, but has yet to prove that it is no false point.
   enum class Standing { newcomer, provisional, established };
 
   TrackId id;
   std::string label;
-  F filter;
-  double width;                             ///< of its marker
-  Vector<F::dimension> last_place;  ///< where it was last seen
-  double unseen = 0;                        ///< s, since then
-  double seen = 0;                          ///< s, in which it was
-  int observation = kNone;                  ///< in this frame
-  int covered_by = kNone;                   ///< the observation that it is taken to be behind
-  std::optional<int> member = {};           ///< its number among companions
-  double guided = 0;     ///< while it is unseen: variance of where its companions say that it is; 0 where they do not
-  int doubts = 0;        ///< frames on end in which companions said that what is followed is somebody else
-  bool crowded = false;  ///< another target is within a marker's width
+  filter::AnyFilter<D> filter;
+  double width;                         ///< of its marker
+  Vector<D> last_place;                 ///< where it was last seen
+  double unseen = 0;                    ///< s, since then
+  double seen = 0;                      ///< s, in which it was
+  std::optional<int> observation = {};  ///< in this frame
+  std::optional<int> covered_by = {};   ///< the observation that it is taken to be behind
+  std::optional<int> neighbour = {};    ///< its number among the rigid neighbours
+  double predicted_variance = 0;        ///< while it is unseen and its rigid neighbours predict it: of that prediction, else 0
+  int misfits = 0;                      ///< frames on end in which its rigid neighbours contradict its observation
+  bool crowded = false;                 ///< another target is within a marker's width
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established
 
   bool on_roster() const { return standing != Standing::newcomer; }
+  bool missed() const { return !observation && !covered_by; }
 };
 
-/// What the roster tracker makes of one point: how large it is, how sure its place, and how likely it is nobody's.
-template <typename F>
-class RosterSight {
+/// What one point is worth to the roster tracker: how large it is, how sure its place, and how likely it is clutter.
+template <int D>
+class RosterLikelihood {
  public:
-  static constexpr int D = F::dimension;
-
-  explicit RosterSight(const RosterTrackerOptions& options) : options_(options) {}
+  explicit RosterLikelihood(const RosterTrackerOptions& options) : options_(options) {}
 
   double width_of(const Observation<D>& observation) const {
     if constexpr (D == 2) {
@@ -63,16 +61,16 @@ class RosterSight {
   }
 
   /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that.
-  Matrix<D> noise_of(const Observation<D>& observation, const RosterTarget<F>& target) const {
+  Matrix<D> noise_of(const Observation<D>& observation, const RosterTarget<D>& target) const {
     Matrix<D> R = noise_of(observation);
-    R.diagonal().array() += target.guided;
+    R.diagonal().array() += target.predicted_variance;
     const double change = std::abs(width_of(observation) - target.width) - kWidthNoise * target.width;
     if (change > 0) R.diagonal().array() += change * change;
     return R;
   }
 
   /// Whether the point may be a target that comes back.
-  bool alike(const RosterTarget<F>& target, const Observation<D>& observation) const {
+  bool alike(const RosterTarget<D>& target, const Observation<D>& observation) const {
     const double ratio = width_of(observation) / target.width;
     return ratio < kMostGrowth && ratio > 1 / kMostGrowth;
   }
@@ -88,7 +86,7 @@ class RosterSight {
   }
 
   /// How much likelier the point is the target's than a false one, as a logarithm.
-  double log_ratio(const RosterTarget<F>& target, const Vector<D>& place, const Matrix<D>& R) const {
+  double log_ratio(const RosterTarget<D>& target, const Vector<D>& place, const Matrix<D>& R) const {
     const Matrix<D> S = target.filter.innovation_covariance(R);
     const Vector<D> residual = place - target.filter.position();
     const double clutter_density = std::max(unexplained_, kLeastClutter) / std::pow(extent_, D);
@@ -105,7 +103,7 @@ class RosterSight {
   static constexpr double kLeastClutter = 0.01;  // false points a frame that are always thought possible
 
   RosterTrackerOptions options_;
-  double unexplained_ = 0;  // points a frame that nobody explains, a running mean
+  double unexplained_ = 0;  // points a frame that no target explains, a running mean
   double extent_ = 1;       // of the scene, px
 };
 

@@ -1,15 +1,16 @@
 // The tracker of markers: a fixed cast of points that look alike, so that only motion tells them apart.
 //
-// Each frame: (1) predict; (2) claim: the assignment that is globally the likeliest, of points within the search areas; (3) meet: a
+// Each frame: (1) predict; (2) match: the assignment that is globally the likeliest, of points within the search areas; (3) meet: a
 // target without a point whose place is covered by another's point is taken to be behind it; while two are that close neither's
 // velocity is believed to the point they share, so that each comes out with the motion it went in with; (4) find: targets that are
-// missed and points that nobody claims are brought together within the reach of the greatest speed, at once where false
+// missed and points that match none are brought together within the reach of the greatest speed, at once where false
 // points are rare, else once the point has proved to stay; (5) correct; (6) start newcomers from what is left.
-// That nobody on the roster dies is what carries a name across a barrier of any width, and through a turn too sharp for a filter.
-// Cost: near linear in targets + points while search areas hold few points; the search for the lost is lost × unclaimed.
+// That no target on the roster dies is what carries a name across a barrier of any width, and through a turn too sharp for a
+// filter. Cost: near linear in targets + points while search areas hold few points; the search for the lost is lost × untaken.
 #include "marey/track/roster_tracker.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
 #include "marey/track/check_frame.h"
+#include "marey/track/immediate_tracker.h"
 #include "marey/track/roster_adoption.h"
 #include "marey/track/roster_rigid_neighbours.h"
 #include "marey/track/roster_target.h"
@@ -28,51 +30,49 @@
 namespace marey::track {
 namespace {
 
-template <typename F>
-class RosterTracker final : public Tracker<F::dimension> {
+template <int D>
+class RosterTracker final : public ImmediateTracker<D> {
  public:
-  static constexpr int D = F::dimension;
-
-  RosterTracker(const RosterTrackerOptions& options, const typename F::Options& filter_options)
-      : options_(options),
-        filter_options_(filter_options),
-        sight_(options),
-        adoption_(options, filter_options),
-        companions_(options) {
+  explicit RosterTracker(const RosterTrackerOptions& options)
+      : options_(options), likelihood_(options), adoption_(options), neighbours_(options) {
     std::set<std::string> seen;
     for (const std::string& label : options.labels) {
       if (!seen.insert(label).second) throw Error("the label \"{}\" occurs twice; every marker needs a name of its own", label);
     }
   }
 
-  std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) override {
+  using ImmediateTracker<D>::step;
+
+  std::span<const Track<D>> step(Timestamp now, std::span<const CameraObservations<D>> views) override {
+    assert(views.size() == 1 && "cameras are joined before");
+    const std::span<const Observation<D>> seen = views.front().seen;
     predict_to(now);
     if (targets_.empty()) {
       start_roster(seen);
     } else {
-      claimed_.assign(seen.size(), 0);
-      if (companions_.used()) {
-        claim(seen, [&](const Target& target) { return target.unseen < 1.5 * dt_; });
-        companions_.tell(targets_, seen, claimed_);
-        claim(seen, [&](const Target& target) { return target.observation == kNone; });
+      taken_.assign(seen.size(), 0);
+      if (neighbours_.used()) {
+        match(seen, [&](const Target& target) { return target.unseen < 1.5 * dt_; });
+        neighbours_.check_followed(targets_, seen, taken_);
+        match(seen, [&](const Target& target) { return !target.observation; });
       } else {
-        claim(seen, [](const Target&) { return true; });
+        match(seen, [](const Target&) { return true; });
       }
       meet(seen);
-      adoption_.find_lost(targets_, seen, claimed_, sight_, companions_.all());
+      adoption_.find_lost(targets_, seen, taken_, likelihood_, neighbours_.all());
       correct(seen);
       judge_newcomers();
-      start_unclaimed(seen);
+      start_unmatched(seen);
     }
-    companions_.learn(targets_);
+    neighbours_.learn(targets_);
     return report();
   }
 
   std::span<const Track<D>> expected(Timestamp now) override {
-    const double dt = now_ ? seconds(now - *now_) : 0.0;
+    const double dt = this->seconds_to(now);
     tracks_.clear();
     for (const Target& target : targets_) {
-      F ahead = target.filter;
+      filter::AnyFilter<D> ahead = target.filter;
       ahead.predict(dt);
       tracks_.push_back(track_of(target, ahead, Track<D>::State::predicted));
     }
@@ -80,19 +80,21 @@ class RosterTracker final : public Tracker<F::dimension> {
   }
 
  private:
-  using Target = RosterTarget<F>;
+  using Target = RosterTarget<D>;
   using Standing = typename Target::Standing;
-  static constexpr int kNone = Target::kNone;
+  using ImmediateTracker<D>::now_;
+  using ImmediateTracker<D>::tracks_;
 
   void predict_to(Timestamp now) {
     check_time(now, now_);
-    dt_ = now_ ? seconds(now - *now_) : 0.0;
+    dt_ = this->seconds_to(now);
     now_ = now;
     for (Target& target : targets_) {
       // A lost target drifts on for a while; then it is waited for where that led, not flown out of the picture.
-      if (target.unseen < kCoast || target.guided > 0) target.filter.predict(dt_);
+      if (target.unseen < kCoast || target.predicted_variance > 0) target.filter.predict(dt_);
       target.unseen += dt_;
-      target.observation = target.covered_by = kNone;
+      target.observation.reset();
+      target.covered_by.reset();
       target.crowded = false;
     }
   }
@@ -118,16 +120,16 @@ class RosterTracker final : public Tracker<F::dimension> {
   void start(const Observation<D>& observation, int index, Standing standing) {
     targets_.push_back({.id = TrackId{next_id_++},
                         .label = {},
-                        .filter = F(filter_options_, observation.value, sight_.noise_of(observation)),
-                        .width = sight_.width_of(observation),
+                        .filter = {options_.filter, observation.value, likelihood_.noise_of(observation)},
+                        .width = likelihood_.width_of(observation),
                         .last_place = observation.value,
                         .observation = index,
                         .standing = standing});
   }
 
-  /// Gives the points that nobody has claimed to those of the targets that are `wanted`.
+  /// Gives the points that are not taken to those of the targets that are `wanted`.
   template <typename Wanted>
-  void claim(std::span<const Observation<D>> seen, Wanted&& wanted) {
+  void match(std::span<const Observation<D>> seen, Wanted&& wanted) {
     points_.clear();
     for (const Observation<D>& point : seen) points_.push_back(point.value);
     const bool few = targets_.size() * seen.size() <= kFewPairs;
@@ -139,9 +141,9 @@ class RosterTracker final : public Tracker<F::dimension> {
       const double reach = reach_of(targets_[row], spread);
       const auto consider = [&](int column) {
         if ((points_[column] - targets_[row].filter.position()).squaredNorm() > reach * reach) return;
-        if (claimed_[column]) return;
+        if (taken_[column]) return;
         const double worth = gain(targets_[row], seen[column]);
-        if (worth > 0 && companions_.agree(targets_[row], points_[column], dt_)) pairs_.push_back({row, column, worth});
+        if (worth > 0 && neighbours_.agree(targets_[row], points_[column], dt_)) pairs_.push_back({row, column, worth});
       };
       if (few) {
         for (int column = 0; column < std::ssize(seen); ++column) consider(column);
@@ -151,9 +153,9 @@ class RosterTracker final : public Tracker<F::dimension> {
     }
     const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
     for (int row = 0; row < std::ssize(targets_); ++row) {
-      if (columns[row] == assign::GatedAssigner::nobody) continue;
+      if (columns[row] == assign::kNoIndex) continue;
       targets_[row].observation = columns[row];
-      claimed_[columns[row]] = 1;
+      taken_[columns[row]] = 1;
     }
   }
 
@@ -166,8 +168,8 @@ class RosterTracker final : public Tracker<F::dimension> {
   Spread spread_of(std::span<const Observation<D>> seen) const {
     Spread spread;
     for (const Observation<D>& point : seen) {
-      const double width = sight_.width_of(point);
-      spread.variance = std::max(spread.variance, sight_.noise_of(point).trace());
+      const double width = likelihood_.width_of(point);
+      spread.variance = std::max(spread.variance, likelihood_.noise_of(point).trace());
       spread.narrowest = &point == seen.data() ? width : std::min(spread.narrowest, width);
       spread.widest = std::max(spread.widest, width);
     }
@@ -177,13 +179,9 @@ class RosterTracker final : public Tracker<F::dimension> {
   /// No pair farther apart than this can be worth anything: asked first, because it costs least.
   double reach_of(const Target& target, const Spread& spread) const {
     const double fastest = options_.max_speed * target.unseen + target.width;
-    if constexpr (requires { target.filter.search_reach(0.0); }) {
-      const double change = std::max(spread.widest - target.width, target.width - spread.narrowest) -
-                            RosterSight<F>::kWidthNoise * target.width;
-      return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
-    } else {
-      return fastest;
-    }
+    const double change =
+        std::max(spread.widest - target.width, target.width - spread.narrowest) - RosterLikelihood<D>::kWidthNoise * target.width;
+    return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
   }
 
   /// The farthest that a point in the search area can be: the gate's own radius along its longest axis.
@@ -196,9 +194,9 @@ class RosterTracker final : public Tracker<F::dimension> {
   double gain(const Target& target, const Observation<D>& point) const {
     const Vector<D> residual = point.value - target.filter.position();
     if (residual.squaredNorm() > square(options_.max_speed * target.unseen + target.width)) return 0;
-    const Matrix<D> R = sight_.noise_of(point, target);
+    const Matrix<D> R = likelihood_.noise_of(point, target);
     if (target.filter.gate_distance(point.value, R) > 1) return 0;
-    if (target.unseen > 1.5 * dt_ && !sight_.believes_jump(residual.norm() + target.width)) return 0;
+    if (target.unseen > 1.5 * dt_ && !likelihood_.believes_jump(residual.norm() + target.width)) return 0;
     const Matrix<D> S = target.filter.innovation_covariance(R);
     const double cost = residual.dot(S.inverse() * residual) + std::log(S.determinant() / square(reference_variance()));
     return std::max(1e-3, kRoom - cost) + (target.on_roster() ? kRoom : 0);
@@ -209,13 +207,13 @@ class RosterTracker final : public Tracker<F::dimension> {
   void meet(std::span<const Observation<D>> seen) {
     mark_crowded();
     for (Target& target : targets_) {
-      if (target.observation != kNone || !target.crowded) continue;
+      if (target.observation || !target.crowded) continue;
       double nearest = target.width;
       for (const Target& other : targets_) {
-        if (other.observation == kNone || other.id == target.id) continue;
-        const Observation<D>& point = seen[other.observation];
+        if (!other.observation || other.id == target.id) continue;
+        const Observation<D>& point = seen[*other.observation];
         const double distance = (point.value - target.filter.position()).norm();
-        const double reach = 0.5 * (sight_.width_of(point) + target.width);
+        const double reach = 0.5 * (likelihood_.width_of(point) + target.width);
         if (distance < reach && distance < nearest) {
           nearest = distance;
           target.covered_by = other.observation;
@@ -250,20 +248,20 @@ class RosterTracker final : public Tracker<F::dimension> {
 
   void correct(std::span<const Observation<D>> seen) {
     for (Target& target : targets_) {
-      if (target.observation == kNone) continue;
-      const Observation<D>& point = seen[target.observation];
-      Matrix<D> R = sight_.noise_of(point, target);
+      if (!target.observation) continue;
+      const Observation<D>& point = seen[*target.observation];
+      Matrix<D> R = likelihood_.noise_of(point, target);
       if (target.crowded) R.diagonal().array() += square(kCrowdNoise * target.width);
-      if (target.standing != Standing::established) target.score += sight_.log_ratio(target, point.value, R);
+      if (target.standing != Standing::established) target.score += likelihood_.log_ratio(target, point.value, R);
       target.filter.correct(point.value, R);
-      if (!target.crowded) target.width += kWidthMemory * (sight_.width_of(point) - target.width);
+      if (!target.crowded) target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
       target.last_place = point.value;
       target.unseen = 0;
       target.seen += dt_;
-      sight_.widen_scene(point.value);
+      likelihood_.widen_scene(point.value);
     }
     for (Target& target : targets_) {
-      if (target.covered_by == kNone) continue;
+      if (!target.covered_by) continue;
       target.last_place = target.filter.position();  // it is seen, though not apart
       target.unseen = std::min(target.unseen, kCoast / 2);
     }
@@ -276,22 +274,22 @@ class RosterTracker final : public Tracker<F::dimension> {
     });
     for (Target& target : targets_) {
       if (target.standing == Standing::established) continue;
-      if (target.observation == kNone && target.covered_by == kNone) target.score -= kMissPenalty;
+      if (!target.observation && !target.covered_by) target.score -= kMissPenalty;
       const bool proven = target.score >= options_.confirm;
-      const bool stayed = companions_.used() && target.seen > kProof;  // and nobody who is missed can be it
+      const bool stayed = neighbours_.used() && target.seen > kProof;  // and no target that is missed can be it
       if (proven && (target.standing == Standing::provisional || all_there || stayed)) target.standing = Standing::established;
     }
     std::erase_if(targets_, [&](const Target& target) {
-      const bool missed = target.observation == kNone && target.covered_by == kNone;
-      if (companions_.used() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
+      const bool missed = !target.observation && !target.covered_by;
+      if (neighbours_.used() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
       return (target.standing == Standing::newcomer && missed) ||
              (target.standing == Standing::provisional && target.score < -3 * kMissPenalty);
     });
   }
 
-  void start_unclaimed(std::span<const Observation<D>> seen) {
+  void start_unmatched(std::span<const Observation<D>> seen) {
     for (int i = 0; i < std::ssize(seen); ++i) {
-      if (!claimed_[i] && static_cast<int>(targets_.size()) < kMostTargets) start(seen[i], i, Standing::newcomer);
+      if (!taken_[i] && static_cast<int>(targets_.size()) < kMostTargets) start(seen[i], i, Standing::newcomer);
     }
   }
 
@@ -299,19 +297,20 @@ class RosterTracker final : public Tracker<F::dimension> {
     tracks_.clear();
     for (const Target& target : targets_) {
       tracks_.push_back(
-          track_of(target, target.filter, target.observation != kNone ? Track<D>::State::observed : Track<D>::State::predicted));
+          track_of(target, target.filter, target.observation ? Track<D>::State::observed : Track<D>::State::predicted));
     }
+    this->match_by_observation();
     return tracks_;
   }
 
-  static Track<D> track_of(const Target& target, const F& filter, typename Track<D>::State state) {
+  static Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, typename Track<D>::State state) {
     Track<D> track;
     track.id = target.id;
     track.label = target.label;
     track.position = filter.position();
     track.velocity = filter.velocity();
     track.covariance = filter.covariance();
-    track.covariance.diagonal().array() += target.guided;
+    track.covariance.diagonal().array() += target.predicted_variance;
     track.state = state;
     if (state == Track<D>::State::observed) track.observation = target.observation;
     track.confirmed = target.on_roster();
@@ -322,31 +321,28 @@ class RosterTracker final : public Tracker<F::dimension> {
   static double square(double value) { return value * value; }
 
   static constexpr double kCoast = 0.5;           // s that a lost target drifts on
-  static constexpr double kProof = 1;             // s: who was seen for less and is gone was never there
+  static constexpr double kProof = 1;             // s: a target seen for less and gone was never there
   static constexpr double kRoom = 24;             // twice the log-likelihood that a pair may cost
   static constexpr double kWidestGate = 5;        // standard deviations
   static constexpr double kCrowded = 1.4;         // marker widths between two that disturb each other's centres
   static constexpr double kCrowdNoise = 0.25;     // marker widths by which they do
   static constexpr double kMissPenalty = 3;       // log of 1 over the chance that a marker is missed
   static constexpr double kWidthMemory = 0.1;     // a frame
-  static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is looked at
+  static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is weighed
   static constexpr std::size_t kFewTargets = 64;
   static constexpr int kMostTargets = 20'000;
 
   RosterTrackerOptions options_;
-  typename F::Options filter_options_;
-  std::optional<Timestamp> now_;
   double dt_ = 0;
   int next_id_ = 1;
-  RosterSight<F> sight_;
-  RosterAdoption<F> adoption_;
-  RosterRigidNeighbours<F> companions_;
+  RosterLikelihood<D> likelihood_;
+  RosterAdoption<D> adoption_;
+  RosterRigidNeighbours<D> neighbours_;
   std::vector<Target> targets_;  // in the order of their ids
-  std::vector<Track<D>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<Vector<D>> points_, places_;
   std::vector<assign::GatedPair> pairs_;
-  std::vector<char> claimed_;
+  std::vector<char> taken_;
   assign::PointGrid<D> grid_;
   assign::GatedAssigner assigner_;
 };
@@ -355,10 +351,7 @@ class RosterTracker final : public Tracker<F::dimension> {
 
 template <int D>
 std::unique_ptr<Tracker<D>> make_roster_tracker(const RosterTrackerOptions& options) {
-  return filter::with_filter<D>(options.filter,
-                                [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
-                                  return std::make_unique<RosterTracker<F>>(options, filter);
-                                });
+  return std::make_unique<RosterTracker<D>>(options);
 }
 
 template std::unique_ptr<Tracker<2>> make_roster_tracker<2>(const RosterTrackerOptions& options);

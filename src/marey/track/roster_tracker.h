@@ -16,12 +16,12 @@ struct RosterTrackerOptions {
   double max_speed = 6000;          ///< no marker moves faster, px/s
   double marker_width = 8;          ///< of an observation without a box, px
   double place_noise = 0.05;        ///< standard deviation added to that of each observation, px: what no detector knows of itself
-  bool companions = false;          ///< in space: a hidden marker is expected where those that move with it say
+  bool rigid_neighbours = false;    ///< in space: a hidden marker is expected where the markers that move rigidly with it are
   double confirm = 10;              ///< log-likelihood ratio against clutter that proves a newcomer
 };
 
-/// Follows named points that are few or many, alike, and always the same: markers on a body. Whoever is seen in the first frame
-/// is on the roster and never given up: one that vanishes is waited for, and what then appears unexplained is taken to be it.
+/// Follows named points that are few or many, alike, and always the same: markers on a body. What is seen in the first frame
+/// is on the roster and never given up: a target that vanishes is waited for, and what then appears unexplained is taken to be it.
 /// Throws Error where there are more labels than points in the first frame, or a label occurs twice.
 template <int D>
 std::unique_ptr<Tracker<D>> make_roster_tracker(const RosterTrackerOptions& options);

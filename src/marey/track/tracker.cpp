@@ -29,16 +29,9 @@ TrackerOptions point_tracker_options() {
   return options;
 }
 
-template <int D>
-std::unique_ptr<Tracker<D>> make_tracker(const TrackerOptions& options) {
+std::unique_ptr<Tracker<2>> make_tracker(const TrackerOptions& options) {
   check(options);
-  return filter::with_filter<D>(options.filter,
-                                [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<Tracker<D>> {
-                                  return std::make_unique<FilterTracker<F>>(options, filter);
-                                });
+  return std::make_unique<FilterTracker>(options);
 }
-
-template std::unique_ptr<Tracker<2>> make_tracker<2>(const TrackerOptions& options);
-template std::unique_ptr<Tracker<3>> make_tracker<3>(const TrackerOptions& options);
 
 }  // namespace marey::track

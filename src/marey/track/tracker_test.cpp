@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <vector>
@@ -31,26 +32,25 @@ Observation<2> person(double x, double y, double score = 0.9, double width = 0.4
 /// Runs a scene of `frames` frames and hands each frame's tracks to `look`.
 void run(int frames, const std::function<Seen(int)>& scene, const std::function<void(int, std::span<const Track<2>>)>& look,
          const TrackerOptions& options = {}) {
-  const auto tracker = make_tracker<2>(options);
+  const auto tracker = make_tracker(options);
   for (int frame = 0; frame < frames; ++frame) look(frame, tracker->step(timestamp_from_seconds(frame / rate), scene(frame)));
 }
 
-/// The confirmed track nearest to a place, or 0 where none lies within half a body.
-int id_at(std::span<const Track<2>> tracks, double x, double y) {
-  int id = 0;
+/// The confirmed track nearest to a place, if any lies within half a body.
+std::optional<TrackId> id_at(std::span<const Track<2>> tracks, double x, double y) {
+  std::optional<TrackId> id;
   double nearest = tall / 2;
   for (const Track<2>& track : tracks) {
     const double distance = (track.position - Vector<2>(x, y)).norm();
     if (!track.confirmed || distance >= nearest) continue;
     nearest = distance;
-    id = number(track.id);
+    id = track.id;
   }
   return id;
 }
 
-TEST(Tracker, TwoWhoCrossKeepTheirNames) {
-  int left = 0;
-  int right = 0;
+TEST(Tracker, TwoThatCrossKeepTheirIdentities) {
+  std::optional<TrackId> left, right;
   run(
       60, [](int k) { return Seen{person(100 + 6.0 * k, 200), person(460 - 6.0 * k, 212)}; },
       [&](int k, std::span<const Track<2>> tracks) {
@@ -62,27 +62,26 @@ TEST(Tracker, TwoWhoCrossKeepTheirNames) {
         EXPECT_EQ(id_at(tracks, 454, 200), left);
         EXPECT_EQ(id_at(tracks, 106, 212), right);
       });
-  EXPECT_NE(left, 0);
-  EXPECT_NE(right, 0);
+  EXPECT_TRUE(left && right);
   EXPECT_NE(left, right);
 }
 
-/// A jump of place and shape at once is too much for the gate, yet nobody else can stand on the very spot.
-TEST(Tracker, WhoStepsAsideAtOnceKeepsHisName) {
+/// A jump of place and shape at once is too much for the gate, yet no other can stand on the very spot.
+TEST(Tracker, ATargetThatStepsAsideAtOnceKeepsItsIdentity) {
   const auto scene = [](int k) {
     return Seen{k < 20 ? person(100 + 2.0 * k, 200) : person(86 + 2.0 * k, 196, 0.9, 0.3 * tall, 1.15 * tall)};
   };
   std::set<int> names;
   run(40, scene, [&](int k, std::span<const Track<2>> tracks) {
     if (k < 10) return;
-    EXPECT_EQ(tracks.size(), 1u) << k;
+    ASSERT_EQ(tracks.size(), 1u) << k;
     names.insert(number(tracks.front().id));
   });
   EXPECT_EQ(names.size(), 1u);
 }
 
-/// Two who meet are seen as one wide region for a second and part again.
-TEST(Tracker, TwoWhoMergeIntoOneRegionComeOutAsThemselves) {
+/// Two that meet are seen as one wide region for a second and part again.
+TEST(Tracker, TwoThatMergeIntoOneRegionComeOutAsThemselves) {
   const auto place = [](int k, int who) { return who == 0 ? 100 + 6.0 * k : 400 - 6.0 * k; };
   const auto scene = [&](int k) {
     const double a = place(k, 0);
@@ -90,8 +89,7 @@ TEST(Tracker, TwoWhoMergeIntoOneRegionComeOutAsThemselves) {
     if (std::abs(a - b) > 32) return Seen{person(a, 200), person(b, 200)};
     return Seen{person((a + b) / 2, 200, 0.9, 32 + std::abs(a - b), tall)};
   };
-  int left = 0;
-  int right = 0;
+  std::optional<TrackId> left, right;
   run(50, scene, [&](int k, std::span<const Track<2>> tracks) {
     if (k == 15) {
       left = id_at(tracks, place(k, 0), 200);
@@ -102,6 +100,7 @@ TEST(Tracker, TwoWhoMergeIntoOneRegionComeOutAsThemselves) {
     EXPECT_EQ(id_at(tracks, place(k, 0), 200), left);
     EXPECT_EQ(id_at(tracks, place(k, 1), 200), right);
   });
+  EXPECT_TRUE(left && right);
   EXPECT_NE(left, right);
 }
 
@@ -154,15 +153,17 @@ TEST(Tracker, BirthTakesEvidenceAndDeathTheLackOfIt) {
   EXPECT_LT(last_alive, 20 + rate * TrackerOptions{}.patience + 1);
 }
 
-TEST(Tracker, NobodyJumpsFasterThanTheLimit) {
-  std::set<int> names;
+TEST(Tracker, NoTargetJumpsFasterThanTheLimit) {
+  std::optional<TrackId> before, after;
   const double step = 1.5 * TrackerOptions{}.max_speed * tall / rate;  // px a frame
   run(
       20, [&](int k) { return Seen{person(k < 10 ? 100 : 100 + step * 3, 200)}; },
       [&](int k, std::span<const Track<2>> tracks) {
-        if (k == 9 || k == 19) names.insert(id_at(tracks, k == 9 ? 100 : 100 + step * 3, 200));
+        if (k == 9) before = id_at(tracks, 100, 200);
+        if (k == 19) after = id_at(tracks, 100 + step * 3, 200);
       });
-  EXPECT_EQ(names.size(), 2U);
+  ASSERT_TRUE(before && after) << "both are followed";
+  EXPECT_NE(before, after);
 }
 
 TEST(Tracker, WeakObservationsContinueButDoNotBegin) {
@@ -183,21 +184,31 @@ TEST(Tracker, ADoubleBoxIsOnePerson) {
       [](int, std::span<const Track<2>> tracks) { EXPECT_EQ(tracks.size(), 1U); });
 }
 
-TEST(Tracker, ACameraThatTurnsTakesEverybodyAlong) {
-  std::map<int, std::set<int>> names;
+TEST(Tracker, ACameraThatTurnsTakesAllTargetsAlong) {
+  constexpr int kPeople = 5;
+  std::map<int, std::set<TrackId>> ids;
   const auto pan = [](int k) { return k < 15 ? 0.0 : 35.0 * (k - 14); };
   run(
       30,
       [&](int k) {
         Seen seen;
-        for (int who = 0; who < 5; ++who) seen.push_back(person(100 + 120.0 * who + 2.0 * k + pan(k), 200 + 10.0 * who));
+        for (int i = 0; i < kPeople; ++i) seen.push_back(person(100 + 120.0 * i + 2.0 * k + pan(k), 200 + 10.0 * i));
         return seen;
       },
       [&](int k, std::span<const Track<2>> tracks) {
         if (k < 10) return;
-        for (int who = 0; who < 5; ++who) names[who].insert(id_at(tracks, 100 + 120.0 * who + 2.0 * k + pan(k), 200 + 10.0 * who));
+        for (int i = 0; i < kPeople; ++i) {
+          const auto id = id_at(tracks, 100 + 120.0 * i + 2.0 * k + pan(k), 200 + 10.0 * i);
+          ASSERT_TRUE(id) << "person " << i << " is lost in frame " << k;
+          ids[i].insert(*id);
+        }
       });
-  for (const auto& [who, ids] : names) EXPECT_EQ(ids.size(), 1U) << "person " << who;
+  std::set<TrackId> all;
+  for (const auto& [person, own] : ids) {
+    EXPECT_EQ(own.size(), 1U) << "person " << person;
+    all.insert(own.begin(), own.end());
+  }
+  EXPECT_EQ(all.size(), static_cast<std::size_t>(kPeople)) << "no two share an identity";
 }
 
 Seen noisy_crowd(std::mt19937& random, int k) {
@@ -231,8 +242,8 @@ TEST(Tracker, TheSameInputGivesTheSameBits) {
 
 TEST(Tracker, TheOrderOfObservationsDoesNotMatter) {
   std::mt19937 random(9);
-  const auto forward = make_tracker<2>({});
-  const auto backward = make_tracker<2>({});
+  const auto forward = make_tracker({});
+  const auto backward = make_tracker({});
   for (int k = 0; k < 60; ++k) {
     Seen seen = noisy_crowd(random, k);
     const auto a = forward->step(timestamp_from_seconds(k / rate), seen);
@@ -248,7 +259,7 @@ TEST(Tracker, TheOrderOfObservationsDoesNotMatter) {
 }
 
 TEST(Tracker, HostileInputGivesNoNaN) {
-  const auto tracker = make_tracker<2>({});
+  const auto tracker = make_tracker({});
   std::mt19937 random(3);
   std::uniform_real_distribution<double> exponent(-6, 8);
   double now = 0;
@@ -267,36 +278,56 @@ TEST(Tracker, HostileInputGivesNoNaN) {
 }
 
 TEST(Tracker, RefusesTimesThatDoNotGrowAndNumbersThatAreNone) {
-  const auto tracker = make_tracker<2>({});
-  tracker->step(timestamp_from_seconds(1), {});
-  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), {}), Error);
-  EXPECT_THROW(tracker->step(timestamp_from_seconds(0.5), {}), Error);
+  const auto tracker = make_tracker({});
+  tracker->step(timestamp_from_seconds(1), Seen{});
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), Seen{}), Error);
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(0.5), Seen{}), Error);
   const Seen broken{person(std::nan(""), 2)};
   EXPECT_THROW(tracker->step(timestamp_from_seconds(2), broken), Error);
 }
 
 TEST(Tracker, RefusesOptionsOutOfTheirDomain) {
-  EXPECT_THROW(make_tracker<2>({.gate_probability = 1}), Error);
-  EXPECT_THROW(make_tracker<3>({.max_speed = 0}), Error);
-  EXPECT_THROW(make_tracker<2>({.place_noise = -1}), Error);
+  EXPECT_THROW(make_tracker({.gate_probability = 1}), Error);
+  EXPECT_THROW(make_tracker({.max_speed = 0}), Error);
+  EXPECT_THROW(make_tracker({.place_noise = -1}), Error);
 }
 
-TEST(Tracker, EveryFilterFollowsPointsInSpace) {
+TEST(Tracker, EveryFilterFollowsPoints) {
   for (const filter::NamedFilter& filter : filter::named_filters()) {
     TrackerOptions options = point_tracker_options();
     options.filter = filter.options;
-    const auto tracker = make_tracker<3>(options);
+    const auto tracker = make_tracker(options);
     std::set<int> names;
     for (int k = 0; k < 40; ++k) {
-      std::vector<Observation<3>> seen(2);
-      seen[0].value = {100.0 + 2 * k, 50, 10};
-      seen[1].value = {300.0 - 2 * k, 150, 90};
+      Seen seen(2);
+      seen[0].value = {100.0 + 2 * k, 50};
+      seen[1].value = {300.0 - 2 * k, 150};
       const auto tracks = tracker->step(timestamp_from_seconds(k / 60.0), seen);
       for (const auto& track : tracks) names.insert(number(track.id));
       EXPECT_EQ(tracks.size(), 2U) << filter.name << ", frame " << k;
     }
     EXPECT_EQ(names.size(), 2U) << filter.name;
   }
+}
+
+TEST(Tracker, SaysWhichTrackEachObservationBelongsTo) {
+  const auto tracker = make_tracker({});
+  for (int k = 0; k < 5; ++k) {
+    const Seen seen{person(400 - 3.0 * k, 200), person(100 + 3.0 * k, 200)};
+    const auto tracks = tracker->step(timestamp_from_seconds(k / rate), seen);
+    ASSERT_EQ(tracker->matches().size(), 2U);
+    for (const ObservationMatch& match : tracker->matches()) {
+      EXPECT_EQ(match.view, 0);
+      for (const Track<2>& track : tracks) {
+        if (track.id == match.track) {
+          EXPECT_NEAR(track.position.x(), seen[match.observation].value.x(), 5);
+        }
+      }
+    }
+    ASSERT_EQ(tracker->decided().size(), 1U);
+    EXPECT_EQ(tracker->decided()[0].tracks.size(), 2U);
+  }
+  EXPECT_TRUE(tracker->decide_all().empty());
 }
 
 }  // namespace

@@ -8,39 +8,39 @@
 
 namespace marey::track {
 
-/// How somebody moved while all of him could be seen. Who goes behind something seems to slow down, for the part of him that
-/// is left shrinks towards its edge; the filter believes that, and then looks for him in the wrong place. This remembers better.
-template <int D>
+/// How a target moved in the image while all of it could be seen. A target that goes behind something seems to slow down, for the
+/// part that is left of it shrinks towards its edge; the filter believes that, and then expects it in the wrong place. This
+/// remembers better.
 class UnoccludedMotion {
  public:
-  /// He was seen, `height` tall, where the filter says, `sure` where the observation counts.
-  void see(Timestamp now, double dt, const Vector<D>& place, const Vector<D>& velocity, double height, bool sure) {
+  /// The target was seen, `height` px tall, where the filter has it; `whole` where the observation shows it alone.
+  void see(Timestamp now, double dt, const Vector<2>& position, const Vector<2>& velocity, double height, bool whole) {
     if (!seen_) {
       velocity_ = velocity;
       height_ = height;
     }
-    if (seen_ && (!sure || height < least_share * height_)) {
-      height_ += (height - height_) * (1 - std::exp(-dt / size_memory));  // who sits down is whole again after a while
+    if (seen_ && (!whole || height < kLeastShare * height_)) {
+      height_ += (height - height_) * (1 - std::exp(-dt / kSizeMemory));  // one that sits down counts as whole after a while
       return;
     }
-    velocity_ += (velocity - velocity_) * (1 - std::exp(-dt / velocity_memory));
-    height_ += (height - height_) * (1 - std::exp(-dt / size_memory));
-    place_ = place;
+    velocity_ += (velocity - velocity_) * (1 - std::exp(-dt / kVelocityMemory));
+    height_ += (height - height_) * (1 - std::exp(-dt / kSizeMemory));
+    position_ = position;
     seen_ = now;
   }
 
-  /// Where he is by now if he went on as he did.
-  std::optional<Vector<D>> place_at(Timestamp now) const {
+  /// Where the target is by now if it went on as it did.
+  std::optional<Vector<2>> position_at(Timestamp now) const {
     if (!seen_) return std::nullopt;
-    return place_ + seconds(now - *seen_) * velocity_;
+    return position_ + seconds(now - *seen_) * velocity_;
   }
 
  private:
-  static constexpr double least_share = 0.9;      // of his usual height, to be whole
-  static constexpr double velocity_memory = 0.5;  // s
-  static constexpr double size_memory = 2;        // s
+  static constexpr double kLeastShare = 0.9;      // of its usual height, to be whole
+  static constexpr double kVelocityMemory = 0.5;  // s
+  static constexpr double kSizeMemory = 2;        // s
 
-  Vector<D> place_ = Vector<D>::Zero(), velocity_ = Vector<D>::Zero();
+  Vector<2> position_ = Vector<2>::Zero(), velocity_ = Vector<2>::Zero();
   double height_ = 0;
   std::optional<Timestamp> seen_;
 };

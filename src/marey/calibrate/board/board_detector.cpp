@@ -15,12 +15,13 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "marey/calibrate/board/board_dictionary.h"
 #include "marey/calibrate/board/refine_corner.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::board {
 namespace {
@@ -118,8 +119,8 @@ cv::Matx33d homography_near(const MarkerPoints& points, const std::vector<unsign
     const Eigen::Matrix<double, 9, 1> v{0, 0, 0, b.x, b.y, 1, -p.y * b.x, -p.y * b.y, -p.y};
     normal += weight * weight * (u * u.transpose() + v * v.transpose());
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const geometry::Eigenpairs<9> solver = geometry::eigenpairs<9>(normal);
+  const Eigen::Matrix<double, 9, 1> h = solver.vectors.col(0);
   const cv::Matx33d back(scale, 0, origin.x, 0, scale, origin.y, 0, 0, 1);
   return back * cv::Matx33d(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]) *
          cv::Matx33d(1, 0, -centre.x, 0, 1, -centre.y, 0, 0, 1);

@@ -5,11 +5,11 @@
 #include <map>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::board {
 namespace {
@@ -78,9 +78,9 @@ Rigid3 common_pose(const std::vector<Rigid3>& poses, double depth, double& sprea
       ++count;
     }
     if (count == 0) break;
-    const Eigen::JacobiSVD<Matrix<3>> svd(rotations, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    centre = {svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose(), translations / count};
+    const geometry::SingularValues3 svd = geometry::singular_values(rotations);
+    const double sign = (svd.U * svd.V.transpose()).determinant();
+    centre = {svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose(), translations / count};
     spread = median_of(std::move(distances));
   }
   return centre;

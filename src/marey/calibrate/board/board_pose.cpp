@@ -34,8 +34,7 @@ bool spread_out(const std::vector<cv::Point3d>& points) {
 std::optional<Vector<2>> pixel_of(const geometry::Lens& lens, const Vector<3>& in_camera) {
   return std::visit(
       [&](const auto& model) -> std::optional<Vector<2>> {
-        constexpr bool ahead_only = !std::is_same_v<std::decay_t<decltype(model)>, geometry::FisheyeLens>;
-        if (ahead_only && !(in_camera.z() > 1e-6)) return std::nullopt;
+        if (model.ahead_only && !(in_camera.z() > 1e-6)) return std::nullopt;
         const Vector<2> pixel = model.principal + model.focal.cwiseProduct(model.distort(in_camera, model.distortion.data()));
         if (!pixel.allFinite()) return std::nullopt;
         return pixel;

@@ -248,8 +248,7 @@ std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObser
   const Vector<3> in_camera = camera.camera_from_world * marker_position(bundle, seen);
   return std::visit(
       [&](const auto& model) -> std::optional<Vector<2>> {
-        constexpr bool flat = !std::is_same_v<std::decay_t<decltype(model)>, geometry::FisheyeLens>;
-        if (flat && !(in_camera.z() > 1e-6)) return std::nullopt;
+        if (model.ahead_only && !(in_camera.z() > 1e-6)) return std::nullopt;
         const Vector<2> pixel = model.principal + model.focal.cwiseProduct(model.distort(in_camera, model.distortion.data()));
         if (!pixel.allFinite()) return std::nullopt;
         return pixel;

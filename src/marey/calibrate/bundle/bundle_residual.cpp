@@ -57,7 +57,7 @@ class Reprojection final : public ceres::CostFunction {
 
  private:
   static bool in_front(const Vector<3>& in_camera) {
-    if constexpr (std::is_same_v<Model, geometry::FisheyeLens>) return in_camera.squaredNorm() > 1e-12;
+    if constexpr (!Model::ahead_only) return in_camera.squaredNorm() > 1e-12;
     return in_camera.z() > 1e-6;
   }
 

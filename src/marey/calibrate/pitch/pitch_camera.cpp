@@ -11,6 +11,7 @@
 #include <ceres/rotation.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -49,12 +50,12 @@ std::optional<Matrix<3>> homography(const std::vector<Vector<2>>& from, const st
     A.row(2 * row) << p.transpose(), Eigen::RowVector3d::Zero(), -q.x() * p.transpose();
     A.row(2 * row + 1) << Eigen::RowVector3d::Zero(), p.transpose(), -q.y() * p.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(A.transpose() * A);
-  if (!(solver.eigenvalues()(1) > 1e-10 * solver.eigenvalues()(8))) return std::nullopt;
+  const geometry::Eigenpairs<9> solver = geometry::eigenpairs<9>(A.transpose() * A);
+  if (!(solver.values(1) > 1e-10 * solver.values(8))) return std::nullopt;
   Matrix<3> normalise = Matrix<3>::Identity();
   normalise.topLeftCorner<2, 2>() /= spread;
   normalise.topRightCorner<2, 1>() = -middle / spread;
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const Eigen::Matrix<double, 9, 1> h = solver.vectors.col(0);
   return Matrix<3>(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(h.data()) * normalise);
 }
 
@@ -269,8 +270,8 @@ Camera camera_at(const Start& start, double focal, cv::Size size) {
   M /= std::sqrt(M.col(0).norm() * M.col(1).norm());
   Matrix<3> columns;
   columns << M.col(0), M.col(1), M.col(0).cross(M.col(1));
-  const Eigen::JacobiSVD<Matrix<3>> svd(columns, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix<3> rotation = svd.matrixU() * svd.matrixV().transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(columns);
+  const Matrix<3> rotation = svd.U * svd.V.transpose();
   const double pixels = focal * size.width / 2;
   // The division model bends by 1 + λ r² where Brown's bends by 1 + k r²: to first order k = λ f².
   return {geometry::BrownLens{{pixels, pixels}, middle_of(size), {start.strength * focal * focal}}, {rotation, M.col(2)}, size};

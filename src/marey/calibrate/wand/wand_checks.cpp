@@ -4,10 +4,11 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::wand {
 namespace {
@@ -120,7 +121,7 @@ void check_fitted_rig(const WandInput& input, const bundle::Bundle& bundle, cons
   for (const auto& point : points) mean += point / static_cast<double>(points.size());
   Matrix<3> moments = Matrix<3>::Zero();
   for (const auto& point : points) moments += (point - mean) * (point - mean).transpose();
-  const Vector<3> extent = Eigen::SelfAdjointEigenSolver<Matrix<3>>(moments).eigenvalues().cwiseMax(0).cwiseSqrt();
+  const Vector<3> extent = geometry::eigenpairs<3>(moments).values.cwiseMax(0).cwiseSqrt();
   if (extent[0] < kFlat * extent[2]) {
     throw Error("the wand was moved {}: move it through the whole volume, up and down, near and far, and turn it",
                 extent[1] < kFlat * extent[2] ? "along a line" : "in a plane");

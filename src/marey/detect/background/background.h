@@ -27,13 +27,13 @@ class Background {
   virtual Foreground apply(const Frame& frame, std::span<const Box> held) = 0;
 };
 
-/// Marey's own model: background_adaptive.h tells how it works.
+/// Marey's own model: background_adaptive.cpp explains it.
 struct AdaptiveOptions {
   static constexpr std::string_view name = "marey";
 
   double sensitivity = 1;      ///< divides every threshold: 2 finds what differs half as much, and more noise with it
   double memory_s = 6;         ///< s; the scene's slow changes are followed with this time constant
-  double absorb_after_s = 90;  ///< s; what stands still this long and is held by nobody belongs to the scene
+  double absorb_after_s = 90;  ///< s; what stands still this long and is held by no target belongs to the scene
   bool suppress_shadows = true;
 };
 

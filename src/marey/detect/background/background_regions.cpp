@@ -12,12 +12,12 @@ constexpr int kFewestPixels = 10;  // of a region
 
 void ForegroundRegions::choose(const MarkedRuns& marked, int rows) {
   const std::size_t count = marked.runs.size();
-  forest_.reset(count);
-  join_neighbours(marked.runs, 1, forest_);
+  sets_.reset(count);
+  join_neighbours(marked.runs, 1, sets_);
   areas_.assign(count, 0);
   strongs_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
-    const int root = forest_.root(static_cast<int>(i));
+    const int root = sets_.find(static_cast<int>(i));
     areas_[root] += marked.runs[i].end - marked.runs[i].begin;
     strongs_[root] += marked.strong[i];
   }
@@ -26,7 +26,7 @@ void ForegroundRegions::choose(const MarkedRuns& marked, int rows) {
   borders_.clear();
   numbers_.assign(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
-    const int root = forest_.root(static_cast<int>(i));
+    const int root = sets_.find(static_cast<int>(i));
     if (areas_[root] < kFewestPixels || strongs_[root] < kStrongPixels) continue;
     if (numbers_[root] < 0) {
       numbers_[root] = static_cast<int>(borders_.size());

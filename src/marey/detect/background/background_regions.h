@@ -44,7 +44,7 @@ class ForegroundRegions {
     bool is_thing() const { return frame > 1.3 * scene; }
   };
 
-  Forest forest_;
+  assign::DisjointSets sets_;
   std::vector<int> areas_, strongs_, numbers_;
   std::vector<PixelRun> runs_;
   std::vector<int> region_;             ///< of each run

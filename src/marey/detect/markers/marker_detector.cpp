@@ -371,6 +371,11 @@ Detections MarkerDetector::detect(const Frame& frame, std::span<const Expected> 
   return impl_->detect(frame, expected);
 }
 
+DetectionCounts MarkerDetector::detection_counts() const {
+  const MarkerCounts& all = counts();
+  return {all.too_small, all.too_large + all.not_round + all.unlike};
+}
+
 const MarkerCounts& MarkerDetector::counts() const {
   return impl_->counts_;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -14,6 +15,8 @@
 namespace marey::detect::markers {
 
 struct MarkerOptions {
+  static constexpr std::string_view name = "markers";
+
   bool dark = false;                   ///< markers are darker than what is around them; no part where `colour` is given
   std::optional<MarkerColour> colour;  ///< markers of this colour, however bright
   std::optional<double> threshold;     ///< grey level that a marker's pixels pass; nothing: from the image's noise
@@ -57,6 +60,9 @@ class MarkerDetector final : public Detector {
   /// Markers in the order of their first pixel. `expected` decides which stay when there are too many, and where to look for two in
   /// one blob.
   Detections detect(const Frame& frame, std::span<const Expected> expected) override;
+
+  /// Noise are the blobs too small, misfits those too large, not round or unlike the others.
+  DetectionCounts detection_counts() const override;
 
   const MarkerCounts& counts() const;
   std::vector<std::string> warnings() const override { return markers::warnings(counts()); }

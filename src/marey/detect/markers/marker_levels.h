@@ -53,7 +53,7 @@ class MarkerLevels {
   bool dark_;
   std::optional<double> fixed_;
   cv::Size size_;
-  int depth_ = -1;
+  std::optional<int> depth_;  // OpenCV's, of the last image
   cv::Size tiles_;
   double white_ = 255;
   double noise_ = 1;

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "marey/assign/disjoint_sets.h"
+
 namespace marey::detect::markers {
 
 MarkerMask::MarkerMask(const cv::Mat& excluded) : size_(excluded.size()), words_((excluded.cols + 63) / 64) {
@@ -96,11 +98,7 @@ void MarkerRunFinder::add_word(int row, int word, std::uint64_t bits) {
 }
 
 std::int32_t MarkerRunFinder::root(std::int32_t run) {
-  while (runs_[run].parent != run) {
-    runs_[run].parent = runs_[runs_[run].parent].parent;
-    run = runs_[run].parent;
-  }
-  return run;
+  return assign::find_root(run, [this](std::int32_t i) -> std::int32_t& { return runs_[i].parent; });
 }
 
 /// Joins the runs [above, here) of one row with the runs from `here` on of the next; both in order of columns.
@@ -114,7 +112,7 @@ void MarkerRunFinder::join_rows(std::size_t above, std::size_t here) {
     } else {
       const std::int32_t first = root(static_cast<std::int32_t>(a));
       const std::int32_t second = root(static_cast<std::int32_t>(b));
-      runs_[std::max(first, second)].parent = std::min(first, second);
+      assign::join_roots(first, second, [this](std::int32_t i) -> std::int32_t& { return runs_[i].parent; });
       runs_[a].end < runs_[b].end ? ++a : ++b;
     }
   }

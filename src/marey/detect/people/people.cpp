@@ -18,13 +18,13 @@ constexpr double kGapAcross = 0.15;                            // of a person's 
 constexpr double kGapDown = 0.5;                               // of a person's height
 constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
 constexpr double kNarrowest = 0.4, kWidest = 1.7;              // width, the same; from the side people are half as wide
-constexpr double kPlainlyOne = 1.25;                           // width up to which nobody asks whether there are two
+constexpr double kPlainlyOne = 1.25;                           // width up to which two are not considered
 constexpr double kLeastFilled = 0.3;                           // of its box
 constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
 constexpr double kOutgrownAcross = 1.6, kOutgrownDown = 1.15;  // a region so much larger than one body holds another
 constexpr double kMerged = 0.6;                                // share of an expected box that lies within a region with others
 constexpr double kSameBody = 0.6;         // overlap of the body fitted with the one measured, which is then the better
-constexpr double kBelieved = 0.4;         // share of a body seen, from which on the rest of it tells what hides people
+constexpr double kBelieved = 0.4;         // share of a body seen, from which on the rest of it shows what hides people
 constexpr double kOverlapExpected = 0.3;  // of the smaller of the two boxes
 constexpr double kHeldBeyond = 0.15;      // of an expected box's height, round it, that is kept from the background
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
@@ -38,7 +38,7 @@ bool at_border(const Box& box, cv::Size image) {
   return box.left <= 1 || box.top <= 1 || box.right() >= image.width - 1 || box.bottom() >= image.height - 1;
 }
 
-/// With room for somebody taller than expected, or not quite there: feet that the scene absorbed would be missed ever after.
+/// With room for a person taller than expected, or not quite there: feet that the scene absorbed would be missed ever after.
 Box grown(const Box& box) {
   const double more = kHeldBeyond * box.height;
   return {box.left - more, box.top - more, box.width + 2 * more, box.height + 2 * more};
@@ -126,6 +126,12 @@ bool outgrows(const Box& region, const Box& body) {
 
 PeopleDetector::PeopleDetector(std::unique_ptr<background::Background> background, const PeopleOptions& options)
     : background_(std::move(background)), options_(options) {}
+
+std::optional<Box> PeopleDetector::body_at(const Vector<2>& foot) const {
+  const auto size = size_at(foot.x(), foot.y());
+  if (!size) return std::nullopt;
+  return size->box_at(foot.x(), foot.y());
+}
 
 void PeopleDetector::prime(std::span<const Frame> samples) {
   background_->prime(samples);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "marey/assign/disjoint_sets.h"
@@ -22,6 +24,14 @@ struct PeopleOptions {
   std::shared_ptr<const PersonSizeMap> sizes = nullptr;
 };
 
+/// The detector as the register of detectors knows it (detect/detectors.h).
+struct PeopleDetectorOptions {
+  static constexpr std::string_view name = "people";
+
+  background::BackgroundOptions background = {};
+  PeopleOptions people = {};
+};
+
 /// People who move, or moved, before a fixed camera: foreground of a background model, cut into people by the size that they
 /// have at each place, which is learned from the recording itself. Boxes hold whole bodies, also where a part is hidden, and end
 /// at the picture's border.
@@ -39,6 +49,11 @@ class PeopleDetector final : public Detector {
 
   void prime(std::span<const Frame> samples) override;
   Detections detect(const Frame& frame, std::span<const Expected> expected) override;
+
+  /// Silhouettes end at the tip of the foot.
+  DetectorTraits traits() const override { return {.toe_m = 0.1, .has_foreground = true, .knows_body_size = true}; }
+  DetectionCounts detection_counts() const override { return {counts_.noise, counts_.misfits}; }
+  std::optional<Box> body_at(const Vector<2>& foot) const override;
 
   const Counts& counts() const { return counts_; }
   /// How large a person is whose feet are at (x, y), px: as it was given, or as it was learned so far.

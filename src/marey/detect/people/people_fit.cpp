@@ -1,7 +1,7 @@
 // Explaining foreground by people. A body is a head, a trunk and legs in a box. A place is good where the body's pixels are
-// foreground that nobody explains yet, and bad for every pixel of the body that is background; pixels explained by someone
-// placed before, and those outside the picture, count neither way. People are placed one after another, the best place first
-// (greedy): those known to be here near where they are expected, then new ones anywhere. Then each is moved to its best place
+// foreground that no person explains yet, and bad for every pixel of the body that is background; pixels explained by someone
+// placed before, and those outside the picture, count neither for nor against. People are placed one after another, the best place
+// first (greedy): those known to be here near where they are expected, then new ones anywhere. Then each is moved to its best place
 // given all the others. A person behind another is thus found by what sticks out, and keeps a whole body's box.
 //
 // All is done on a coarse grid, a person some 32 cells tall, whose sums over rectangles come from integral images; so the
@@ -26,20 +26,20 @@ constexpr double kBodyShare = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the
 constexpr double kLeastTrunk = 0.15;                                   // filled, of what is not explained: a quick no
 constexpr BodyPart kWholeBox = {0, 0, 1, 1};
 constexpr BodyPart kAboveHead = {0.25, -0.16, 0.75, -0.02};
-constexpr double kAboveHeadCost = 0.3;  // a head has nobody above it, or this is a trunk
+constexpr double kAboveHeadCost = 0.3;  // a head has no person above it, or this is a trunk
 constexpr double kArmsWorth = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
 constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
-constexpr double kReachAcross = 0.7;    // of the width: how far from there it is looked for
+constexpr double kReachAcross = 0.7;    // of the width: how far from there it is searched for
 constexpr double kReachUp = 0.25;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
 constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something
-constexpr double kUnseenCost = 0.2;    // of a body of which all is out of sight: of two places, the one in sight
+constexpr double kUnseenCost = 0.2;    // of a body of which all is hidden: of two places, the visible one
 constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone new be, to come before someone known
 constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
 constexpr int kMostNew = 12;
 constexpr double kBetter = 1e-9;  // by less, a place is as good as the one before it
-constexpr int kCoarse = 2;        // cells between the places first looked at
+constexpr int kCoarse = 2;        // cells between the places first tried
 
 Box known_box(const Box& box, const FitScene& scene) {
   const auto foot = box.foot();
@@ -74,7 +74,7 @@ class Fit {
     Box box;
     double cover = 0;
     double arms = 0;    ///< what the rest of the box adds to the value: foreground beside the body
-    double share = 0;   ///< of the body in sight that lies on unexplained foreground
+    double share = 0;   ///< of the visible body that lies on unexplained foreground
     double value = -1;  ///< what is maximised: the cover less the costs of an unlikely place
   };
 
@@ -126,7 +126,7 @@ class Fit {
   void place_all(std::span<const Box> known) {
     std::vector<int> waiting(known.size());
     std::iota(waiting.begin(), waiting.end(), 0);
-    std::vector<std::optional<Place>> nearest(known.size());  // what was found near each, while nobody is placed about there
+    std::vector<std::optional<Place>> nearest(known.size());  // what was found near each, while no person is placed about there
     const auto place_one = [&](const Place& one, int who) {
       place(one, who);
       for (const int other : waiting) {
@@ -172,7 +172,7 @@ class Fit {
            placed.top < box.bottom() + up;
   }
 
-  /// A place for someone new, and what it was worth when last looked at.
+  /// A place for someone new, and what it was worth when last computed.
   struct Candidate {
     Place place;
     bool stale = true;  ///< someone was placed about there since

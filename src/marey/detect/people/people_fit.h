@@ -16,7 +16,7 @@ namespace marey::detect::people {
 struct Placed {
   Box box;           ///< px; of the size expected at its place, or of the expected person's own size
   double cover = 0;  ///< how well the body lies on foreground that no one before it explains: 1 wholly, 0 and below not
-  double seen = 0;   ///< share of the body that lies on foreground, whoever else explains it, in [0, 1]
+  double seen = 0;   ///< share of the body that lies on foreground, whatever else explains it, in [0, 1]
   int known = -1;    ///< which of the known people this is; −1 for a new one
 };
 
@@ -28,7 +28,7 @@ struct FitOptions {
   int cells_tall = 32;            ///< resolution: a person is this many cells tall
 };
 
-/// What is known of the scene where people are looked for.
+/// What is known of the scene where people are searched for.
 struct FitScene {
   cv::Size image;                                                    ///< px
   std::function<std::optional<PersonSize>(double, double)> size_at;  ///< of a person with feet at (x, y); nothing where none can be

@@ -14,7 +14,7 @@ struct BodyPart {
 };
 
 /// Foreground on a coarse grid, with sums over rectangles from an integral image: how much of a part of a body at any place is
-/// foreground that nobody explains yet. `explain` takes somebody's pixels out, so that they count neither way.
+/// foreground that no person explains yet. `explain` takes a person's pixels out, so that they count neither for nor against.
 class PeopleGrid {
  public:
   /// Covers `place` (px, may reach beyond the picture) with square cells of `cell` px; all of it empty.
@@ -26,7 +26,7 @@ class PeopleGrid {
   /// As it was after `fill`; `sum` must follow.
   void reset();
 
-  /// The pixels of the body in `box` count neither way from now on; `sum` must follow.
+  /// The pixels of the body in `box` count neither for nor against from now on; `sum` must follow.
   void explain(const Box& box);
 
   struct alignas(16) Count {

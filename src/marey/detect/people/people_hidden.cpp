@@ -1,7 +1,7 @@
 // A picture of small cells, each with two counts: how often a person's body should have covered it, and how often something was
 // seen there. Old evidence fades by halving, so that a parked car that leaves is forgotten. Only the inner part of the body
 // is counted: the rest of a box is often empty.
-// Cost: one look at the mask for each cell under a body, some hundreds a person.
+// Cost: one reading of the mask for each cell under a body, some hundreds a person.
 #include "marey/detect/people/people_hidden.h"
 
 #include <algorithm>

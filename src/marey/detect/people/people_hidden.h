@@ -16,7 +16,7 @@ class HiddenPlaces {
   /// A person's whole body lies in `person`; `mask` (CV_8UC1) is where it was seen.
   void note(const Box& person, const cv::Mat& mask);
 
-  /// Whether pixel (x, y) hides whoever is behind it; false outside the picture.
+  /// Whether pixel (x, y) hides a person behind it; false outside the picture.
   bool at(double x, double y) const {
     if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return false;
     const Cell& cell = cells_[static_cast<std::size_t>(static_cast<int>(y) / side_) * columns_ + static_cast<int>(x) / side_];

@@ -26,8 +26,8 @@ constexpr double kSmallestHeight = 12;           // px; below this a body has no
 constexpr double kFlattest = 1.2, kTallest = 5;  // height over width of what may be one upright person
 constexpr double kAgreement = 0.2;               // of the height
 constexpr double kTukey = 0.3;                   // of the height; a region further off has no say
-constexpr double kNeeded = 6;                    // weight of agreeing regions without which nothing is claimed
-constexpr double kHorizon = 0.6;                 // of the smallest height seen: nobody is smaller
+constexpr double kNeeded = 6;                    // weight of agreeing regions without which nothing is said
+constexpr double kHorizon = 0.6;                 // of the smallest height seen: no person is smaller
 constexpr int kTrials = 400;
 
 /// Small, fast, the same everywhere; quality does not matter here.

@@ -14,17 +14,17 @@ namespace marey::detect::people {
 /// they stand on. A table on a grid, because it is asked for thousands of places in each frame.
 class PersonSizeMap {
  public:
-  /// `size_at` tells the size of a person with feet at (x, y), px; nothing where nobody can stand. It is asked for places all over
-  /// the picture of size `image`, and beyond: somebody's feet may lie outside.
+  /// `size_at` gives the size of a person with feet at (x, y), px; nothing where no person can stand. It is asked for places all
+  /// over the picture of size `image`, and beyond: feet may lie outside.
   PersonSizeMap(cv::Size image, const std::function<std::optional<PersonSize>(double, double)>& size_at);
 
-  /// Between the places of the grid; nothing where nobody can stand.
+  /// Between the places of the grid; nothing where no person can stand.
   std::optional<PersonSize> at(double x, double y) const;
 
  private:
   double left_, top_;
   int columns_, rows_;
-  std::vector<PersonSize> cells_;  ///< height 0 where nobody can stand
+  std::vector<PersonSize> cells_;  ///< height 0 where no person can stand
 };
 
 }  // namespace marey::detect::people

@@ -161,9 +161,10 @@ void write_camera(cv::FileStorage& file, const RigCamera& camera) {
   file << "name" << camera.name;
   if (camera.size) file << "image_width" << camera.size->width << "image_height" << camera.size->height;
   if (camera.lens) {
-    // OpenCV has no such lens as Tsai's.
+    // OpenCV has these two models; any other becomes the nearest of the first.
     geometry::Lens lens = *camera.lens;
-    if (std::holds_alternative<geometry::TsaiLens>(lens)) lens = as_brown(camera, geometry::BrownLens::coefficients, "OpenCV");
+    const bool known = std::holds_alternative<geometry::BrownLens>(lens) || std::holds_alternative<geometry::FisheyeLens>(lens);
+    if (!known) lens = as_brown(camera, geometry::BrownLens::coefficients, "OpenCV");
     file << "camera_matrix"
          << as_mat(Matrix<3>{{geometry::focal_of(lens).x(), 0, geometry::principal_of(lens).x()},
                              {0, geometry::focal_of(lens).y(), geometry::principal_of(lens).y()},

@@ -7,13 +7,14 @@
 #include <fstream>
 #include <set>
 
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/format/rig/lens_fit.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/self_cal_folder.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::format::rig {
 namespace {
@@ -54,8 +55,8 @@ void check_rotation(Matrix<3>& rotation, const std::string& path, const std::str
     throw Error("{}: camera \"{}\": its rotation is none: rows must have length 1 and be perpendicular", path, name);
   if (rotation.determinant() < 0) throw Error("{}: camera \"{}\": its rotation is a mirroring (determinant -1)", path, name);
   if (off < 1e-9) return;
-  const Eigen::JacobiSVD<Matrix<3>> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  rotation = svd.matrixU() * svd.matrixV().transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(rotation);
+  rotation = svd.U * svd.V.transpose();
 }
 
 }  // namespace

@@ -50,10 +50,10 @@ std::optional<cv::Rect> read_region(const Section& section) {
 
 geometry::Lens blank_lens(const Section& section) {
   const auto model = section.text("model");
-  if (!model || *model == geometry::BrownLens::name) return geometry::BrownLens{};
-  if (*model == geometry::FisheyeLens::name) return geometry::FisheyeLens{};
-  if (*model == geometry::TsaiLens::name) return geometry::TsaiLens{};
-  section.problem("model", fmt::format("model \"{}\" is unknown; there are: brown, fisheye, tsai", shown(*model)));
+  if (!model) return geometry::BrownLens{};
+  if (const auto lens = geometry::lens_named(*model)) return *lens;
+  section.problem("model",
+                  fmt::format("model \"{}\" is unknown; there are: {}", shown(*model), fmt::join(geometry::lens_names(), ", ")));
   return geometry::BrownLens{};
 }
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::format::rig {
 namespace {
@@ -151,8 +151,8 @@ std::optional<Matrix<3>> Section::rotation(std::string_view key) const {
   } else if (off < kRotationExact) {
     return given;
   } else {
-    const Eigen::JacobiSVD<Matrix<3>> svd(*given, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    return Matrix<3>(svd.matrixU() * svd.matrixV().transpose());
+    const geometry::SingularValues3 svd = geometry::singular_values(*given);
+    return Matrix<3>(svd.U * svd.V.transpose());
   }
   return std::nullopt;
 }

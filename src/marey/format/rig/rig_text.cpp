@@ -3,6 +3,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/whole_file.h"
@@ -88,7 +89,7 @@ class Lines {
 void add_lens(Lines& lines, const geometry::Lens& lens) {
   std::visit(
       [&](const auto& model) {
-        lines.add("model", in_quotes(model.name), "brown | fisheye | tsai");
+        lines.add("model", in_quotes(model.name), fmt::format("{}", fmt::join(geometry::lens_names(), " | ")));
         lines.add("focal", row(model.focal), "px");
         lines.add("principal", row(model.principal), "px; a pixel's whole number is its centre");
         // Brown's first five are the common ones; its last three are written where they are used.

@@ -49,16 +49,17 @@ std::optional<double> edge_along(const cv::Mat& luma, const Vector<2>& foot, con
   std::array<double, 2 * kReadings + 3> value;
   for (int i = 0; i < static_cast<int>(value.size()); ++i) value[i] = brightness(luma, foot + kStep * (i - kReadings - 1) * normal);
   std::array<double, 2 * kReadings + 1> slope;
-  int best = -1;
+  std::optional<int> strongest;
   double most = kLeastSlope;
   for (int i = 0; i <= 2 * kReadings; ++i) slope[i] = std::abs(value[i + 2] - value[i]) / (2 * kStep);
   for (int i = 1; i < 2 * kReadings; ++i) {
     if (slope[i] < slope[i - 1] || slope[i] < slope[i + 1]) continue;
     const double offset = kStep * (i - kReadings);
     const double worth = slope[i] * std::exp(-0.5 * offset * offset / (kNearness * kNearness));
-    if (worth > most) best = i, most = worth;
+    if (worth > most) strongest = i, most = worth;
   }
-  if (best < 0) return std::nullopt;
+  if (!strongest) return std::nullopt;
+  const int best = *strongest;
   const double before = slope[best - 1], here = slope[best], after = slope[best + 1];
   const double bend = before - 2 * here + after;
   return kStep * (best - kReadings + (bend < 0 ? (before - after) / (2 * bend) : 0));

@@ -81,7 +81,7 @@ class OutlineFollower::Implementation {
  public:
   explicit Implementation(const OutlineOptions& options) : options_(options), places_(options.lines) { check(options); }
 
-  std::span<const Observation<2>> look(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
+  std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
     const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;
     now_ = frame.time;
     luma_ = frame.picture.luma();
@@ -364,7 +364,7 @@ class OutlineFollower::Implementation {
 
   OutlineOptions options_;
   std::optional<Timestamp> now_;
-  cv::Mat luma_;        // of the frame last looked at
+  cv::Mat luma_;        // of the frame last observed
   Timestamp before_{};  // of the last frame attached
   std::vector<FollowedTarget> targets_;
   std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame
@@ -383,9 +383,9 @@ OutlineFollower::~OutlineFollower() = default;
 OutlineFollower::OutlineFollower(OutlineFollower&&) noexcept = default;
 OutlineFollower& OutlineFollower::operator=(OutlineFollower&&) noexcept = default;
 
-std::span<const Observation<2>> OutlineFollower::look(const Frame& frame, const Foreground& foreground,
-                                                      std::span<const Detection> detections) {
-  return self_->look(frame, foreground, detections);
+std::span<const Observation<2>> OutlineFollower::observe(const Frame& frame, const Foreground& foreground,
+                                                         std::span<const Detection> detections) {
+  return self_->observe(frame, foreground, detections);
 }
 
 std::span<const Track<2>> OutlineFollower::attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {

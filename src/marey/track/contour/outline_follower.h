@@ -25,12 +25,12 @@ struct OutlineOptions {
 
 /// Follows the outlines of the targets of another tracker: who is who stays that tracker's affair. A frame takes two calls:
 ///
-///   const auto hints = outlines.look(frame, seen.foreground, seen.detections);    // predict, search, correct
+///   const auto hints = outlines.observe(frame, seen.foreground, seen.detections);    // predict, search, correct
 ///   auto observations = observations_of(seen.detections);                         // detections first, hints after them
 ///   observations.insert(observations.end(), hints.begin(), hints.end());
 ///   const auto tracks = outlines.attach(tracker.step(frame.time, observations), seen.detections);
 ///
-/// `look` says what the outlines alone can say: an observation, too weak to begin a track, for each target that it found in the
+/// `observe` says what the outlines alone can say: an observation, too weak to begin a track, for each target that it found in the
 /// picture and that no detection explains (partly hidden, or its silhouette was rejected). `attach` takes the tracker's word for
 /// who was seen and where: it begins outlines from two consecutive silhouettes, ends those of lost tracks, puts right an
 /// outline that left its target, and returns the tracks with their outlines and, where the outline was seen, its box.
@@ -43,9 +43,9 @@ class OutlineFollower {
   OutlineFollower& operator=(OutlineFollower&&) noexcept;
 
   /// Valid until the next call. Frames come in order; `foreground` may be empty (then light alone is searched).
-  std::span<const Observation<2>> look(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections);
+  std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections);
 
-  /// `tracks` of the frame last looked at, whose `observation` counts detections first, then the observations `look` returned.
+  /// `tracks` of the frame last observed, whose `observation` counts detections first, then the observations `observe` returned.
   /// Valid until the next call. A track without an outline (not seen twice yet, too small, no usable silhouette) is returned as
   /// it came.
   std::span<const Track<2>> attach(std::span<const Track<2>> tracks, std::span<const Detection> detections);

@@ -100,7 +100,7 @@ TEST(OutlineFollower, OneWhoIsSeenIsFollowedFromItsSecondSilhouetteOn) {
   for (int k = 0; k < 40; ++k) {
     const auto polygon = body({30 + 1.5 * k, 60}, 50, 0.2 * k);
     const Detection seen = detection_of(polygon);
-    const auto hints = follower.look(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, std::span(&seen, 1));
+    const auto hints = follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, std::span(&seen, 1));
     EXPECT_TRUE(hints.empty()) << "the detection says it all";
     const Track<2> track = track_of(7, seen, 0);
     const auto tracks = follower.attach(std::span(&track, 1), std::span(&seen, 1));
@@ -123,7 +123,7 @@ TEST(OutlineFollower, LinesAloneFollowWhomTheDetectorMissesAndSaySo) {
     const Detection seen = detection_of(polygon);
     const bool missed = k > 10;
     const std::span<const Detection> detections(&seen, missed ? 0 : 1);
-    const auto hints = follower.look(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, detections);
+    const auto hints = follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, detections);
     ASSERT_EQ(hints.size(), missed ? 1u : 0u) << k;
     if (missed) {
       EXPECT_GT(geometry::iou(*hints[0].box, seen.box), 0.8) << k;
@@ -143,7 +143,7 @@ TEST(OutlineFollower, OneWhoVanishesKeepsItsShapeAndCoasts) {
     const Detection seen = detection_of(polygon);
     const bool hidden = k >= 15;
     const std::span<const Detection> detections(&seen, hidden ? 0 : 1);
-    follower.look(frame_at(k), Foreground{drawn(std::span(&polygon, hidden ? 0 : 1)), {}}, detections);
+    follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, hidden ? 0 : 1)), {}}, detections);
     const Track<2> track = track_of(1, seen, hidden ? std::nullopt : std::optional<int>(0));
     const auto tracks = follower.attach(std::span(&track, 1), detections);
     if (k == 0) continue;
@@ -164,7 +164,7 @@ TEST(OutlineFollower, LinesOnANeighbourAreNotBelieved) {
     std::vector<Detection> seen = {detection_of(bodies[0]), detection_of(bodies[1])};
     const bool meet = geometry::intersection(seen[0].box, seen[1].box).area() > 0;
     for (Detection& one : seen) one.group = meet ? std::optional<int>(0) : std::nullopt;
-    follower.look(frame_at(k), Foreground{drawn(bodies), {}}, seen);
+    follower.observe(frame_at(k), Foreground{drawn(bodies), {}}, seen);
     const std::vector<Track<2>> given = {track_of(1, seen[0], 0), track_of(2, seen[1], 1)};
     const auto tracks = follower.attach(given, seen);
     if (k == 0) continue;
@@ -209,7 +209,7 @@ TEST(OutlineFollower, NoShapeGivesWhatIsNotFinite) {
       if (seed % 4 == 0) polygon = {place, place + Vector<2>(1, 0), place + Vector<2>(1, 1), place + Vector<2>(0, 1)};
       const Detection seen = detection_of(polygon);
       const cv::Mat mask = seed % 3 == 0 ? cv::Mat::zeros(kPicture, CV_8UC1) : drawn(std::span(&polygon, 1));
-      const auto hints = follower.look(frame_at(k), Foreground{mask, {}}, std::span(&seen, k % 3 == 2 ? 0 : 1));
+      const auto hints = follower.observe(frame_at(k), Foreground{mask, {}}, std::span(&seen, k % 3 == 2 ? 0 : 1));
       for (const Observation<2>& hint : hints) EXPECT_TRUE(hint.value.allFinite()) << "seed " << seed;
       const Track<2> track = track_of(1, seen, k % 3 == 2 ? std::nullopt : std::optional<int>(0));
       const auto tracks = follower.attach(std::span(&track, 1), std::span(&seen, 1));

@@ -11,9 +11,9 @@
 
 namespace marey::track::ground {
 
-/// Finds targets that are one person: cameras that disagree about the place of somebody may each feed a target of its own. Two
+/// Finds targets that are one person: cameras that disagree about the place of a person may each feed a target of its own. Two
 /// that one camera saw in one frame are two people. Two that stay together for a while, each seen, and never both by one camera,
-/// are one. Where only one camera looks, nothing is ever merged.
+/// are one. With one camera nothing is ever merged.
 /// Cost: targets · neighbours an instant.
 class GroundDuplicates {
  public:
@@ -21,18 +21,18 @@ class GroundDuplicates {
     TrackId id{};
     Vector<2> position = Vector<2>::Zero();        ///< m
     Matrix<2> covariance = Matrix<2>::Identity();  ///< m²
-    CameraMask cameras = 0;                        ///< who saw it at this instant
+    CameraMask cameras = 0;                        ///< those that saw it at this instant
   };
 
-  /// Pairs of who stays and who goes, the older staying; nobody goes twice or stays after going. `members` are by id;
-  /// `disagreement` in m: how far apart two cameras see one person, standard deviation. Valid until the next call.
+  /// Pairs of the target that stays and the one that goes, the older staying; none goes twice or stays after going. `members` are
+  /// by id; `disagreement` in m: how far apart two cameras see one person, standard deviation. Valid until the next call.
   const std::vector<std::pair<TrackId, TrackId>>& find(Timestamp now, std::span<const Member> members, double disagreement);
 
  private:
   struct Pair {
-    Timestamp since{};  // they have been together, and nobody saw both
+    Timestamp since{};  // they have been together, and no camera saw both
     Timestamp latest{};
-    CameraMask first = 0, second = 0;  // who saw them meanwhile
+    CameraMask first = 0, second = 0;  // those that saw them meanwhile
   };
   bool together(const Member& a, const Member& b, double disagreement) const;
 

@@ -6,22 +6,21 @@
 namespace marey::track::ground {
 namespace {
 
-template <typename F>
-class GroundGnn final : public GroundFollower<F> {
+class GroundGnn final : public GroundFollower {
  public:
-  using GroundFollower<F>::GroundFollower;
+  using GroundFollower::GroundFollower;
 
  private:
-  void associate(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, double late,
-                 std::span<const GroundPair<F>> pairs) override {
+  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, double late,
+                 std::span<const GroundPair> pairs) override {
     gains_.clear();
-    for (const GroundPair<F>& pair : pairs) gains_.push_back({pair.target, pair.observation, this->gain_of(targets, pair)});
+    for (const GroundPair& pair : pairs) gains_.push_back({pair.target, pair.observation, gain_of(targets, pair)});
     const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
-      if (given[i] == assign::GatedAssigner::nobody) continue;
+      if (given[i] == assign::kNoIndex) continue;
       const Observation<2>& one = seen[given[i]];
-      this->rules().correct(targets[i], one, this->rules().at_instant(targets[i], one, late), this->now());
-      this->claim(i, given[i]);
+      rules().correct(targets[i], one, rules().at_instant(targets[i], one, late), now());
+      match(i, given[i]);
     }
   }
 
@@ -32,10 +31,7 @@ class GroundGnn final : public GroundFollower<F> {
 }  // namespace
 
 std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views) {
-  return filter::with_filter<2>(
-      options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
-        return std::make_unique<GroundGnn<F>>(options, filter, std::move(views));
-      });
+  return std::make_unique<GroundGnn>(options, std::move(views));
 }
 
 }  // namespace marey::track::ground

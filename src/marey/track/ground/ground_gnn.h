@@ -4,7 +4,7 @@
 
 namespace marey::track::ground {
 
-/// Follows people on the ground by global nearest neighbour: in each look the one assignment of greatest likelihood.
+/// Follows people on the ground by global nearest neighbour: in each view the one assignment of greatest likelihood.
 std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views);
 
 }  // namespace marey::track::ground

@@ -16,14 +16,14 @@ void GroundHistory::begin(Timestamp now) {
   levels_.back().now = now;
 }
 
-int GroundHistory::claim(int look, int observation, int before) {
-  levels_.back().claims.push_back({look, observation, before});
-  return static_cast<int>(levels_.back().claims.size()) - 1;
+int GroundHistory::match(int view, int observation, int before) {
+  levels_.back().matches.push_back({view, observation, before});
+  return static_cast<int>(levels_.back().matches.size()) - 1;
 }
 
-GroundHistory::Place GroundHistory::note(const Place& before, const Track<2>& track, int claims) {
+GroundHistory::Place GroundHistory::note(const Place& before, const Track<2>& track, int matches) {
   Level& level = levels_.back();
-  level.records.push_back({track, before.record, claims});
+  level.records.push_back({track, before.record, matches});
   return {first_ + static_cast<std::int64_t>(levels_.size()) - 1, static_cast<int>(level.records.size()) - 1};
 }
 
@@ -39,8 +39,9 @@ std::optional<std::int64_t> GroundHistory::newest() const {
 }
 
 int GroundHistory::past(Place place, std::int64_t level) const {
-  if (place.level < level) return nobody;
-  for (; place.level > level && place.record != nobody; --place.level) place.record = at(place.level).records[place.record].before;
+  if (place.level < level) return assign::kNoIndex;
+  for (; place.level > level && place.record != assign::kNoIndex; --place.level)
+    place.record = at(place.level).records[place.record].before;
   return place.record;
 }
 
@@ -49,7 +50,7 @@ void GroundHistory::decide(std::int64_t level, std::span<const Place> places) {
   chosen_.resize(std::max(chosen_.size(), count));
   for (std::size_t i = 0; i < count; ++i) chosen_[i].clear();
   for (Place place : places) {
-    for (; place.level >= first_ && place.record != nobody; --place.level) {
+    for (; place.level >= first_ && place.record != assign::kNoIndex; --place.level) {
       if (place.level <= level) chosen_[static_cast<std::size_t>(place.level - first_)].push_back(place.record);
       place.record = at(place.level).records[place.record].before;
     }
@@ -58,42 +59,42 @@ void GroundHistory::decide(std::int64_t level, std::span<const Place> places) {
     Level& decided = levels_.front();
     for (const int index : chosen_[i]) {
       const Record& record = decided.records[index];
-      told_tracks_.push_back(record.track);
-      for (int c = record.claims; c != nobody; c = decided.claims[c].before) {
-        told_claims_.push_back({record.track.id, decided.claims[c].look, decided.claims[c].observation});
+      decided_tracks_.push_back(record.track);
+      for (int c = record.matches; c != assign::kNoIndex; c = decided.matches[c].before) {
+        decided_matches_.push_back({record.track.id, decided.matches[c].view, decided.matches[c].observation});
       }
     }
-    const Told before = told_.empty() ? Told{} : told_.back();
-    std::sort(told_tracks_.begin() + static_cast<std::ptrdiff_t>(before.tracks), told_tracks_.end(),
+    const Decided before = decided_.empty() ? Decided{} : decided_.back();
+    std::sort(decided_tracks_.begin() + static_cast<std::ptrdiff_t>(before.tracks), decided_tracks_.end(),
               [](const Track<2>& a, const Track<2>& b) { return a.id < b.id; });
-    std::sort(told_claims_.begin() + static_cast<std::ptrdiff_t>(before.claims), told_claims_.end(),
+    std::sort(decided_matches_.begin() + static_cast<std::ptrdiff_t>(before.matches), decided_matches_.end(),
               [](const ObservationMatch& a, const ObservationMatch& b) {
-                return std::tuple(a.look, a.observation) < std::tuple(b.look, b.observation);
+                return std::tuple(a.view, a.observation) < std::tuple(b.view, b.observation);
               });
-    told_.push_back({decided.now, told_tracks_.size(), told_claims_.size()});
+    decided_.push_back({decided.now, decided_tracks_.size(), decided_matches_.size()});
     decided.records.clear();
-    decided.claims.clear();
+    decided.matches.clear();
     spare_.push_back(std::move(decided));
     levels_.pop_front();
     ++first_;
   }
 }
 
-void GroundHistory::forget_told() {
-  told_.clear();
-  told_tracks_.clear();
-  told_claims_.clear();
+void GroundHistory::forget_decided() {
+  decided_.clear();
+  decided_tracks_.clear();
+  decided_matches_.clear();
 }
 
-std::span<const GroundDecision> GroundHistory::told() {
+std::span<const GroundDecision> GroundHistory::decided() {
   decisions_.clear();
   std::size_t tracks = 0;
-  std::size_t claims = 0;
-  for (const Told& one : told_) {
-    decisions_.push_back({one.now, std::span(told_tracks_).subspan(tracks, one.tracks - tracks),
-                          std::span(told_claims_).subspan(claims, one.claims - claims)});
+  std::size_t matches = 0;
+  for (const Decided& one : decided_) {
+    decisions_.push_back({one.now, std::span(decided_tracks_).subspan(tracks, one.tracks - tracks),
+                          std::span(decided_matches_).subspan(matches, one.matches - matches)});
     tracks = one.tracks;
-    claims = one.claims;
+    matches = one.matches;
   }
   return decisions_;
 }

@@ -11,9 +11,9 @@ std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<cons
   find_groups(pairs, static_cast<int>(begins.size()));
   children_.clear();
   child_tree_.clear();
-  missed_child_.assign(tree_.size(), nobody);
-  pair_child_.assign(pairs.size(), nobody);
-  born_child_.assign(begins.size(), nobody);
+  missed_child_.assign(tree_.size(), assign::kNoIndex);
+  pair_child_.assign(pairs.size(), assign::kNoIndex);
+  born_child_.assign(begins.size(), assign::kNoIndex);
   next_clusters_.clear();
   for (const Group& group : groups_) {
     Cluster parents = combine(group.clusters);
@@ -32,7 +32,7 @@ std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<cons
 /// What gates tie together: clusters, and the observations in the gates of any of their leaves.
 void GroundHypotheses::find_groups(std::span<const assign::GatedPair> pairs, int observations) {
   const int clusters = static_cast<int>(clusters_.size());
-  cluster_of_.assign(tree_.size(), nobody);
+  cluster_of_.assign(tree_.size(), assign::kNoIndex);
   for (int i = 0; i < clusters; ++i) {
     for (const Hypothesis& hypothesis : clusters_[i]) {
       for (const int leaf : hypothesis.leaves) cluster_of_[leaf] = i;
@@ -43,7 +43,7 @@ void GroundHypotheses::find_groups(std::span<const assign::GatedPair> pairs, int
   for (const assign::GatedPair& pair : pairs) {
     ++first_pair_[pair.row + 1];
     const int cluster = cluster_of_[pair.row];  // none where every hypothesis that held the leaf was pruned
-    if (cluster != nobody) sets_.join(cluster, clusters + pair.column);
+    if (cluster != assign::kNoIndex) sets_.join(cluster, clusters + pair.column);
   }
   std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
   elements_.clear();
@@ -100,7 +100,7 @@ void GroundHypotheses::miss_all(Cluster& cluster, std::span<const double> missed
   for (Hypothesis& hypothesis : cluster) {
     for (int& leaf : hypothesis.leaves) {
       hypothesis.weight += missed[leaf];
-      leaf = child(leaf, nobody, missed_child_[leaf]);
+      leaf = child(leaf, assign::kNoIndex, missed_child_[leaf]);
     }
   }
   settle(cluster);
@@ -108,10 +108,10 @@ void GroundHypotheses::miss_all(Cluster& cluster, std::span<const double> missed
 
 /// The number of the child in `slot`, which is made where it does not stand yet.
 int GroundHypotheses::child(int leaf, int observation, int& slot) {
-  if (slot == nobody) {
+  if (slot == assign::kNoIndex) {
     slot = static_cast<int>(children_.size());
     children_.push_back({leaf, observation});
-    child_tree_.push_back(leaf == nobody ? next_tree_++ : tree_[leaf]);
+    child_tree_.push_back(leaf == assign::kNoIndex ? next_tree_++ : tree_[leaf]);
   }
   return slot;
 }
@@ -151,13 +151,14 @@ void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observ
   taken_.assign(answers.size() * columns, 0);
   for (std::size_t a = 0; a < answers.size(); ++a) {
     for (const int column : answers[a].column_of_row) {
-      if (column != nobody) taken_[a * columns + column] = 1;
+      if (column != assign::kNoIndex) taken_[a * columns + column] = 1;
     }
   }
   for (int column = 0; column < columns; ++column) {
     bool unexplained = false;
     for (std::size_t a = 0; a < answers.size(); ++a) unexplained = unexplained || !taken_[a * columns + column];
-    if (unexplained && begins[observations[column]]) child(nobody, observations[column], born_child_[observations[column]]);
+    if (unexplained && begins[observations[column]])
+      child(assign::kNoIndex, observations[column], born_child_[observations[column]]);
   }
   Cluster cluster;
   bool anybody = false;
@@ -167,15 +168,15 @@ void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observ
     int row = 0;
     for (const int leaf : parents[answers[a].problem].leaves) {
       const int first = first_pair_[leaf];
-      const int column = first < first_pair_[leaf + 1] ? answers[a].column_of_row[row++] : nobody;
+      const int column = first < first_pair_[leaf + 1] ? answers[a].column_of_row[row++] : assign::kNoIndex;
       int pair = first;
-      while (column != nobody && pairs[pair].column != observations[column]) ++pair;
-      one.leaves.push_back(column == nobody ? child(leaf, nobody, missed_child_[leaf])
-                                            : child(leaf, observations[column], pair_child_[pair]));
+      while (column != assign::kNoIndex && pairs[pair].column != observations[column]) ++pair;
+      one.leaves.push_back(column == assign::kNoIndex ? child(leaf, assign::kNoIndex, missed_child_[leaf])
+                                                      : child(leaf, observations[column], pair_child_[pair]));
     }
     for (int column = 0; column < columns; ++column) {
       const int born = born_child_[observations[column]];
-      if (born != nobody && !taken_[a * columns + column]) one.leaves.push_back(born);
+      if (born != assign::kNoIndex && !taken_[a * columns + column]) one.leaves.push_back(born);
     }
     anybody = anybody || !one.leaves.empty();
   }
@@ -213,7 +214,7 @@ void GroundHypotheses::decide(std::span<const int> past) {
     while (a != best.leaves.end() || b != other.leaves.end()) {
       const bool has_a = a != best.leaves.end() && (b == other.leaves.end() || tree_[*a] <= tree_[*b]);
       const bool has_b = b != other.leaves.end() && (a == best.leaves.end() || tree_[*b] <= tree_[*a]);
-      if ((has_a ? past[*a] : nobody) != (has_b ? past[*b] : nobody)) return false;
+      if ((has_a ? past[*a] : assign::kNoIndex) != (has_b ? past[*b] : assign::kNoIndex)) return false;
       if (has_a) ++a;
       if (has_b) ++b;
     }
@@ -272,12 +273,12 @@ void GroundHypotheses::take_apart(const Cluster& cluster, std::span<const int> t
 }
 
 std::span<const int> GroundHypotheses::compact() {
-  number_.assign(tree_.size(), nobody);
+  number_.assign(tree_.size(), assign::kNoIndex);
   order_.clear();
   for (Cluster& cluster : clusters_) {
     for (Hypothesis& hypothesis : cluster) {
       for (int& leaf : hypothesis.leaves) {
-        if (number_[leaf] == nobody) {
+        if (number_[leaf] == assign::kNoIndex) {
           number_[leaf] = static_cast<int>(order_.size());
           order_.push_back(leaf);
         }

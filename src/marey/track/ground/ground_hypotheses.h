@@ -2,12 +2,12 @@
 // that stands for one target with one history (ground_mht.h keeps its state), and a hypothesis is a set of leaves with a weight.
 //
 // Reid, "An algorithm for tracking multiple targets", IEEE Trans. AC 24 (1979); Cox & Hingorani, "An efficient implementation of
-// Reid's multiple hypothesis tracking algorithm", PAMI 18 (1996). Targets whose gates touch within a look form a cluster;
-// clusters are independent, so that 2^n hypotheses over all targets are a few over each cluster. A look turns each hypothesis of a
+// Reid's multiple hypothesis tracking algorithm", PAMI 18 (1996). Targets whose gates touch within a view form a cluster;
+// clusters are independent, so that 2^n hypotheses over all targets are a few over each cluster. A view turns each hypothesis of a
 // cluster into children, of which the best over all parents are found in order by Murty's method, and no others are ever formed.
 // Hypotheses share leaves: all that give a leaf the same observation have the same child of it. Clusters merge where an
 // observation lies in gates of both, and split where their targets share no observation any longer.
-// Cost a look and cluster: about hypotheses · (targets + pairs), and one shortest path for each hypothesis kept.
+// Cost a view and cluster: about hypotheses · (targets + pairs), and one shortest path for each hypothesis kept.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,6 @@ namespace marey::track::ground {
 
 class GroundHypotheses {
  public:
-  static constexpr int nobody = -1;
-
   struct Limits {
     int hypotheses = 50;     ///< of a cluster, at most
     int leaves = 2000;       ///< of all hypotheses of a cluster together, counted once for each: in large ones fewer are kept
@@ -39,16 +37,16 @@ class GroundHypotheses {
   /// The best hypothesis first; never without one.
   using Cluster = std::vector<Hypothesis>;
 
-  /// How a leaf goes on after a look: leaf i of after the look is `leaf` of before it, given `observation`. Where `leaf` is nobody
-  /// the observation begins a tree; where `observation` is nobody the leaf was given nothing.
+  /// How a leaf goes on after a view: leaf i of after the view is `leaf` of before it, given `observation`. Where `leaf` is none
+  /// the observation begins a tree; where `observation` is none the leaf was given nothing.
   struct Child {
-    int leaf = nobody;
-    int observation = nobody;
+    int leaf = assign::kNoIndex;
+    int observation = assign::kNoIndex;
   };
 
   explicit GroundHypotheses(const Limits& limits) : limits_(limits) {}
 
-  /// Takes in a look. `pairs`: leaf, observation and the logarithm of how much likelier that is than that nothing known caused the
+  /// Takes in a view. `pairs`: leaf, observation and the logarithm of how much likelier that is than that nothing known caused the
   /// observation; by leaf, then by observation. `missed`: of each leaf, the logarithm of the probability that it is given nothing.
   /// `begins`: of each observation, whether a tree begins where nothing else explains it. Renumbers all leaves. Valid until the
   /// next call.
@@ -56,21 +54,21 @@ class GroundHypotheses {
                                 std::span<const char> begins);
 
   /// Makes one of hypotheses that differ in nothing that matters any longer: those with the same trees, whose leaves `alike(a, b)`
-  /// calls the same. The likelier one stays and takes over the other's weight, so that of many ways to explain a scuffle the one
-  /// memory is left of who came out of it where.
+  /// calls the same. The likelier one stays and takes over the other's weight, so that of many explanations of a scuffle the one
+  /// memory is left of which target came out of it where.
   template <typename Alike>
   void fold(Alike&& alike);
 
-  /// Keeps of each cluster the hypotheses whose trees came by the same way as the best's: `past` tells of each leaf which way.
+  /// Keeps of each cluster the hypotheses whose trees have the same past as the best's: `past` numbers each leaf's.
   void decide(std::span<const int> past);
 
   /// Takes leaves out of all hypotheses.
   void drop(std::span<const char> gone);
 
-  /// Splits clusters. `told(leaf, tell)` calls tell(key) for each observation, however named, that is in the leaf's history and
-  /// not decided; trees without one in common, of any of their leaves, need not be in one cluster.
-  template <typename Told>
-  void split(Told&& told);
+  /// Splits clusters. `for_each_key(leaf, visit)` calls visit(key) for each observation, however named, that is in the leaf's
+  /// history and not decided; trees without one in common, of any of their leaves, need not be in one cluster.
+  template <typename ForEachKey>
+  void split(ForEachKey&& for_each_key);
 
   /// Renumbers the leaves, leaving out those that no hypothesis has; the numbers that those which stay had before, in order. Valid
   /// until the next call.
@@ -109,7 +107,7 @@ class GroundHypotheses {
   std::vector<int> tree_;  // of each leaf
   int next_tree_ = 1;
   assign::KBestAssigner assigner_;
-  // What a look needs.
+  // What a view needs.
   assign::DisjointSets sets_;
   std::vector<int> cluster_of_, first_pair_;
   std::vector<std::pair<int, int>> elements_;
@@ -152,8 +150,8 @@ void GroundHypotheses::fold(Alike&& alike) {
   }
 }
 
-template <typename Told>
-void GroundHypotheses::split(Told&& told) {
+template <typename ForEachKey>
+void GroundHypotheses::split(ForEachKey&& for_each_key) {
   std::vector<Cluster> parts;
   for (Cluster& cluster : clusters_) {
     const std::vector<int> trees = trees_of(cluster, tree_);
@@ -173,7 +171,7 @@ void GroundHypotheses::split(Told&& told) {
       }
       std::sort(order_.begin(), order_.end());
       order_.erase(std::unique(order_.begin(), order_.end()), order_.end());
-      for (const int leaf : order_) told(leaf, [&](std::int64_t key) { shares_.emplace_back(key, place(leaf)); });
+      for (const int leaf : order_) for_each_key(leaf, [&](std::int64_t key) { shares_.emplace_back(key, place(leaf)); });
       std::sort(shares_.begin(), shares_.end());
       for (std::size_t i = 1; i < shares_.size(); ++i) {
         if (shares_[i].first == shares_[i - 1].first) sets_.join(shares_[i].second, shares_[i - 1].second);

@@ -114,14 +114,13 @@ class Chainer {
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
     std::vector<char> follows(chains.size(), 0);
     for (const int successor : next) {
-      if (successor != assign::GatedAssigner::nobody) follows[successor] = 1;
+      if (successor != assign::kNoIndex) follows[successor] = 1;
     }
     std::vector<std::vector<int>> joined;
     for (std::size_t first = 0; first < chains.size(); ++first) {
       if (follows[first]) continue;
       std::vector<int> whole = chains[first];
-      for (int k = next[first]; k != assign::GatedAssigner::nobody; k = next[k])
-        whole.insert(whole.end(), chains[k].begin(), chains[k].end());
+      for (int k = next[first]; k != assign::kNoIndex; k = next[k]) whole.insert(whole.end(), chains[k].begin(), chains[k].end());
       joined.push_back(std::move(whole));
     }
     chains = std::move(joined);

@@ -76,7 +76,7 @@ double log_continuity(const GroundEnd& tail, const GroundEnd& head, const Ground
 std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,
                                       const GroundChainOptions& options);
 
-/// For each end the beginning that follows it, or GatedAssigner::nobody. `tails[i]` and `heads[i]` belong to one tracklet.
+/// For each end the beginning that follows it, or assign::kNoIndex. `tails[i]` and `heads[i]` belong to one tracklet.
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
                         const GroundChainOptions& options);
 

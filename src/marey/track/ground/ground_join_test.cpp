@@ -125,7 +125,7 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
     const std::vector<int> next = follow(tails, heads, colours, {});
     double sum = 0;
     for (std::size_t k = 0; k < next.size(); ++k) {
-      if (next[k] != assign::GatedAssigner::nobody) sum += *gain_of_joining(tails[k], heads[next[k]], colours, {});
+      if (next[k] != assign::kNoIndex) sum += *gain_of_joining(tails[k], heads[next[k]], colours, {});
     }
     std::vector<char> taken(heads.size(), 0);
     EXPECT_NEAR(sum, best_of_all(0, taken, tails, heads, colours), 1e-9) << "seed " << seed;

@@ -1,5 +1,5 @@
 // Joint probabilistic data association (Fortmann, Bar-Shalom & Scheffe, "Sonar tracking of multiple targets using joint
-// probabilistic data association", IEEE J. Oceanic Engineering 8 (1983)): in a look every target is corrected by the mean of the
+// probabilistic data association", IEEE J. Oceanic Engineering 8 (1983)): in a view every target is corrected by the mean of the
 // observations in its gate, weighed by their probabilities (assign/association_marginals.h), by as much as it is probable that one
 // of them is its own.
 //
@@ -8,7 +8,7 @@
 // covariance of the paper but for the spread of the observations about their mean, which goes into S before. Two targets that
 // stay closer than their observations can tell are drawn together, as is known of the method (coalescence, Blom & Bloem 2000); it
 // is not worked against: where identities matter there, mht is the choice.
-// Whose an observation is, which claims must say, is the assignment of greatest total probability.
+// Which target an observation is matched with is the assignment of greatest total probability.
 #include "marey/track/ground/ground_jpda.h"
 
 #include "marey/assign/association_marginals.h"
@@ -18,39 +18,38 @@
 namespace marey::track::ground {
 namespace {
 
-template <typename F>
-class GroundJpda final : public GroundFollower<F> {
+class GroundJpda final : public GroundFollower {
  public:
-  using GroundFollower<F>::GroundFollower;
+  using GroundFollower::GroundFollower;
 
  private:
-  void associate(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen, double late,
-                 std::span<const GroundPair<F>> pairs) override {
+  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, double late,
+                 std::span<const GroundPair> pairs) override {
     gains_.clear();
-    for (const GroundPair<F>& pair : pairs) gains_.push_back({pair.target, pair.observation, this->gain_of(targets, pair)});
+    for (const GroundPair& pair : pairs) gains_.push_back({pair.target, pair.observation, gain_of(targets, pair)});
     const int rows = static_cast<int>(targets.size()), columns = static_cast<int>(seen.size());
     const auto probable = marginals_.find(rows, columns, gains_);
     for (std::size_t from = 0; from < gains_.size();) {
       std::size_t to = from;
       while (to < gains_.size() && gains_[to].row == gains_[from].row) ++to;
-      GroundTarget<F>& target = targets[gains_[from].row];
+      GroundTarget& target = targets[gains_[from].row];
       correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
       from = to;
     }
-    claim_probable(targets, seen, probable);
+    match_probable(targets, seen, probable);
   }
 
-  void correct(GroundTarget<F>& target, std::span<const Observation<2>> seen, double late,
-               std::span<const assign::GatedPair> pairs, std::span<const double> probable) {
+  void correct(GroundTarget& target, std::span<const Observation<2>> seen, double late, std::span<const assign::GatedPair> pairs,
+               std::span<const double> probable) {
     double any = 0;
     Vector<2> mean = Vector<2>::Zero();
     places_.clear();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      places_.push_back(this->rules().at_instant(target, seen[pairs[i].column], late));
+      places_.push_back(rules().at_instant(target, seen[pairs[i].column], late));
       any += probable[i];
       mean += probable[i] * places_.back().value;
     }
-    if (any < least) return;
+    if (any < kLeast) return;
     mean /= any;
     Matrix<2> R = Matrix<2>::Zero();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -62,31 +61,30 @@ class GroundJpda final : public GroundFollower<F> {
     target.filter.correct(mean, R + (1 / share - 1) * S);
   }
 
-  void claim_probable(std::span<GroundTarget<F>> targets, std::span<const Observation<2>> seen,
-                      std::span<const double> probable) {
+  void match_probable(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, std::span<const double> probable) {
     explained_.assign(seen.size(), 0);
     for (std::size_t i = 0; i < gains_.size(); ++i) {
       explained_[gains_[i].column] += probable[i];
-      gains_[i].gain = probable[i] >= least_claim ? probable[i] : 0;
+      gains_[i].gain = probable[i] >= kLeastMatch ? probable[i] : 0;
     }
     const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
-      if (given[i] == assign::GatedAssigner::nobody) continue;
-      this->rules().take(targets[i], seen[given[i]], this->now());
-      this->claim(i, given[i]);
+      if (given[i] == assign::kNoIndex) continue;
+      rules().take(targets[i], seen[given[i]], now());
+      match(i, given[i]);
     }
-    // What belongs to those who are known, though not to whom, is no newcomer.
+    // What belongs to known targets, though it is open to which, is no newcomer.
     for (int o = 0; o < static_cast<int>(seen.size()); ++o) {
-      if (explained_[o] > 0.5) this->explain(o);
+      if (explained_[o] > 0.5) explain(o);
     }
   }
 
-  static constexpr double least = 1e-6;       // less probable observations change nothing
-  static constexpr double least_claim = 0.2;  // of several whose it might be, the most probable must be this much
+  static constexpr double kLeast = 1e-6;      // less probable observations change nothing
+  static constexpr double kLeastMatch = 0.2;  // of the targets it may be of, the most probable must be this much
 
   std::vector<assign::GatedPair> gains_;
   std::vector<GroundPlace> places_;
-  std::vector<double> explained_;  // of each observation: the probability that it is somebody's
+  std::vector<double> explained_;  // of each observation: the probability that it is a known target's
   assign::AssociationMarginals marginals_;
   assign::GatedAssigner assigner_;
 };
@@ -94,10 +92,7 @@ class GroundJpda final : public GroundFollower<F> {
 }  // namespace
 
 std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::vector<GroundView> views) {
-  return filter::with_filter<2>(
-      options.filter, [&]<typename F>(const typename F::Options& filter) -> std::unique_ptr<GroundTracker> {
-        return std::make_unique<GroundJpda<F>>(options, filter, std::move(views));
-      });
+  return std::make_unique<GroundJpda>(options, std::move(views));
 }
 
 }  // namespace marey::track::ground

@@ -41,8 +41,7 @@ const GroundView whole = view_of(-500, 500, -500, 500);
 /// shared, nothing pruned. One camera that sees everything.
 class Enumeration {
  public:
-  explicit Enumeration(const GroundTrackerOptions& options)
-      : rules_(options, std::get<filter::KalmanOptions>(options.filter), 1), hypotheses_(1) {}
+  explicit Enumeration(const GroundTrackerOptions& options) : rules_(options, 1), hypotheses_(1) {}
 
   void step(int frame, const Seen& seen) {
     const double dt = frame == 0 ? 1.0 : 1 / rate;
@@ -73,7 +72,7 @@ class Enumeration {
 
  private:
   struct Person {
-    GroundTarget<filter::Kalman<2>> target;
+    GroundTarget target;
   };
   struct Hypothesis {
     double weight = 0;
@@ -119,7 +118,7 @@ class Enumeration {
     return rules_.log_ratio(person.target, seen, rules_.at_instant(person.target, seen, 0), now);
   }
 
-  GroundRules<filter::Kalman<2>> rules_;
+  GroundRules rules_;
   std::vector<Hypothesis> hypotheses_;
 };
 
@@ -210,7 +209,7 @@ TEST(GroundMht, TellsEachInstantOnceInOrderAndNotBeforeItsWindow) {
       EXPECT_EQ(one.now, instant(told++));
       EXPECT_LE(one.now, instant(frame) - duration_from_seconds(0.5));
       EXPECT_TRUE(std::is_sorted(one.tracks.begin(), one.tracks.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
-      for (const ObservationMatch& claim : one.claims) {
+      for (const ObservationMatch& claim : one.matches) {
         const auto whose = [&](const Track<2>& track) { return track.id == claim.track && track.cameras != 0; };
         EXPECT_EQ(std::count_if(one.tracks.begin(), one.tracks.end(), whose), 1);
       }
@@ -242,14 +241,14 @@ TEST(GroundMht, FollowsOneAndForgetsHim) {
     const auto tracks = step(*tracker, frame, {at({0.1 * frame, 0})});
     ASSERT_EQ(tracks.size(), 1U);
     ids.insert(number(tracks[0].id));
-    ASSERT_EQ(tracker->claims().size(), 1U);
-    EXPECT_EQ(tracker->claims()[0].track, tracks[0].id);
+    ASSERT_EQ(tracker->matches().size(), 1U);
+    EXPECT_EQ(tracker->matches()[0].track, tracks[0].id);
   }
   EXPECT_EQ(ids.size(), 1U);
   EXPECT_NEAR(tracker->expected(instant(50))[0].position.x(), 5.0, 0.2);
   for (int frame = 50; frame < 300; ++frame) step(*tracker, frame, {});
   EXPECT_TRUE(step(*tracker, 300, {}).empty());
-  EXPECT_TRUE(tracker->claims().empty());
+  EXPECT_TRUE(tracker->matches().empty());
   EXPECT_TRUE(tracker->expected(instant(301)).empty());
 }
 
@@ -257,7 +256,7 @@ TEST(GroundMht, NothingSeenAndNoLooksAreNothing) {
   const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, {whole});
   EXPECT_TRUE(tracker->expected(instant(0)).empty());
   EXPECT_TRUE(tracker->decide_all().empty());
-  EXPECT_TRUE(tracker->step(instant(0), {}).empty());
+  EXPECT_TRUE(tracker->step(instant(0), Seen{}).empty());
   EXPECT_TRUE(step(*tracker, 1, {}).empty());
   EXPECT_EQ(tracker->decide_all().size(), 2U);
 }

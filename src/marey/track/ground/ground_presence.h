@@ -4,11 +4,11 @@
 
 namespace marey::track::ground {
 
-/// Whether there is anybody, as probabilities instead of as hypotheses of their own: a person is there and can be seen, or is there
-/// and hidden from everybody for a reason that nobody knows, or is not there: a false alarm, or gone. The three are summed over
+/// Whether there is a person, as probabilities instead of as hypotheses of their own: a person is there and can be seen, or is
+/// there and hidden from all for a reason that is not known, or is not there: a false alarm, or gone. The three are summed over
 /// exactly, step by step (Musicki, Evans & Stankovic, "Integrated probabilistic data association", IEEE Trans. AC 39 (1994), with
-/// the state `hidden` added: who was missed in one frame is likely to be missed in the next), which spares a hypothesis for each
-/// way in which an observation may be false, and a miss may be a farewell.
+/// the state `hidden` added: a person missed in one frame is likely to be missed in the next), which spares a hypothesis for each
+/// case in which an observation may be false, and a miss may be a farewell.
 class GroundPresence {
  public:
   /// An observation that nothing known explains: `births` and `clutter` are the densities of people who appear and of false alarms.
@@ -23,7 +23,7 @@ class GroundPresence {
     hidden_ = (hidden_ + hides - shows) * stays;
   }
 
-  /// That there is somebody who can be seen.
+  /// That there is a person who can be seen.
   double visible() const { return visible_; }
 
   void see() {

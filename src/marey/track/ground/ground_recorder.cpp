@@ -16,14 +16,14 @@ namespace {
 
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
 
-constexpr double restless = 1.6;  // who is out of sight may have done anything; a wrong guess costs a name
+constexpr double kUnseenPush = 1.6;  // times the usual: an unseen target may have done anything; a wrong join costs an identity
 
 std::int8_t rounded(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));
 }
 
-/// The observations of one target at one instant, melted into one.
-class Melted {
+/// The observations of one target at one instant, as one.
+class JointObservation {
  public:
   void add(const Observation<2>& seen, const Vector<2>& brought) {
     const Matrix<2> weight = seen.covariance.inverse();
@@ -32,10 +32,10 @@ class Melted {
     cameras_ |= mask_of(seen.camera);
     score_ = std::max(score_, seen.score);
     if (!seen.appearance) return;
-    const Appearance& wears = *seen.appearance;
-    const double certainty = 1 / (static_cast<double>(wears.deviation) * wears.deviation);
+    const Appearance& appearance = *seen.appearance;
+    const double certainty = 1 / (static_cast<double>(appearance.deviation) * appearance.deviation);
     certainty_ += certainty;
-    colours_ += certainty * Vector<3>(wears.lightness, wears.a, wears.b);
+    colours_ += certainty * Vector<3>(appearance.lightness, appearance.a, appearance.b);
   }
 
   GroundSample sample(std::int32_t instant) const {
@@ -65,21 +65,21 @@ class Melted {
   Vector<3> colours_ = Vector<3>::Zero();
 };
 
-Melted melt(const Track<2>& track, Timestamp now, std::span<const CameraObservations> looks,
-            std::span<const ObservationMatch> claims) {
-  Melted melted;
-  for (const ObservationMatch& claim : claims) {
-    if (claim.track != track.id) continue;
-    const CameraObservations& look = looks[claim.look];
-    melted.add(look.seen[claim.observation], seconds(now - look.time) * track.velocity);
+JointObservation join_observations(const Track<2>& track, Timestamp now, std::span<const CameraObservations> views,
+                                   std::span<const ObservationMatch> matches) {
+  JointObservation joint;
+  for (const ObservationMatch& match : matches) {
+    if (match.track != track.id) continue;
+    const CameraObservations& view = views[match.view];
+    joint.add(view.seen[match.observation], seconds(now - view.time) * track.velocity);
   }
-  return melted;
+  return joint;
 }
 
 }  // namespace
 
 void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks,
-                         std::span<const CameraObservations> looks, std::span<const ObservationMatch> claims) {
+                         std::span<const CameraObservations> views, std::span<const ObservationMatch> matches) {
   assert((frames_.empty() || frame > frames_.back()) && "frames are added in order, each once");
   const auto instant = static_cast<std::int32_t>(frames_.size());
   frames_.push_back(frame);
@@ -98,8 +98,8 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
     still_open.push_back(known ? std::move(*open++) : GroundTracklet{.runs = {{track.id, 0}}, .confirmed = false, .samples = {}});
     GroundTracklet& tracklet = still_open.back();
     tracklet.confirmed |= track.confirmed;
-    const Melted melted = melt(track, time, looks, claims);
-    if (!melted.empty()) tracklet.samples.push_back(melted.sample(instant));
+    const JointObservation joint = join_observations(track, time, views, matches);
+    if (!joint.empty()) tracklet.samples.push_back(joint.sample(instant));
   }
   while (open != open_.end()) close();
   open_ = std::move(still_open);
@@ -124,7 +124,7 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(closed_), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_);
   GroundMotion unseen = options.motion;
-  unseen.acceleration *= restless;
+  unseen.acceleration *= kUnseenPush;
   const std::vector<std::vector<int>> chains =
       chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen});
   return people_from_chains(std::move(tracklets), chains, frames_, times_, options);

@@ -29,9 +29,9 @@ struct GroundJoinOptions {
 /// instant. Tracks that are never confirmed are forgotten as they end.
 class GroundRecorder {
  public:
-  /// One instant: the tracks, looks and claims of one GroundTracker::step. Frames grow from call to call; some may be missing.
-  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const CameraObservations> looks,
-           std::span<const ObservationMatch> claims);
+  /// One instant: the tracks, views and matches of one GroundTracker::step. Frames grow from call to call; some may be missing.
+  void add(std::int32_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const CameraObservations> views,
+           std::span<const ObservationMatch> matches);
 
   /// Between frames `first` and `last`, both included, what the tracker called `track` was `person`.
   struct Piece {

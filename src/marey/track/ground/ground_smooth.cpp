@@ -72,7 +72,7 @@ class Steps {
  public:
   explicit Steps(const GroundMotion& motion) : motion_(motion) {}
   const Step& operator()(double dt) {
-    if (std::abs(dt - last_) > 1e-7) {
+    if (!last_ || std::abs(dt - *last_) > 1e-7) {
       last_ = dt;
       step_ = step_of(dt, motion_);
     }
@@ -81,7 +81,7 @@ class Steps {
 
  private:
   const GroundMotion& motion_;
-  double last_ = -1;
+  std::optional<double> last_;
   Step step_;
 };
 

@@ -208,8 +208,8 @@ TEST_P(EveryAssociation, RefusesWhatCannotBe) {
   const auto tracker = make(views);
   const CameraObservations stranger{CameraId{4}, timestamp_from_seconds(0), {}};
   EXPECT_THROW(tracker->step(timestamp_from_seconds(0), {&stranger, 1}), Error);
-  tracker->step(timestamp_from_seconds(1), {});
-  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), {}), Error);
+  tracker->step(timestamp_from_seconds(1), std::span<const CameraObservations>{});
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(1), std::span<const CameraObservations>{}), Error);
   Observation<2> broken = seen_at(views[0], 0, {30, 30});
   broken.value.x() = std::nan("");
   const CameraObservations look{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};

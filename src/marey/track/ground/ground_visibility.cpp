@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_sight.h"
+#include "marey/track/ground/ground_visibility.h"
 
 #include <algorithm>
 
@@ -6,13 +6,14 @@
 
 namespace marey::track::ground {
 
-void GroundSight::check(const CameraObservations& look) const {
-  if (number(look.camera) < 0 || number(look.camera) >= cameras())
-    throw Error("a look is of camera {}, but the rig has {}; give each camera a view", number(look.camera), cameras());
-  check_finite(look.time, look.seen);
+void GroundVisibility::check(const CameraObservations& view) const {
+  if (number(view.camera) < 0 || number(view.camera) >= cameras())
+    throw Error("observations are of camera {}, but the rig has {} cameras; give each camera a view", number(view.camera),
+                cameras());
+  check_finite(view.time, view.seen);
 }
 
-void GroundSight::look(CameraId camera, std::span<const Observation<2>> seen, double least_score) {
+void GroundVisibility::set_view(CameraId camera, std::span<const Observation<2>> seen, double least_score) {
   view_ = &views_.at(static_cast<std::size_t>(number(camera)));
   boxes_.clear();
   for (const Observation<2>& one : seen) {
@@ -20,7 +21,7 @@ void GroundSight::look(CameraId camera, std::span<const Observation<2>> seen, do
   }
 }
 
-double GroundSight::visible(const Vector<2>& place) const {
+double GroundVisibility::visible(const Vector<2>& place) const {
   const auto foot = view_->pixel(place);
   if (!foot) return 0;
   const cv::Size size = view_->size();
@@ -30,9 +31,9 @@ double GroundSight::visible(const Vector<2>& place) const {
   return inside < border * size.width ? 0.5 * open : open;
 }
 
-/// The largest share of a body with its foot here that one other box covers, of those who stand nearer to the camera: their feet
-/// are lower in the picture. Who overlaps another is about as far away and thus as tall.
-double GroundSight::covered(const Vector<2>& foot) const {
+/// The largest share of a body with its foot here that one other box covers, of those that stand nearer to the camera: their feet
+/// are lower in the picture. One that overlaps another is about as far away and thus as tall.
+double GroundVisibility::covered(const Vector<2>& foot) const {
   double most = 0;
   for (const Box& other : boxes_) {
     if (other.foot().y() < foot.y()) continue;

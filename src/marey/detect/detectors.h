@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "marey/detect/detector.h"
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/detect/people/people.h"
+
+namespace marey::detect {
+
+/// The register of detectors that look at pictures: which one, with its parameters. A new one is named here and made in
+/// detectors.cpp, which does not compile before. Detections that another program found come through a source (pipeline).
+using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions>;
+
+std::unique_ptr<Detector> make_detector(const DetectorOptions& options);
+
+/// The detectors' names with commas between, in the order of the register.
+std::string detector_names();
+
+/// The default options of the detector called `name`. Throws Error with the list of names where there is none.
+DetectorOptions detector_named(std::string_view name);
+
+std::string_view name_of(const DetectorOptions& options);
+
+}  // namespace marey::detect
