@@ -5,21 +5,20 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "marey/pipeline/hypotheses_experiment.h"
-
 #include "commands.h"
+#include "experiments/hypotheses.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
 namespace {
 
 struct ExperimentHypotheses {
-  pipeline::HypothesesExperimentOptions options;
+  experiments::HypothesesExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-nlohmann::json as_json(const pipeline::HypothesesExperiment& experiment) {
+nlohmann::json as_json(const experiments::HypothesesExperiment& experiment) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t kind = 0; kind < experiment.kinds.size(); ++kind) {
     nlohmann::json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
@@ -37,14 +36,14 @@ nlohmann::json as_json(const pipeline::HypothesesExperiment& experiment) {
 }
 
 void run(const ExperimentHypotheses& command) {
-  pipeline::HypothesesExperimentOptions options = command.options;
-  pipeline::HypothesesExperiment experiment;
+  experiments::HypothesesExperimentOptions options = command.options;
+  experiments::HypothesesExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("scenes", done, all); };
-    experiment = pipeline::run_hypotheses_experiment(options);
+    experiment = experiments::run_hypotheses_experiment(options);
   }
-  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : pipeline::to_text(experiment));
+  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : experiments::to_text(experiment));
 }
 
 }  // namespace

@@ -6,28 +6,28 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/outline_experiment.h"
 
 #include "commands.h"
+#include "experiments/outlines.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
 namespace {
 
 struct ExperimentOutlines {
-  pipeline::OutlineExperimentOptions options;
+  experiments::OutlineExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-nlohmann::json as_json(const pipeline::OutlineExperiment& experiment) {
+nlohmann::json as_json(const experiments::OutlineExperiment& experiment) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t c = 0; c < experiment.cases.size(); ++c) {
-    const pipeline::OutlineCase& what = experiment.cases[c];
+    const experiments::OutlineCase& what = experiment.cases[c];
     nlohmann::json entry = {{"case", what.name}, {"height_px", what.height_px}, {"films", what.videos}, {"people", what.people}};
     if (what.true_jitter) entry["true_jitter_px"] = *what.true_jitter;
     for (const auto& row : experiment.rows) {
-      const pipeline::OutlineScore& score = row.scores[c];
+      const experiments::OutlineScore& score = row.scores[c];
       nlohmann::json& method = entry["methods"][row.method];
       method = {{"iou", score.iou}, {"lost", score.lost}, {"followed", score.followed}, {"frames", score.frames}};
       if (score.centre_error) method["centre_error_px"] = *score.centre_error;
@@ -40,15 +40,15 @@ nlohmann::json as_json(const pipeline::OutlineExperiment& experiment) {
 }
 
 void run(const ExperimentOutlines& command) {
-  pipeline::OutlineExperimentOptions options = command.options;
-  pipeline::OutlineExperiment experiment;
+  experiments::OutlineExperimentOptions options = command.options;
+  experiments::OutlineExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("films", done, all); };
-    experiment = pipeline::run_outline_experiment(options);
+    experiment = experiments::run_outline_experiment(options);
   }
   if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", options.only);
-  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : pipeline::to_text(experiment));
+  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : experiments::to_text(experiment));
 }
 
 }  // namespace

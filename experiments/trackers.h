@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace marey::pipeline {
+namespace marey::experiments {
 
 /// Mean prediction error with its 99 % confidence interval, px.
 struct PredictionError {
@@ -60,4 +60,4 @@ std::string to_text(const TrackerExperiment& experiment);
 /// Throws Error where it cannot.
 std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, const std::string& folder);
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

@@ -1,4 +1,4 @@
-#include "marey/pipeline/hypotheses_experiment.h"
+#include "experiments/hypotheses.h"
 
 #include <array>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 #include "marey/evaluate/ground_evaluation.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 namespace {
 
 constexpr double same_place = 1;  // m
@@ -179,4 +179,4 @@ std::string to_text(const HypothesesExperiment& experiment) {
   return text;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

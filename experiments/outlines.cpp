@@ -1,4 +1,4 @@
-#include "marey/pipeline/outline_experiment.h"
+#include "experiments/outlines.h"
 
 #include <algorithm>
 #include <array>
@@ -15,9 +15,10 @@
 
 #include "marey/evaluate/label_loss.h"
 #include "marey/evaluate/outline_overlap.h"
-#include "marey/pipeline/outline_methods.h"
 
-namespace marey::pipeline {
+#include "experiments/outline_methods.h"
+
+namespace marey::experiments {
 namespace {
 
 constexpr double kSeen = 0.5;          // share of a person that must be visible for him to count
@@ -276,4 +277,4 @@ std::string to_text(const OutlineExperiment& experiment) {
   return text;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

@@ -1,4 +1,4 @@
-#include "marey/pipeline/tracker_experiment.h"
+#include "experiments/trackers.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,14 +15,17 @@
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include "marey/core/observation.h"
+#include "marey/detect/markers/marker_detector.h"
 #include "marey/evaluate/label_loss.h"
 #include "marey/filter/filters.h"
-#include "marey/pipeline/marker_video.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
+#include "marey/source/video_source.h"
 #include "marey/track/independent_tracker.h"
 #include "marey/track/roster_tracker.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 namespace {
 
 /// A folder for the videos, removed with everything in it.
@@ -51,10 +54,10 @@ struct Method {
 
 Method alone(std::string name, const filter::FilterOptions& options) {
   return {std::move(name), [options] {
-            return filter::with_filter<2>(
-                options, []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
-                  return std::make_unique<track::IndependentTracker<F>>(chosen);
-                });
+            return filter::with_filter<2>(options,
+                                          []<typename F>(const typename F::Options& chosen) -> std::unique_ptr<track::Tracker<2>> {
+                                            return std::make_unique<track::IndependentTracker<F>>(chosen);
+                                          });
           }};
 }
 
@@ -72,6 +75,25 @@ std::vector<Method> methods() {
   return list;
 }
 
+/// What the detector finds in a video, frame by frame.
+struct SeenMarkers {
+  std::vector<Timestamp> times;
+  std::vector<std::vector<Observation<2>>> frames;
+};
+
+/// Decodes a video and looks for markers in each frame. Throws Error where it cannot be read.
+SeenMarkers see_markers(const std::string& path) {
+  SeenMarkers seen;
+  const std::unique_ptr<Source> source = source::open_video(path);
+  detect::markers::MarkerDetector detector({});
+  while (const auto frame = source->next()) {
+    seen.times.push_back(frame->time);
+    auto& observations = seen.frames.emplace_back();
+    for (const Detection& detection : detector.detect(*frame, {}).detections) observations.push_back(observation_of(detection));
+  }
+  return seen;
+}
+
 struct Video {
   simulate::markers::MarkerScene scene;
   SeenMarkers seen;
@@ -80,7 +102,7 @@ struct Video {
 Video make_video(simulate::markers::MarkerSituation situation, std::uint64_t seed,
                  const simulate::markers::MarkerSceneOptions& options, const std::string& path) {
   Video video{simulate::markers::simulate_markers(situation, seed, options), {}};
-  film_markers(video.scene, path);
+  pipeline::film_markers(video.scene, path);
   video.seen = see_markers(path);
   return video;
 }
@@ -240,4 +262,4 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
   return experiment;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

@@ -9,7 +9,7 @@
 #include "marey/simulate/encounters.h"
 #include "marey/track/ground/ground_tracker.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 
 struct HypothesesExperimentOptions {
   int scenes = 100;  ///< of each kind of meeting
@@ -47,4 +47,4 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
 /// As text: a table of switches and one of times.
 std::string to_text(const HypothesesExperiment& experiment);
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

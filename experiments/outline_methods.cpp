@@ -1,4 +1,4 @@
-#include "marey/pipeline/outline_methods.h"
+#include "experiments/outline_methods.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "marey/track/contour/box_filter.h"
 #include "marey/track/tracker.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 namespace {
 
 /// Time of this thread alone, whatever else the machine does.
@@ -240,4 +240,4 @@ std::unique_ptr<OutlineMethod> box_method() {
   return std::make_unique<BoxMethod>();
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

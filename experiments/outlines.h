@@ -10,7 +10,7 @@
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/contour/published_outline.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 
 /// What one way of following outlines made of one case. A person counts while at least half of him can be seen, from the frame in
 /// which the method first has an outline on him; an outline that is missing then overlaps nothing.
@@ -68,4 +68,4 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
 /// A table a case.
 std::string to_text(const OutlineExperiment& experiment);
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

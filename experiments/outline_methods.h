@@ -12,7 +12,7 @@
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/contour/published_outline.h"
 
-namespace marey::pipeline {
+namespace marey::experiments {
 
 /// Where a method says that a person is.
 struct FollowedShape {
@@ -52,4 +52,4 @@ std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions
 std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options);
 std::unique_ptr<OutlineMethod> box_method();
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments

@@ -6,13 +6,14 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/chart.h"
 #include "marey/filter/filters.h"
-#include "marey/format/whole_file.h"
-#include "marey/pipeline/tracker_experiment.h"
 #include "marey/simulate/markers/marker_scene.h"
 
-namespace marey::pipeline {
+#include "experiments/trackers.h"
+
+namespace marey::experiments {
 namespace {
 
 constexpr std::array<const char*, TrackerRow::kSituations> kNames{"slow", "rapid", "acceleration", "occlusion", "swap"};
@@ -151,7 +152,7 @@ std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, co
   std::vector<std::string> names;
   const auto save = [&](const std::string& name, const std::string& svg) {
     const std::string path = (std::filesystem::path(folder) / name).string();
-    format::WholeFile file(path);
+    WholeFile file(path);
     file.write(svg);
     file.finish();
     names.push_back(path);
@@ -165,4 +166,4 @@ std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, co
   return names;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::experiments
