@@ -4,9 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+extern "C" {
+#include <libavutil/log.h>
+}
+
 #include "commands.h"
 
 int main(int argc, char** argv) {
+  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
   CLI::App app{"Marey turns what cameras see into motion you can measure.", "marey"};
   app.require_subcommand(1);
   marey::cli::add_track(app);
