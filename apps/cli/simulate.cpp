@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/marker_video.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
 
 #include "commands.h"

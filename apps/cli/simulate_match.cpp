@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/match_files.h"
+#include "marey/pipeline/simulation_files.h"
 
 #include "commands.h"
 #include "pitch_size.h"

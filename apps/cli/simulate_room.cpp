@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/room_files.h"
+#include "marey/pipeline/simulation_files.h"
 
 #include "choice.h"
 #include "commands.h"
