@@ -138,8 +138,8 @@ std::vector<TeamMeasure> measure_teams(const GroundRecording& recording, const s
 Measurement measure(const GroundRecording& recording, const MeasureOptions& options) {
   std::vector<std::vector<TimedPlace>> measured(recording.people.size());
   for (const GroundRecording::Sample& sample : recording.samples) {
-    auto& way = measured[static_cast<std::size_t>(sample.person)];
-    if (way.empty() || sample.time > way.back().time) way.push_back({sample.time, sample.place});
+    auto& path = measured[static_cast<std::size_t>(sample.person)];
+    if (path.empty() || sample.time > path.back().time) path.push_back({sample.time, sample.place});
   }
   Measurement result;
   for (std::size_t i = 0; i < measured.size(); ++i) {

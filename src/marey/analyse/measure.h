@@ -34,7 +34,7 @@ struct HeatMap {
 struct PersonMeasure {
   int id = 0;
   std::string label, team;
-  double seconds = 0;  ///< on some way
+  double seconds = 0;  ///< on some path
   double distance_m = 0;
   double mean_mps = 0;
   double top_mps = 0;
@@ -62,7 +62,7 @@ struct Measurement {
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
 };
 
-/// Distances, speeds, efforts and places of everyone, from smoothed ways (`smooth_paths`). Cost: linear in the samples.
+/// Distances, speeds, efforts and places of everyone, from smoothed paths (`smooth_paths`). Cost: linear in the samples.
 Measurement measure(const GroundRecording& recording, const MeasureOptions& options = {});
 
 }  // namespace marey::analyse

@@ -1,12 +1,12 @@
-// A person's way over the ground, made smooth, and the velocity along it.
+// A person's path over the ground, made smooth, and the velocity along it.
 //
 // Positions from video jump about by decimetres from frame to frame; differences of them as they are add up to a distance that can
-// be 40 % too long and to speeds nobody runs. People change their velocity slowly: what is faster than about 1 Hz is noise.
+// be 40 % too long and to impossible speeds. People change their velocity slowly: what is faster than about 1 Hz is noise.
 //   lowpass  Butterworth, order 2, forwards and backwards, so that nothing lags; its cut-off is that of both passes together
 //   savgol   a parabola through the second round each instant (Savitzky & Golay 1964)
 //   kalman   constant velocity with noise in the acceleration, smoothed from both ends (Rauch, Tung & Striebel 1965)
 //   raw      as measured; velocities are differences
-// Ways are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
+// Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
 // References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
@@ -27,13 +27,13 @@ struct PathOptions {
   double window_s = 1;        ///< savgol
   double place_noise = 0.3;   ///< kalman: m, of a measured place
   double acceleration = 1.5;  ///< kalman: m/s^1.5
-  double longest_gap_s = 1;   ///< a person missing for longer is on another way afterwards
+  double longest_gap_s = 1;   ///< a person missing for longer is on another path afterwards
 };
 
 /// Throws Error, naming what is valid, for a name that is none.
 PathOptions::Method parse_path_method(std::string_view name);
 
-/// One unbroken way at an even rate.
+/// One unbroken path at an even rate.
 struct Path {
   double start_s = 0;
   double step_s = 0.04;

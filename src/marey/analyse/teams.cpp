@@ -30,7 +30,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
-/// Where and for how long somebody was seen.
+/// Where and for how long a person was seen.
 struct Presence {
   double seconds = 0;
   double near_goal[2] = {0, 0};  // s before the goal at x = 0 and before the other
@@ -53,7 +53,7 @@ std::vector<Presence> presences(const GroundRecording& recording, const std::opt
   return all;
 }
 
-/// The kinds that are teams, in the order in which they are told.
+/// The kinds that are teams, in the order in which they are reported.
 std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::vector<TeamName>& names) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < mixture.kinds.size(); ++k) {
@@ -99,7 +99,7 @@ Appearance cast_of(const ColourMixture& mixture) {
   return cast;
 }
 
-/// Names for teams that the user has not named: by colour, told apart by lightness where they have the same.
+/// Names for teams that the user has not named: by colour, distinguished by lightness where they have the same.
 void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
   for (Teams::Team& team : teams) {
     Appearance colour = team.colour;
@@ -141,31 +141,31 @@ std::optional<int> team_of_keeper(const GroundRecording& recording, std::span<co
   return (lead > 0) == (end == 1) ? 0 : 1;
 }
 
-/// Everybody's colour and time, for those who were seen long enough.
+/// Each person's colour and time, for those who were seen long enough.
 struct Candidates {
   std::vector<int> people;
   std::vector<ColourSeen> seen;
 };
 
-Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> wears, double shortest) {
+Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> appearances, double shortest) {
   double longest = 0;
   for (const Presence& one : presence) longest = std::max(longest, one.seconds);
   Candidates result;
   for (std::size_t who = 0; who < presence.size(); ++who) {
-    if (!wears[who] || presence[who].seconds < std::min(shortest, longest)) continue;
+    if (!appearances[who] || presence[who].seconds < std::min(shortest, longest)) continue;
     result.people.push_back(static_cast<int>(who));
-    result.seen.push_back({*wears[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
+    result.seen.push_back({*appearances[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
   }
   return result;
 }
 
 class Finder {
  public:
-  Finder(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options)
+  Finder(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances, const TeamOptions& options)
       : recording_(recording),
         options_(options),
         presence_(presences(recording, options.pitch)),
-        candidates_(candidates(presence_, wears, options.shortest)),
+        candidates_(candidates(presence_, appearances, options.shortest)),
         mixture_(find_colours(candidates_.seen)) {}
 
   Teams find() {
@@ -206,7 +206,7 @@ class Finder {
     }
   }
 
-  /// Who is in no team's colour: a keeper, a referee, or nobody knows.
+  /// Who is in no team's colour: a keeper, a referee, or unknown.
   void place_official(std::size_t candidate) {
     const int who = candidates_.people[candidate];
     Teams::Member& member = teams_.members[static_cast<std::size_t>(who)];
@@ -226,7 +226,7 @@ class Finder {
     if (share_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};
   }
 
-  /// How many wear what this one wears: of all people's time.
+  /// How many have this appearance: of all people's time.
   double share_of_kind(std::size_t candidate) const {
     const std::vector<double>& whose = mixture_.whose[candidate];
     const auto likeliest = std::max_element(whose.begin(), whose.end());
@@ -264,8 +264,9 @@ std::vector<TeamName> parse_teams(std::string_view text) {
   return names;
 }
 
-Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options) {
-  return Finder(recording, wears, options).find();
+Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances,
+                 const TeamOptions& options) {
+  return Finder(recording, appearances, options).find();
 }
 
 void note_teams(const Teams& teams, GroundRecording& recording) {

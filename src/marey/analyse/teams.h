@@ -1,6 +1,6 @@
-// Who plays with whom, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
-// colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
-// colour and stay near a goal, or referees. Everybody's vote comes with its probability; who cannot be told stays without a team.
+// Who plays with whom, learned from the recording itself: each person's appearance over the whole of it (not frame by frame), the
+// few colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
+// colour and stay near a goal, or referees. Each vote comes with its probability; who cannot be decided stays without a team.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,8 @@ struct TeamName {
   Appearance colour;
 };
 
-/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be told. Throws Error for what is not so.
+/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be reported. Throws Error for what is not
+/// so.
 std::vector<TeamName> parse_teams(std::string_view text);
 
 struct TeamOptions {
@@ -47,8 +48,8 @@ struct Teams {
   std::vector<Member> members;  ///< one a person
 };
 
-/// `wears` of each person of the recording, where known. `recording` in the pitch's frame where `pitch` is given.
-Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> wears,
+/// `appearances` of each person of the recording, where known. `recording` in the pitch's frame where `pitch` is given.
+Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances,
                  const TeamOptions& options = {});
 
 /// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have

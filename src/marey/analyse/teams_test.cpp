@@ -14,7 +14,7 @@ namespace {
 /// People and what they wear; each stands about somewhere for some seconds.
 struct Scene {
   GroundRecording recording;
-  std::vector<std::optional<Appearance>> wears;
+  std::vector<std::optional<Appearance>> appearances;
   std::mt19937_64 engine;
   double seconds = 20;
 
@@ -24,10 +24,10 @@ struct Scene {
 
   void add(const std::string& colour, double spread, double x, double y, double from = 0, double to = 1) {
     const Appearance typical = colour_named(colour);
-    wears.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
-                               .a = typical.a + static_cast<float>(normal(spread)),
-                               .b = typical.b + static_cast<float>(normal(spread)),
-                               .deviation = 3});
+    appearances.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
+                                     .a = typical.a + static_cast<float>(normal(spread)),
+                                     .b = typical.b + static_cast<float>(normal(spread)),
+                                     .deviation = 3});
     const auto who = static_cast<std::int32_t>(recording.people.size());
     recording.people.push_back({who + 1, {}, {}});
     for (int k = static_cast<int>(from * seconds * 5); k < static_cast<int>(to * seconds * 5); ++k) {
@@ -43,7 +43,7 @@ struct Scene {
   Teams find(const TeamOptions& options = {.names = {}, .pitch = geometry::PitchSize{}}) {
     std::stable_sort(recording.samples.begin(), recording.samples.end(),
                      [](const auto& a, const auto& b) { return a.frame < b.frame; });
-    return find_teams(recording, wears, options);
+    return find_teams(recording, appearances, options);
   }
 };
 
@@ -122,9 +122,9 @@ TEST(Teams, WhoWasHardlySeenOrHasNoColourStaysWithout) {
   Scene scene = match(9);
   scene.add("white", 4, 50, 50, 0.5, 0.52);
   scene.add("white", 4, 50, 55);
-  scene.wears.back().reset();
+  scene.appearances.back().reset();
   scene.add("white", 4, 50, 58);
-  scene.wears.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
+  scene.appearances.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
   const Teams teams = scene.find();
   for (int who = 25; who < 28; ++who) EXPECT_FALSE(teams.members[who].team) << who;
 }

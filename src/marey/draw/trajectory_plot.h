@@ -13,8 +13,8 @@
 
 namespace marey::draw {
 
-/// The ways that targets went, in the coordinates of the image: a line each with its number where it begins, broken where nothing
-/// is known of it. Memory grows with the ways' length, not with time: steps of less than half a pixel are passed over.
+/// The trajectories of targets, in the coordinates of the image: a line each with its number where it begins, broken where nothing
+/// is known of it. Memory grows with the trajectories' length, not with time: steps of less than half a pixel are passed over.
 class TrajectoryPlot {
  public:
   /// Tracks of one frame; frames grow from call to call. The place drawn is the outline's centre where there is an outline, else
@@ -25,13 +25,13 @@ class TrajectoryPlot {
   std::string to_svg(const std::string& title) const;
 
  private:
-  struct Way {
+  struct Path {
     std::string name;
     std::vector<std::vector<Vector<2>>> pieces;
     Vector<2> last = Vector<2>::Zero();  // seen, if not drawn yet
     std::int64_t last_frame = 0;
   };
-  std::map<TrackId, Way> ways_;
+  std::map<TrackId, Path> paths_;
 };
 
 }  // namespace marey::draw

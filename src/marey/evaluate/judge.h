@@ -15,7 +15,7 @@ namespace marey::evaluate {
 struct Judged {
   Evaluation scores;
   std::vector<ClearCounter::Object> objects;
-  std::vector<int> track_of_object;    ///< whom the identity scores give each; LinearAssigner::nobody where none
+  std::vector<int> track_of_object;    ///< the track that the identity scores give each; LinearAssigner::nobody where none
   std::vector<std::int64_t> agreeing;  ///< in how many frames that track found the object
 };
 
@@ -25,7 +25,7 @@ void count_found(const FramePairs& frame, double most_distance, PairTable& pairs
 /// Fills in the identity scores: one track for each object for good, so that the most things agree. `judged.scores` has its sizes.
 void judge_identities(const PairTable& pairs, Judged& judged);
 
-/// Every score of tracks against truth, whatever is compared: `close` tells how alike two things are, and those up to
+/// Every score of tracks against truth, whatever is compared: `close` says how alike two things are, and those up to
 /// `most_distance` apart may match. `matched(walk, clear)` sees each frame once its matches are known.
 template <Labelled Item, typename Close, typename Matched>
 Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double most_distance, Close close, Matched matched) {

@@ -7,8 +7,8 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kNobody = -1;
-constexpr double kWorstMeeting = 0.15;  // sine of the angle below which two rays may tell where, but not to a third camera
+constexpr int kNone = -1;
+constexpr double kSmallestSine = 0.15;  // sine of the angle below which two rays give a place, but not for a third camera
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void RayIntersections::find(const FrameRays& frame, RayGroups& groups) {
   small_.clear();
   members_.clear();
   lonely_.clear();
-  small_of_ray_.assign(static_cast<std::size_t>(frame.size()), kNobody);
+  small_of_ray_.assign(static_cast<std::size_t>(frame.size()), kNone);
   for (EpipolarMatcher& matcher : matchers_) {
     pairs_.clear();
     matcher.match(frame, groups.taken(), sigmas_, pairs_);
@@ -39,7 +39,7 @@ void RayIntersections::find(const FrameRays& frame, RayGroups& groups) {
 /// Collects a ray from every camera that has one where the pair meets, and keeps the group if three and more agree.
 void RayIntersections::propose(const FrameRays& frame, const EpipolarPair& pair, const EpipolarMatcher& cameras,
                                const RayGroups& groups) {
-  if (small_of_ray_[pair.a] != kNobody && small_of_ray_[pair.a] == small_of_ray_[pair.b]) return;  // it has been proposed
+  if (small_of_ray_[pair.a] != kNone && small_of_ray_[pair.a] == small_of_ray_[pair.b]) return;  // it has been proposed
   extend(frame, pair, cameras, groups);
   if (list_.size() < 3) {
     lonely_.push_back(pair);
@@ -69,7 +69,7 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
   const SightLine& b = frame.line(pair.b);
   // Noise of the meeting point, m: across the rays, and more along them the flatter they meet.
   const double across = std::hypot(a.sigma / a.scale() * a.depth(pair.position), b.sigma / b.scale() * b.depth(pair.position));
-  const double spread = across / std::max(pair.meeting_sine, kWorstMeeting);
+  const double spread = across / std::max(pair.crossing_sine, kSmallestSine);
   for (int c = 0; c < frame.cameras(); ++c) {
     if (c == cameras.a()) list_.add(frame, pair.a);
     if (c == cameras.b()) list_.add(frame, pair.b);
@@ -78,12 +78,12 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
     if (!pixel || !frame.camera(c).in_picture(*pixel)) continue;
     const double depth = (pair.position - frame.camera(c).centre()).norm();
     double nearest = sigmas_ * std::hypot(frame.largest_sigma(c), spread * frame.line(frame.first(c)).scale() / depth);
-    int best = kNobody;
+    int best = kNone;
     frame.for_each_near(c, *pixel, nearest, [&](int ray) {
       const double distance = (frame.pixel(ray) - *pixel).norm();
       if (distance < nearest && !groups.taken(ray)) nearest = distance, best = ray;
     });
-    if (best != kNobody) list_.add(frame, best);
+    if (best != kNone) list_.add(frame, best);
   }
 }
 

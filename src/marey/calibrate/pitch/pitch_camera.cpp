@@ -285,7 +285,7 @@ std::vector<double> errors_of(const Camera& camera, const std::vector<PitchPoint
   return errors;
 }
 
-constexpr double kLeastOutlier = 6;  // px: nobody clicks better than this always
+constexpr double kLeastOutlier = 6;  // px: no user clicks better than this always
 constexpr double kOutlierSigmas = 4;
 
 std::vector<char> inliers_of(const std::vector<double>& errors) {
