@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_sources.h"
+#include "marey/pipeline/rig_sources.h"
 
 #include "calibrate_commands.h"
 #include "progress_bar.h"
@@ -62,7 +62,7 @@ void print_table(const pipeline::BoardRun& run) {
 void run(const CalibrateBoard& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
   Rig rig = format::rig::read_rig(command.rig);
-  format::rig::set_sources(rig, command.sources);
+  pipeline::set_sources(rig, command.sources);
   pipeline::BoardRunOptions options = command.run;
   pipeline::BoardRun found;
   {

@@ -10,7 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_sources.h"
+#include "marey/pipeline/rig_sources.h"
 
 #include "calibrate_commands.h"
 #include "known.h"
@@ -117,7 +117,7 @@ void print_report(const pipeline::PitchRun& run) {
 
 void run(const CalibratePitch& command) {
   Rig rig = format::rig::read_rig(command.rig);
-  format::rig::set_sources(rig, command.sources);
+  pipeline::set_sources(rig, command.sources);
   pipeline::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/format/motion/marker_set.h"
 
 #include "commands.h"
 #include "progress_bar.h"

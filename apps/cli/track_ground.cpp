@@ -5,7 +5,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_sources.h"
+#include "marey/pipeline/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "ground_summary.h"
@@ -102,7 +102,7 @@ void add_ground_options(CLI::App& command, GroundFlags& flags) {
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
   if (people.outline) throw Error("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
-  format::rig::set_sources(rig, flags.sources);
+  pipeline::set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
   const pipeline::TrackGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(

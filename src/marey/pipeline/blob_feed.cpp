@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/observation.h"
+#include "marey/core/rig.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig/rig_sources.h"
-#include "marey/pipeline/marker_video.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/source/open_source.h"
 #include "marey/source/region_source.h"
@@ -157,7 +157,7 @@ std::vector<std::unique_ptr<BlobFeed>> open_videos(Rig& rig, const detect::marke
     }
     auto source = source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : rate_hz);
     if (camera.region) source = source::crop(std::move(source), region_within(camera, source->info().size));
-    format::rig::fit_to_size(camera, source->info().size);
+    fit_to_size(camera, source->info().size);
     feeds.push_back(std::make_unique<VideoFeed>(std::move(source), id, camera.offset_s.value_or(0), markers));
     ++found;
   }

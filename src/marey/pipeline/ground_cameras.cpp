@@ -9,9 +9,9 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig.h"
 #include "marey/detect/appearance.h"
 #include "marey/detect/people/person_size_map.h"
-#include "marey/format/rig/rig_sources.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
 
@@ -26,7 +26,7 @@ constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of t
 constexpr std::size_t kMostCameras = 64;
 
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
-detect::people::PersonSizeMap sizes_over(const Camera& camera, const GroundArea& area, const cv::Rect& part) {
+detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
   const GroundView view(camera);
   return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
             const auto place = view.place({x + part.x, y + part.y});
@@ -38,7 +38,7 @@ detect::people::PersonSizeMap sizes_over(const Camera& camera, const GroundArea&
 }
 
 /// The part of the picture, even-sided, in which somebody who counts may be seen.
-cv::Rect part_with_people(const Camera& camera, const GroundArea& area) {
+cv::Rect part_with_people(const Camera& camera, const reconstruct::GroundArea& area) {
   const cv::Size size = camera.size();
   const cv::Rect whole({}, size);
   if (!area.pitch()) return whole;
@@ -103,7 +103,7 @@ struct GroundCameras::Lane {
     return size->box_at(foot->x(), foot->y());
   }
 
-  void look(const GroundView& view, const GroundArea& area, std::span<const Track<2>> tracks) {
+  void look(const GroundView& view, const reconstruct::GroundArea& area, std::span<const Track<2>> tracks) {
     ++counts.frames;
     expected.clear();
     const cv::Size size = taken->picture.size();
@@ -119,7 +119,7 @@ struct GroundCameras::Lane {
     place(found, view, area);
   }
 
-  void place(detect::Detections& found, const GroundView& view, const GroundArea& area) {
+  void place(detect::Detections& found, const GroundView& view, const reconstruct::GroundArea& area) {
     std::vector<std::optional<Appearance>> wears;
     for (std::size_t i = 0; i < found.detections.size(); ++i) {
       wears.push_back(detect::upper_body(taken->picture, found.foreground, found.detections, i));
@@ -180,12 +180,13 @@ cv::Size picture_size(const RigCamera& camera, const PeopleInput& input) {
 }
 
 /// Opens the camera's pictures or detections; `corner` becomes that of the part of the picture that is looked at.
-DetectionStage open(RigCamera& camera, const GroundArea& area, const GroundCamerasOptions& options, cv::Point& corner) {
+DetectionStage open(RigCamera& camera, const reconstruct::GroundArea& area, const GroundCamerasOptions& options,
+                    cv::Point& corner) {
   PeopleInput input{camera.source, camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz, camera.region};
   DetectionStageOptions eyes = options.eyes;
   if (!camera.source.empty()) {
     input.detections.clear();
-    format::rig::fit_to_size(camera, picture_size(camera, input));
+    fit_to_size(camera, picture_size(camera, input));
     if (const auto whole = camera.camera()) {
       const cv::Rect part = part_with_people(*whole, area);
       eyes.people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
@@ -203,7 +204,8 @@ DetectionStage open(RigCamera& camera, const GroundArea& area, const GroundCamer
 
 }  // namespace
 
-GroundCameras::GroundCameras(const Rig& rig, const GroundArea& area, const GroundCamerasOptions& options) : rig_(rig), area_(area) {
+GroundCameras::GroundCameras(const Rig& rig, const reconstruct::GroundArea& area, const GroundCamerasOptions& options)
+    : rig_(rig), area_(area) {
   if (rig_.cameras.empty()) throw Error("the rig has no camera");
   if (rig_.cameras.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", rig_.cameras.size(), kMostCameras);
   for (const RigCamera& camera : rig_.cameras) check(camera);

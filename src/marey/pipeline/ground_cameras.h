@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "marey/core/rig.h"
-#include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/people_eyes.h"
+#include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {
@@ -28,7 +28,7 @@ class GroundCameras {
  public:
   /// Opens every camera. Throws Error, with the camera's name, where one has neither pictures nor detections, cannot be read, or
   /// does not know how it sees the ground.
-  GroundCameras(const Rig& rig, const GroundArea& area, const GroundCamerasOptions& options);
+  GroundCameras(const Rig& rig, const reconstruct::GroundArea& area, const GroundCamerasOptions& options);
   ~GroundCameras();
 
   /// The rig as its pictures are: calibrations scaled to their size.
@@ -69,7 +69,7 @@ class GroundCameras {
   struct Lane;
 
   Rig rig_;
-  GroundArea area_;
+  reconstruct::GroundArea area_;
   std::vector<GroundView> views_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   std::vector<track::ground::CameraObservations> looks_;

@@ -7,11 +7,11 @@
 
 #include "marey/core/labelled_box.h"
 #include "marey/core/source.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
 #include "marey/draw/pitch_view.h"
 #include "marey/format/tracks/mot.h"
-#include "marey/format/whole_file.h"
 #include "marey/pipeline/people_eyes.h"
 #include "marey/pipeline/read_ahead.h"
 
@@ -123,7 +123,7 @@ std::optional<Box> ViewLog::box(std::int32_t frame, std::int32_t person) const {
 }
 
 void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path) {
-  format::WholeFile file(path);
+  WholeFile file(path);
   Instant instant(show.recording);
   std::string text;
   for (const ViewLog::FramePair& frame : log.frames()) {

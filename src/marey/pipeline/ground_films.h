@@ -12,9 +12,9 @@
 
 #include "marey/core/ground_recording.h"
 #include "marey/draw/canvas.h"
-#include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_cameras.h"
 #include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_recorder.h"
 
 namespace marey::pipeline {
@@ -48,7 +48,7 @@ class ViewLog {
 /// All that the films show. `recording` is in the user's coordinates.
 struct GroundShow {
   const GroundRecording& recording;
-  const GroundArea& area;
+  const reconstruct::GroundArea& area;
   const GroundCameras& cameras;
   std::vector<draw::Colour> colours;  ///< of each person
   const RunHooks& hooks;

@@ -21,7 +21,7 @@ bool looks_at_ground(const RigCamera& camera) {
 /// Follows people in one camera alone.
 class Alone {
  public:
-  Alone(const RigCamera& camera, const GroundArea& area, const RigOffsetsOptions& options)
+  Alone(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
       : cameras_(rig_of(camera), area, {options.eyes, options.rate_hz}),
         tracker_(track::ground::make_ground_tracker(options.tracker, cameras_.views())),
         seconds_(options.seconds) {}
@@ -59,8 +59,8 @@ class Alone {
 
 /// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
-                                                                    const GroundArea& area, const RigOffsetsOptions& options,
-                                                                    const RunHooks& hooks) {
+                                                                    const reconstruct::GroundArea& area,
+                                                                    const RigOffsetsOptions& options, const RunHooks& hooks) {
   std::vector<std::unique_ptr<Alone>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
                     [&](std::size_t i) { runs[i] = std::make_unique<Alone>(*cameras[i], area, options); });
@@ -83,7 +83,7 @@ std::string_view reason(calibrate::pitch::OffsetVerdict verdict) {
       return "";
     case calibrate::pitch::OffsetVerdict::no_overlap:
       return "no person was seen on ground that it has in common with another camera";
-    case calibrate::pitch::OffsetVerdict::nobody_moves:
+    case calibrate::pitch::OffsetVerdict::no_motion:
       return "too few people move on the ground that it has in common with others";
     case calibrate::pitch::OffsetVerdict::ambiguous:
       return "no offset explains how people move plainly better than others";
@@ -127,7 +127,8 @@ bool lacks_offsets(const Rig& rig) {
                                   [](const RigCamera& camera) { return looks_at_ground(camera) && !camera.offset_s; });
 }
 
-RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOffsetsOptions& options, const RunHooks& hooks) {
+RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options,
+                            const RunHooks& hooks) {
   RigOffsets result;
   std::vector<const RigCamera*> cameras;
   std::vector<double> assumed;

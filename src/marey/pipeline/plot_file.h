@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "marey/core/whole_file.h"
 #include "marey/draw/trajectory_plot.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::pipeline {
 
@@ -25,7 +25,7 @@ class PlotFile {
   }
 
  private:
-  format::WholeFile file_;
+  WholeFile file_;
   std::string title_;
   draw::TrajectoryPlot plot_;
 };

@@ -14,10 +14,10 @@
 #include "marey/format/motion/motion.h"
 #include "marey/format/take/take_file.h"
 #include "marey/pipeline/blob_feed.h"
-#include "marey/pipeline/gap_filler.h"
 #include "marey/pipeline/instants.h"
-#include "marey/pipeline/learned_noise.h"
 #include "marey/pipeline/set_labels.h"
+#include "marey/reconstruct/learned_noise.h"
+#include "marey/track/gap_filler.h"
 
 namespace marey::pipeline {
 namespace {
@@ -219,9 +219,9 @@ class Reconstruction {
   ReconstructOptions options_;
   RunHooks hooks_;
   Instants instants_;
-  LearnedNoise noise_;
+  reconstruct::LearnedNoise noise_;
   SetLabels labels_;
-  GapFiller filler_;
+  track::GapFiller filler_;
   std::optional<reconstruct::Corresponder> corresponder_;
   std::unique_ptr<track::Tracker<3>> tracker_;
   std::unique_ptr<format::take::TakeWriter> writer_;

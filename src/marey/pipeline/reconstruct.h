@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/marker_set.h"
 #include "marey/core/rig.h"
 #include "marey/detect/markers/marker_detector.h"
-#include "marey/format/motion/marker_set.h"
 #include "marey/pipeline/run.h"
 #include "marey/pipeline/stage_times.h"
 #include "marey/reconstruct/correspond.h"
@@ -23,7 +23,7 @@ struct ReconstructOptions {
   reconstruct::CorrespondOptions correspond = {};
   std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
   track::RosterTrackerOptions tracker = space_tracker_options();
-  format::motion::MarkerSet set;  ///< labels, with places where the markers keep their distances at the beginning; may be empty
+  MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
   std::optional<double> rate_hz;  ///< of sources and observations that do not tell theirs
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is told as it was expected; ≤ fill_s

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig.h"
 #include "marey/format/match/ground_file.h"
-#include "marey/format/rig/rig_sources.h"
-#include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/ground_films.h"
 #include "marey/pipeline/ground_offsets.h"
+#include "marey/reconstruct/ground_area.h"
 
 namespace marey::pipeline {
 namespace {
@@ -292,7 +292,7 @@ class Run {
   GroundOutput output_;
   TrackGroundOptions options_;
   RunHooks hooks_;
-  GroundArea area_;
+  reconstruct::GroundArea area_;
   GroundCameras cameras_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   std::deque<KeptLooks> waiting_;
@@ -315,7 +315,7 @@ void check(const Rig& rig, const GroundOutput& output, const TrackGroundOptions&
   if (!(options.margin >= 0)) throw Error("the margin is {} m; it must not be negative", options.margin);
   if (!output.boxes_of.empty()) {
     Rig copy = rig;
-    format::rig::camera_named(copy, output.boxes_of);
+    camera_named(copy, output.boxes_of);
   }
 }
 
@@ -334,7 +334,7 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Tra
     RigOffsetsOptions how;
     how.eyes = options.eyes;
     how.rate_hz = options.rate_hz;
-    offsets = find_rig_offsets(rig, GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
+    offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
     enter_offsets(timed, offsets);
   }
   GroundSummary summary = Run(timed, output, options, hooks)();

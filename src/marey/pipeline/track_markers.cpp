@@ -11,9 +11,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/observation.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/overlay.h"
-#include "marey/pipeline/marker_video.h"
 #include "marey/pipeline/plot_file.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/pipeline/rows_by_frame.h"

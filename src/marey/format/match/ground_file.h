@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "marey/core/ground_recording.h"
-#include "marey/format/whole_file.h"
+#include "marey/core/whole_file.h"
 
 namespace marey::format::match {
 

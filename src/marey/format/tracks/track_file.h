@@ -8,7 +8,7 @@
 
 #include "marey/core/time.h"
 #include "marey/core/track.h"
-#include "marey/format/whole_file.h"
+#include "marey/core/whole_file.h"
 
 namespace marey::format::tracks {
 

@@ -14,9 +14,9 @@
 
 #include <Eigen/LU>
 
+#include "marey/core/colour.h"
 #include "marey/core/geometry.h"
 #include "marey/core/observation.h"
-#include "marey/core/perceived.h"
 #include "marey/core/track.h"
 #include "marey/geometry/chi_square.h"
 #include "marey/track/ground/ground_presence.h"

@@ -5,14 +5,14 @@
 
 #include <opencv2/core/types.hpp>
 
-#include "marey/core/geometry.h"
 #include "marey/geometry/lens.h"
+#include "marey/geometry/vector.h"
 
-namespace marey::format::rig {
+namespace marey::geometry {
 
 /// A Brown lens that stands for another way of seeing.
 struct BrownFit {
-  geometry::BrownLens lens;
+  BrownLens lens;
   Matrix<3> turn = Matrix<3>::Identity();  ///< lens's frame from the frame of the directions
   double rms_px = 0;                       ///< what remains, 2-D, over the picture
 };
@@ -26,6 +26,6 @@ struct BrownFitOptions {
 /// they look (z ahead, any length; nothing where they see nothing). `start` is a first guess of focal length and principal point.
 /// Nothing where fewer than 20 grid points look ahead.
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
-                                  const geometry::BrownLens& start, const BrownFitOptions& options = {});
+                                  const BrownLens& start, const BrownFitOptions& options = {});
 
-}  // namespace marey::format::rig
+}  // namespace marey::geometry

@@ -1,6 +1,6 @@
 // Least squares on pixels over a grid of 24 × 18 points, by Levenberg and Marquardt's method: 4 numbers of the lens, its
 // coefficients, and a small rotation where it is allowed. Derivatives are exact (ceres::Jet). A few milliseconds.
-#include "marey/format/rig/lens_fit.h"
+#include "marey/geometry/lens_fit.h"
 
 #include <array>
 #include <cmath>
@@ -9,13 +9,13 @@
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
 
-#include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
+#include "marey/geometry/vector.h"
 
-namespace marey::format::rig {
+namespace marey::geometry {
 namespace {
 
-constexpr int kParameters = 4 + geometry::BrownLens::coefficients + 3;
+constexpr int kParameters = 4 + BrownLens::coefficients + 3;
 using Jet = ceres::Jet<double, kParameters>;
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 
@@ -25,7 +25,7 @@ struct Sight {
 };
 
 struct Trial {
-  geometry::BrownLens lens;
+  BrownLens lens;
   Matrix<3> turn = Matrix<3>::Identity();
 
   /// Steps of the lens add up; the rotation's is one from where it stands.
@@ -33,21 +33,21 @@ struct Trial {
     Trial next = *this;
     next.lens.focal += step.segment<2>(0);
     next.lens.principal += step.segment<2>(2);
-    for (std::size_t i = 0; i < geometry::BrownLens::coefficients; ++i) next.lens.distortion[i] += step[4 + static_cast<int>(i)];
-    next.turn = geometry::rotation_from(step.tail<3>()) * turn;
+    for (std::size_t i = 0; i < BrownLens::coefficients; ++i) next.lens.distortion[i] += step[4 + static_cast<int>(i)];
+    next.turn = rotation_from(step.tail<3>()) * turn;
     return next;
   }
 
   Eigen::Matrix<Jet, 2, 1> pixel(const Vector<3>& direction) const {
     const Vector<3> d = turn * direction;
-    constexpr int kTurn = 4 + geometry::BrownLens::coefficients;
+    constexpr int kTurn = 4 + BrownLens::coefficients;
     Eigen::Matrix<Jet, 3, 1> at(Jet(d.x()), Jet(d.y()), Jet(d.z()));
     at.x().v[kTurn + 1] = d.z(), at.x().v[kTurn + 2] = -d.y();
     at.y().v[kTurn + 0] = -d.z(), at.y().v[kTurn + 2] = d.x();
     at.z().v[kTurn + 0] = d.y(), at.z().v[kTurn + 1] = -d.x();
-    std::array<Jet, geometry::BrownLens::coefficients> k;
+    std::array<Jet, BrownLens::coefficients> k;
     for (std::size_t i = 0; i < k.size(); ++i) k[i] = Jet(lens.distortion[i], 4 + static_cast<int>(i));
-    const Eigen::Matrix<Jet, 2, 1> seen = geometry::BrownLens::distort(at, k.data());
+    const Eigen::Matrix<Jet, 2, 1> seen = BrownLens::distort(at, k.data());
     return {Jet(lens.principal.x(), 2) + Jet(lens.focal.x(), 0) * seen.x(),
             Jet(lens.principal.y(), 3) + Jet(lens.focal.y(), 1) * seen.y()};
   }
@@ -88,7 +88,7 @@ Parameters step_of(const Trial& trial, const std::vector<Sight>& sights, const s
 }  // namespace
 
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
-                                  const geometry::BrownLens& start, const BrownFitOptions& options) {
+                                  const BrownLens& start, const BrownFitOptions& options) {
   constexpr int kColumns = 24, kRows = 18, kFewest = 20, kMostSteps = 200;
   std::vector<Sight> sights;
   for (int row = 0; row < kRows; ++row) {
@@ -101,12 +101,11 @@ std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(c
   if (std::ssize(sights) < kFewest) return std::nullopt;
 
   std::array<bool, kParameters> held{};
-  for (int i = options.coefficients; i < geometry::BrownLens::coefficients; ++i) held[static_cast<std::size_t>(4 + i)] = true;
-  for (int i = 0; i < 3; ++i) held[static_cast<std::size_t>(4 + geometry::BrownLens::coefficients + i)] = !options.turn;
+  for (int i = options.coefficients; i < BrownLens::coefficients; ++i) held[static_cast<std::size_t>(4 + i)] = true;
+  for (int i = 0; i < 3; ++i) held[static_cast<std::size_t>(4 + BrownLens::coefficients + i)] = !options.turn;
   Trial best;
   best.lens = start;
-  for (int i = options.coefficients; i < geometry::BrownLens::coefficients; ++i)
-    best.lens.distortion[static_cast<std::size_t>(i)] = 0;
+  for (int i = options.coefficients; i < BrownLens::coefficients; ++i) best.lens.distortion[static_cast<std::size_t>(i)] = 0;
   double error = squared_error(best, sights);
   double damping = 1e-3;
   for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
@@ -126,4 +125,4 @@ std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(c
   return BrownFit{best.lens, best.turn, std::sqrt(error / static_cast<double>(sights.size()))};
 }
 
-}  // namespace marey::format::rig
+}  // namespace marey::geometry

@@ -1,9 +1,9 @@
-#include "marey/pipeline/gap_filler.h"
+#include "marey/track/gap_filler.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace marey::pipeline {
+namespace marey::track {
 
 TakeFrame* GapFiller::frame_at(std::int64_t number) {
   const std::int64_t back = added_ - number;  // 1: the last one
@@ -71,4 +71,4 @@ std::optional<TakeFrame> GapFiller::next() {
   return frame;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::track

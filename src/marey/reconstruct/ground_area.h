@@ -6,7 +6,7 @@
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
 
-namespace marey::pipeline {
+namespace marey::reconstruct {
 
 /// The part of the ground whose people count: a pitch with a margin round it, in the user's frame. Without a pitch all of it.
 class GroundArea {
@@ -21,7 +21,7 @@ class GroundArea {
   Vector<2> ground_velocity(const Vector<2>& velocity) const;
   Vector<2> world(const Vector<2>& ground) const;
 
-  /// Whether somebody at this place of the world counts; with `slack` m more on all sides.
+  /// Whether a person at this place of the world counts; with `slack` m more on all sides.
   bool holds(const Vector<2>& world, double slack = 0) const;
 
   /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
@@ -35,4 +35,4 @@ class GroundArea {
   double margin_ = 0;
 };
 
-}  // namespace marey::pipeline
+}  // namespace marey::reconstruct

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace marey::format {
+namespace marey {
 
 /// While it lives, nobody else has a lock on this path, in this process or another. The kernel lets go of it when the process ends,
 /// however it ends. Held on a file beside the path (with "-lock" behind its name), which goes away with the lock: a lock on the
@@ -23,4 +23,4 @@ class FileLock {
 /// True where somebody holds the lock, or was killed while he did.
 bool has_lock_file(const std::string& path);
 
-}  // namespace marey::format
+}  // namespace marey

@@ -7,7 +7,7 @@
 
 #include "marey/reconstruct/correspond.h"
 
-namespace marey::pipeline {
+namespace marey::reconstruct {
 
 /// How far blobs lie from where their markers should be seen: the detector's noise and the calibration's together, px along each
 /// axis. Learned from how well rays of points meet that have many of them: it begins wide and follows slowly, so that a wide net is
@@ -20,10 +20,10 @@ class LearnedNoise {
   double px() const { return px_; }
 
   /// Takes in an instant's points; whether the noise has changed by what matters.
-  bool learn(const reconstruct::Correspondences& found) {
+  bool learn(const Correspondences& found) {
     if (given_) return false;
     ratios_.clear();
-    for (const reconstruct::Placed& placed : found.points) {
+    for (const Placed& placed : found.points) {
       if (placed.point.rays > 2) ratios_.push_back(placed.point.chi_square / (2 * placed.point.rays - 3));
     }
     if (std::ssize(ratios_) < kFewest) return false;
@@ -35,7 +35,7 @@ class LearnedNoise {
     for (const double ratio : ratios_) {
       if (ratio < kFarOff * median) sum += ratio, ++count;
     }
-    // Where a calibration errs more in one place than in another, its tail tells more than its mean.
+    // Where a calibration errs more in one place than in another, its tail says more than its mean.
     const auto tail = ratios_.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(ratios_.size()));
     std::nth_element(ratios_.begin(), tail, ratios_.end());
     const double ratio = std::max(sum / count, *tail / kTail);
@@ -61,4 +61,4 @@ class LearnedNoise {
   std::vector<double> ratios_;
 };
 
-}  // namespace marey::pipeline
+}  // namespace marey::reconstruct

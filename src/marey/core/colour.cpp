@@ -1,11 +1,14 @@
-// sRGB to CIE L*a*b* and back: IEC 61966-2-1 and CIE 15:2004, white point D65.
-#include "marey/core/lab.h"
+// sRGB to CIE L*a*b* and back, and distances between colours of shirts: IEC 61966-2-1 and CIE 15:2004, white point D65.
+#include "marey/core/colour.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace marey {
 namespace {
+
+constexpr double kLightnessWeight = 0.6;  // of lightness against hue, in `perceived`
+constexpr double kWeakChroma = 30;        // chroma up to which strength counts nearly whole
 
 constexpr float white_x = 0.95047F, white_z = 1.08883F;
 constexpr float bend = 216.0F / 24389.0F;  // where the cube root gives way to a line
@@ -61,6 +64,21 @@ std::array<float, 3> srgb_from_lab(float lightness, float a, float b) {
   const float x = white_x * cube(fy + a / 500), y = cube(fy), z = white_z * cube(fy - b / 200);
   return {coded_of(3.2404542F * x - 1.5371385F * y - 0.4985314F * z), coded_of(-0.9692660F * x + 1.8760108F * y + 0.0415560F * z),
           coded_of(0.0556434F * x - 0.2040259F * y + 1.0572252F * z)};
+}
+
+Vector<3> perceived(const Appearance& colour) {
+  const double chroma = std::hypot(static_cast<double>(colour.a), static_cast<double>(colour.b));
+  const double kept = chroma > 1e-6 ? kWeakChroma * std::log1p(chroma / kWeakChroma) / chroma : 1;
+  return {kLightnessWeight * colour.lightness, kept * colour.a, kept * colour.b};
+}
+
+Appearance colour_at(const Vector<3>& point, double deviation) {
+  const double kept = std::hypot(point[1], point[2]);
+  const double chroma = kept > 1e-6 ? kWeakChroma * std::expm1(kept / kWeakChroma) / kept : 1;
+  return {.lightness = static_cast<float>(point[0] / kLightnessWeight),
+          .a = static_cast<float>(chroma * point[1]),
+          .b = static_cast<float>(chroma * point[2]),
+          .deviation = static_cast<float>(deviation)};
 }
 
 }  // namespace marey

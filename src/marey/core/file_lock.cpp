@@ -1,4 +1,4 @@
-#include "marey/format/file_lock.h"
+#include "marey/core/file_lock.h"
 
 #include <cerrno>
 #include <system_error>
@@ -10,7 +10,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey::format {
+namespace marey {
 namespace {
 
 /// Whether the name still is that of the open file, and not of one that came after it.
@@ -29,7 +29,7 @@ FileLock::FileLock(const std::string& path) : lock_path_(path + "-lock") {
     if (file_ < 0) throw Error("{}: cannot be written ({})", path, std::generic_category().message(errno));
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
       close(file_);
-      throw Error("{}: is being recorded by another program; wait until it is done, or choose another name", path);
+      throw Error("{}: is being written by another run; wait until it is done, or choose another name", path);
     }
     // The one who had it before may have removed the file between our two calls.
     if (is_file_of(file_, lock_path_)) return;
@@ -46,4 +46,4 @@ bool has_lock_file(const std::string& path) {
   return access((path + "-lock").c_str(), F_OK) == 0;
 }
 
-}  // namespace marey::format
+}  // namespace marey

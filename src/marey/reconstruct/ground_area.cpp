@@ -1,4 +1,4 @@
-#include "marey/pipeline/ground_area.h"
+#include "marey/reconstruct/ground_area.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey::pipeline {
+namespace marey::reconstruct {
 
 GroundArea::GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch,
                        double margin)
@@ -38,4 +38,4 @@ bool GroundArea::holds(const Vector<2>& world, double slack) const {
   return at.x() >= -around && at.y() >= -around && at.x() <= pitch_->length + around && at.y() <= pitch_->width + around;
 }
 
-}  // namespace marey::pipeline
+}  // namespace marey::reconstruct

@@ -1,4 +1,4 @@
-#include "marey/core/lab.h"
+#include "marey/core/colour.h"
 
 #include <random>
 
@@ -32,6 +32,26 @@ TEST(Lab, WhatNoScreenShowsBecomesTheNearest) {
     EXPECT_GE(part, 0);
     EXPECT_LE(part, 255);
   }
+}
+
+TEST(Perceived, IsUndoneByColourAt) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> part(-90, 90);
+  for (int i = 0; i < 200; ++i) {
+    const Appearance colour{.lightness = part(random) / 2 + 50, .a = part(random), .b = part(random), .deviation = 7};
+    const Appearance back = colour_at(perceived(colour), 7);
+    EXPECT_NEAR(back.lightness, colour.lightness, 1e-3);
+    EXPECT_NEAR(back.a, colour.a, 1e-3);
+    EXPECT_NEAR(back.b, colour.b, 1e-3);
+    EXPECT_EQ(back.deviation, 7);
+  }
+}
+
+TEST(Perceived, ShadeCountsLessThanHue) {
+  const Appearance red{.lightness = 50, .a = 40, .b = 0}, shaded{.lightness = 30, .a = 40, .b = 0},
+      green{.lightness = 50, .a = 20, .b = 0};
+  EXPECT_NEAR((perceived(red) - perceived(shaded)).norm(), 12, 1e-6);
+  EXPECT_GT((perceived(red) - perceived({.lightness = 50, .a = -40, .b = 0})).norm(), (perceived(red) - perceived(green)).norm());
 }
 
 }  // namespace

@@ -1,44 +1,22 @@
-#include "marey/format/rig/rig_sources.h"
+#include "marey/core/rig.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-
-#include <fmt/format.h>
 
 #include "marey/core/error.h"
 
-namespace marey::format::rig {
-namespace {
+namespace marey {
 
-std::string names(const Rig& rig) {
+std::string camera_names(const Rig& rig) {
   std::string all;
   for (const RigCamera& camera : rig.cameras) all += (all.empty() ? "" : ", ") + camera.name;
   return all;
 }
 
-}  // namespace
-
 RigCamera& camera_named(Rig& rig, const std::string& name) {
   const auto at = std::find_if(rig.cameras.begin(), rig.cameras.end(), [&](const RigCamera& each) { return each.name == name; });
-  if (at == rig.cameras.end()) throw Error("the rig has no camera \"{}\"; there are: {}", name, names(rig));
+  if (at == rig.cameras.end()) throw Error("the rig has no camera \"{}\"; there are: {}", name, camera_names(rig));
   return *at;
-}
-
-void set_sources(Rig& rig, std::span<const std::string> pairs) {
-  std::set<std::string> given;
-  for (const std::string& pair : pairs) {
-    const auto sign = pair.find('=');
-    if (sign == std::string::npos || sign == 0 || sign + 1 == pair.size()) {
-      throw Error("\"{}\" is no source; write CAMERA=FILE with one of the rig's cameras: {}", pair, names(rig));
-    }
-    RigCamera& camera = camera_named(rig, pair.substr(0, sign));
-    if (!given.insert(camera.name).second) throw Error("camera \"{}\" is given two sources; keep one of them", camera.name);
-    const std::string file = pair.substr(sign + 1);
-    const bool text = file.ends_with(".txt") || file.ends_with(".csv");
-    camera.source = text ? "" : file;
-    camera.detections = text ? file : "";
-  }
 }
 
 void fit_to_size(RigCamera& camera, cv::Size found) {
@@ -62,4 +40,4 @@ void fit_to_size(RigCamera& camera, cv::Size found) {
   }
 }
 
-}  // namespace marey::format::rig
+}  // namespace marey

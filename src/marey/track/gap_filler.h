@@ -13,7 +13,7 @@
 #include "marey/core/take.h"
 #include "marey/core/track.h"
 
-namespace marey::pipeline {
+namespace marey::track {
 
 class GapFiller {
  public:
@@ -51,4 +51,4 @@ class GapFiller {
   std::map<TrackId, Timestamp> last_seen_;
 };
 
-}  // namespace marey::pipeline
+}  // namespace marey::track
