@@ -27,7 +27,8 @@ FileLock::FileLock(const std::string& path) : lock_path_(path + "-lock") {
   for (;;) {
     file_ = open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0) throw Error("{}: cannot be written ({})", path, std::generic_category().message(errno));
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    // A share that knows no locks is written without one: names of temporary files never collide.
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(file_);
       throw Error("{}: is being written by another run; wait until it is done, or choose another name", path);
     }

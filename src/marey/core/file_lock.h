@@ -4,7 +4,7 @@
 
 namespace marey {
 
-/// While it lives, nobody else has a lock on this path, in this process or another. The kernel lets go of it when the process ends,
+/// While it lives, no one else has a lock on this path, in this process or another. The kernel lets go of it when the process ends,
 /// however it ends. Held on a file beside the path (with "-lock" behind its name), which goes away with the lock: a lock on the
 /// SQLite file itself would be lost with the first of its handles that the process closes.
 class FileLock {
@@ -20,7 +20,7 @@ class FileLock {
   int file_ = -1;
 };
 
-/// True where somebody holds the lock, or was killed while he did.
+/// True where another holds the lock, or was killed while it did.
 bool has_lock_file(const std::string& path);
 
 }  // namespace marey
