@@ -74,7 +74,7 @@ TEST(BundleResidual, TheErrorIsPredictedMinusSeen) {
     bundle.bodies.emplace_back(Vector<3>(0.2, -0.1, 0.3));
     const BundleObservation seen{0, 0, 0, {600, 500}, {30, -20}};
     const auto predicted = predicted_pixel(bundle, seen);
-    const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(lens, bundle.bodies[0], {}, seen, true));
+    const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(lens, bundle.bodies[0], Vector<3>::Zero(), seen, true));
     const auto pose = numbers_of(bundle.cameras[0].camera_from_world), numbers = numbers_of(lens),
                body = numbers_of(bundle.bodies[0]);
     const double offset = 0.1;
@@ -88,7 +88,7 @@ TEST(BundleResidual, TheErrorIsPredictedMinusSeen) {
 TEST(BundleResidual, AMarkerBehindTheCameraCannotBeEvaluated) {
   const BundleObservation seen{0, 0, 0, {600, 500}};
   const Body body(Vector<3>(0, 0, -1));
-  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(kLenses[0], body, {}, seen, false));
+  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(kLenses[0], body, Vector<3>::Zero(), seen, false));
   EXPECT_EQ(cost->parameter_block_sizes().size(), 3U);
   const auto pose = numbers_of(Rigid3{}), lens = numbers_of(kLenses[0]), place = numbers_of(body);
   const std::array<const double*, 3> blocks{pose.data(), lens.data(), place.data()};

@@ -57,8 +57,8 @@ TEST(PitchSightings, PaintIsFoundWhereItIs) {
 }
 
 TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
-  const Camera truth = on_the_stand(), guess = on_the_stand({0.15, 0.1, 0.05});
-  const auto found = find_lines(painted(truth, lines()), guess, lines(), 15);
+  const Camera truth = on_the_stand(), guess = on_the_stand({0.3, 0.2, 0.1});
+  const auto found = find_lines(painted(truth, lines()), guess, lines(), 20);
   ASSERT_GT(found.size(), 150U);
   std::vector<double> expected, seen;
   for (const LineSighting& one : found) {

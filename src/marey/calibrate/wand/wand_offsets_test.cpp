@@ -1,5 +1,7 @@
 #include "marey/calibrate/wand/wand_offsets.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "marey/calibrate/wand/wand_scene_test.h"
@@ -7,9 +9,19 @@
 namespace marey::calibrate::wand {
 namespace {
 
+/// The scene's wand, waved by a hand: now fast, now slow.
+double by_hand(double time_s) {
+  return time_s + 0.45 * std::sin(1.7 * time_s) + 0.12 * std::sin(4.1 * time_s + 1) + 0.08 * std::sin(6.7 * time_s + 2);
+}
+
 std::vector<MarkTrack> tracks_of(WandScene& scene, const std::vector<double>& offsets, int frames = 500) {
   std::vector<MarkTrack> tracks;
-  for (std::size_t c = 0; c < offsets.size(); ++c) tracks.push_back(scene.track(c, frames, 0.2, 50, offsets[c]));
+  for (std::size_t c = 0; c < offsets.size(); ++c) {
+    MarkTrack& track = tracks.emplace_back(MarkTrack{{}, 0.02, 0});
+    for (int i = 0; i < frames; ++i) {
+      if (const auto marks = scene.seen(c, by_hand(0.02 * i + offsets[c]), 0.2)) track.frames.push_back({0.02 * i, *marks});
+    }
+  }
   return tracks;
 }
 
