@@ -13,7 +13,7 @@
 #include <opencv2/videoio.hpp>
 #include <unistd.h>
 
-#include "marey/pipeline/track_people.h"
+#include "marey/pipeline/track_in_picture.h"
 #include "marey/source/open_source.h"
 
 namespace {
@@ -53,9 +53,11 @@ int main(int argc, char** argv) {
   const std::string tracks = (std::filesystem::temp_directory_path() / fmt::format("marey_end_to_end_{}.txt", ::getpid())).string();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole, own_decode = whole;
   double frames = 0;
+  marey::RigCamera camera;
+  camera.source = video;
   for (int round = 0; round < kRounds; ++round) {
     whole = std::min(whole, seconds_of([&] {
-                       frames = static_cast<double>(marey::pipeline::track_people({.pictures = video}, {.tracks = tracks}).frames);
+                       frames = static_cast<double>(marey::pipeline::track_people(camera, {.tracks = tracks}).frames);
                      }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(video, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(video, false); }));

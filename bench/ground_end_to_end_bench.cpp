@@ -46,7 +46,7 @@ void compare(const std::string& folder, cv::Size size) {
   const marey::Rig rig = marey::format::rig::read_rig(folder + "/rig.toml");
   marey::pipeline::GroundOutput output;
   output.tracks = folder + "/out.csv";
-  marey::pipeline::TrackGroundOptions options;
+  marey::pipeline::PeopleOnGroundOptions options;
   options.pitch.emplace();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole;
   double frames = 0;

@@ -19,18 +19,21 @@ constexpr int kFrames = 90 * 60 * 25;
 const format::match::GroundMatch& match() {
   static const format::match::GroundMatch all = [] {
     format::match::GroundMatch one;
-    one.recording.cameras = {"left", "right"};
-    for (int id = 1; id <= kPeople; ++id)
-      one.recording.people.push_back({id, std::to_string(id), id <= 11 ? "white" : id <= 22 ? "blue" : "referee"});
-    for (std::int32_t frame = 0; frame < kFrames; ++frame) {
-      for (std::int32_t person = 0; person < kPeople; ++person) {
-        const double phase = 0.001 * frame + person;
-        GroundRecording::Sample sample;
-        sample.frame = frame, sample.person = person, sample.time = frame / 25.0, sample.cameras = 3;
-        sample.place = {52 + 40 * std::sin(phase), 34 + 30 * std::cos(1.3 * phase)};
-        sample.velocity = {std::cos(phase), -0.9 * std::sin(1.3 * phase)};
-        one.recording.samples.push_back(sample);
+    one.recording.header.rig.emplace();
+    for (const char* camera : {"left", "right"}) one.recording.header.rig->cameras.emplace_back().name = camera;
+    for (std::int32_t frame = 0; frame < kFrames; ++frame) one.recording.add_moment({frame, timestamp_from_seconds(frame / 25.0)});
+    for (int id = 1; id <= kPeople; ++id) {
+      TrackColumns track({TrackId{id}, std::to_string(id), id <= 11 ? "white" : id <= 22 ? "blue" : "referee"}, 2);
+      track.reserve(kFrames);
+      for (std::int32_t frame = 0; frame < kFrames; ++frame) {
+        const double phase = 0.001 * frame + id - 1;
+        Sample sample;
+        sample.position = {52 + 40 * std::sin(phase), 34 + 30 * std::cos(1.3 * phase), 0};
+        sample.velocity = Vector<3>(std::cos(phase), -0.9 * std::sin(1.3 * phase), 0);
+        sample.cameras = 3;
+        track.add(frame, sample);
       }
+      one.recording.put(std::move(track));
     }
     return one;
   }();
@@ -63,7 +66,7 @@ void write_match(benchmark::State& state, format::match::GroundFormat format, co
 void read_match(benchmark::State& state, format::match::GroundFormat format, const char* name) {
   const Place place(name);
   format::match::write_ground_as(match(), place.path, format);
-  for (auto _ : state) benchmark::DoNotOptimize(format::match::read_ground_as(place.path, format).recording.samples.data());
+  for (auto _ : state) benchmark::DoNotOptimize(format::match::read_ground_as(place.path, format).recording.samples());
   count_bytes(state, std::filesystem::file_size(place.path));
 }
 

@@ -42,7 +42,7 @@ std::vector<evaluate::PersonPlace> truth_of(const simulate::EncounterScene& scen
   std::vector<evaluate::PersonPlace> places;
   for (std::size_t frame = 0; frame < scene.truth.size(); ++frame) {
     for (std::size_t i = 0; i < scene.truth[frame].size(); ++i)
-      places.push_back({static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), scene.truth[frame][i], Vector<2>::Zero()});
+      places.push_back({static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), scene.truth[frame][i], {}});
   }
   return places;
 }

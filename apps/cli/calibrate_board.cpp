@@ -6,36 +6,38 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/rig_sources.h"
 
-#include "calibrate_commands.h"
+#include "board_option.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
 #include "progress_bar.h"
+#include "rig_inputs.h"
 
 namespace marey::cli {
 namespace {
 
 struct CalibrateBoard {
-  std::string rig, board, out;
-  std::vector<std::string> sources;
+  RigAndSources inputs;
+  std::string board, out;
   pipeline::BoardRunOptions run;
   bool json = false;
   bool quiet = false;
 };
 
 template <typename Figures>
-nlohmann::json figures_of(const Figures& found) {
+Json figures_of(const Figures& found) {
   return {{"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
 }
 
-nlohmann::json as_json(const pipeline::BoardRun& run) {
-  nlohmann::json cameras;
+Json as_json(const pipeline::BoardRun& run) {
+  Json cameras;
   for (std::size_t i = 0; i < run.rig.cameras.size(); ++i) {
     const calibrate::board::BoardRigPose& found = run.found.cameras[i];
     const Vector<3> centre = run.rig.cameras[i].camera_from_world->inverse().translation;
-    nlohmann::json camera = figures_of(found);
+    Json camera = figures_of(found);
     camera["centre"] = {centre.x(), centre.y(), centre.z()};
     camera["centre_deviation"] = {found.centre_deviation.x(), found.centre_deviation.y(), found.centre_deviation.z()};
     camera["offset_s"] = run.rig.cameras[i].offset_s.value_or(0);
@@ -61,8 +63,7 @@ void print_table(const pipeline::BoardRun& run) {
 
 void run(const CalibrateBoard& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
-  Rig rig = format::rig::read_rig(command.rig);
-  pipeline::set_sources(rig, command.sources);
+  const Rig rig = rig_of(command.inputs);
   pipeline::BoardRunOptions options = command.run;
   pipeline::BoardRun found;
   {
@@ -75,37 +76,29 @@ void run(const CalibrateBoard& command) {
   format::rig::write_rig(found.rig, command.out);
   for (const std::string& sentence : found.found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
-    fmt::print("{}\n", as_json(found).dump(2));
-  } else {
+    print(as_json(found));
+  } else if (!command.quiet) {
     print_table(found);
+    fmt::print("rig: {}\n", command.out);
   }
 }
 
 }  // namespace
 
-void add_calibrate_board(CLI::App& calibrate) {
+void add_calibrate_board(Command& calibrate) {
   auto options = std::make_shared<CalibrateBoard>();
-  CLI::App* command = calibrate.add_subcommand(
-      "board", "Where the cameras stand, and how far they are out of step, from a board carried before them");
-  command->add_option("rig", options->rig, "rig file: the cameras, their lenses where they are known")->required();
-  command->add_option("sources", options->sources,
-                      "CAMERA=VIDEO, CAMERA=FOLDER or CAMERA=PATTERN in place of the rig's own sources");
-  command
-      ->add_option("--board", options->board,
-                   "chess:9x6:0.025 (inner corners, m) or charuco:COLSxROWS:SQUARE:MARKER:DICT, :inverted behind it where black "
-                   "and white are exchanged")
-      ->required();
-  command->add_option("-o,--out", options->out, "rig file with what was found")->required();
-  command->add_flag("--refine", options->run.refine, "refine the lenses too");
-  command->add_flag("--synced", options->run.synced, "the cameras are in step: keep the rig's offsets");
-  command->add_flag("--rolling-shutter", options->run.rolling_shutter,
-                    "find out how long each shutter takes from the top row to the bottom row");
-  command->add_option("--most-offset", options->run.most_offset_s, "how far the films may be out of step, s")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "print JSON instead of a table");
-  command->add_flag("-q,--quiet", options->quiet, "no progress");
-  command->callback([options] { run(*options); });
+  Command command =
+      calibrate.subcommand("board", "Where the cameras stand, and how far they are out of step, from a board carried before them");
+  Option rig = add_rig(command, options->inputs, "rig file: the cameras, their lenses where they are known").required();
+  add_board(command, options->board).required();
+  command.output_file("-o,--output", options->out, "rig file with what was found").required().ends_in({".toml"}).may_replace(rig);
+  command.flag("--refine", options->run.refine, "refine the lenses too");
+  command.flag("--synced", options->run.synced, "the cameras are in step: keep the rig's offsets");
+  command.flag("--rolling-shutter", options->run.rolling_shutter,
+               "find out how long each shutter takes from the top row to the bottom row");
+  command.number("--most-offset", options->run.most_offset_s, "s", closed(0, 3600), "how far the films may be out of step");
+  command.reports(options->json, options->quiet, "table");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

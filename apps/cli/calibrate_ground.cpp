@@ -4,7 +4,6 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/calibrate/ground.h"
 #include "marey/core/error.h"
@@ -12,7 +11,11 @@
 #include "marey/pipeline/board_on_ground.h"
 #include "marey/pipeline/camera_blobs.h"
 
-#include "calibrate_commands.h"
+#include "blob_options.h"
+#include "board_option.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
 #include "progress_bar.h"
 #include "rig_inputs.h"
 
@@ -34,8 +37,8 @@ std::vector<Vector<3>> frame_of(const std::string& text) {
   std::vector<Vector<3>> frame;
   for (std::size_t at = 0; at <= text.size();) {
     const std::string part = text.substr(at, text.find(';', at) - at);
-    const auto numbers = numbers_in(part, "--frame", form);
-    if (numbers.size() != 2 && numbers.size() != 3) throw Error("--frame {}: write {}", part, form);
+    const auto numbers = numbers_in(part, ',', closed(-1000, 1000), form);
+    if (numbers.size() != 2 && numbers.size() != 3) throw WrongUsage("{}: write {}", part, form);
     frame.emplace_back(numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0);
     at += part.size() + 1;
   }
@@ -66,7 +69,7 @@ void run(const CalibrateGround& command) {
   }
   format::rig::write_rig(calibrate::moved_to_ground(rig, found.ground_from_world, found.scale), command.out);
   if (command.json) {
-    fmt::print("{}\n", nlohmann::json{{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.seen_by}}.dump(2));
+    print({{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.seen_by}});
   } else if (!command.quiet) {
     fmt::print("the ground fits to {:.2f} mm rms; its {} seen by {} to {} cameras\n", found.rms_mm,
                command.board.empty() ? "markers are" : "board is", *std::min_element(found.seen_by.begin(), found.seen_by.end()),
@@ -78,23 +81,21 @@ void run(const CalibrateGround& command) {
 
 }  // namespace
 
-void add_calibrate_ground(CLI::App& calibrate) {
+void add_calibrate_ground(Command& calibrate) {
   auto options = std::make_shared<CalibrateGround>();
-  CLI::App* command =
-      calibrate.add_subcommand("ground", "Origin and axes of a calibrated rig, from an L-frame of markers or a board on the floor");
-  add_rig_inputs(*command, options->inputs);
-  auto* frame =
-      command->add_option("--frame", options->frame, "where the L-frame's markers lie: X,Y;X,Y;… in m")->capture_default_str();
-  command
-      ->add_option("--board", options->board, "in place of an L-frame, a board that lies on the floor: see `marey calibrate lens`")
-      ->excludes(frame);
-  command->add_flag("--scale", options->scale, "the L-frame's size sets the rig's, as for a rig by a single light");
-  command->add_option("-o,--out", options->out, "the rig file that is written")->required();
-  command->add_option("--threshold", options->markers.threshold,
-                      "grey level that a marker's pixels pass (default: from the picture's noise)");
-  command->add_flag("--json", options->json, "print JSON instead of a sentence");
-  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
-  command->callback([options] { run(*options); });
+  Command command =
+      calibrate.subcommand("ground", "Origin and axes of a calibrated rig, from an L-frame of markers or a board on the floor");
+  Option rig = add_rig_inputs(command, options->inputs);
+  Option frame =
+      command.text("--frame", options->frame, "where the L-frame's markers lie: X,Y;X,Y;… in m").check([](const std::string& text) {
+        frame_of(text);
+      });
+  add_board(command, options->board).excludes(frame);
+  command.flag("--scale", options->scale, "the L-frame's size sets the rig's, as for a rig by a single light");
+  command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);
+  add_threshold(command, options->markers.threshold);
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

@@ -5,7 +5,6 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
@@ -13,7 +12,10 @@
 #include "marey/draw/coverage_plot.h"
 #include "marey/format/rig/rig_file.h"
 
-#include "calibrate_commands.h"
+#include "board_option.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -27,24 +29,24 @@ struct CalibrateLens {
   bool quiet = false;
 };
 
-nlohmann::json as_json(const CalibrateLens& command, const pipeline::LensRun& run) {
+Json as_json(const CalibrateLens& command, const pipeline::LensRun& run) {
   const calibrate::LensCalibration& found = run.calibration;
-  const nlohmann::json figures = {
+  const Json figures = {
       {"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
-  nlohmann::json camera = figures;
+  Json camera = figures;
   const Vector<2>& focal = geometry::focal_of(found.lens);
   const Vector<2>& principal = geometry::principal_of(found.lens);
   camera["size"] = {found.size.width, found.size.height};
   camera["model"] = geometry::name_of(found.lens);
   camera["focal"] = {focal.x(), focal.y()};
   camera["principal"] = {principal.x(), principal.y()};
-  camera["distortion"] = std::visit([](const auto& lens) { return nlohmann::json(lens.distortion); }, found.lens);
+  camera["distortion"] = std::visit([](const auto& lens) { return Json(lens.distortion); }, found.lens);
   camera["covered"] = found.covered;
   camera["deviation"] = {{"focal", found.deviation.focal * focal.x()},
                          {"principal", {found.deviation.principal.x(), found.deviation.principal.y()}},
                          {"distortion", found.deviation.distortion}};
   for (const calibrate::LensCalibration::View& view : found.views) {
-    nlohmann::json entry = {{"name", view.name}, {"rms_px", view.rms_px}};
+    Json entry = {{"name", view.name}, {"rms_px", view.rms_px}};
     if (!view.refused.empty()) entry["refused"] = view.refused;
     camera["views"].push_back(std::move(entry));
   }
@@ -116,40 +118,32 @@ void run(const CalibrateLens& command) {
   if (!command.picture.empty()) draw(command, found.calibration);
   for (const std::string& sentence : found.calibration.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
-    fmt::print("{}\n", as_json(command, found).dump(2));
-  } else {
+    print(as_json(command, found));
+  } else if (!command.quiet) {
     print_table(found);
+    if (!command.out.empty()) fmt::print("rig: {}\n", command.out);
   }
 }
 
 }  // namespace
 
-void add_calibrate_lens(CLI::App& calibrate) {
+void add_calibrate_lens(Command& calibrate) {
   auto options = std::make_shared<CalibrateLens>();
-  CLI::App* command = calibrate.add_subcommand("lens", "One camera's lens, from pictures of a board");
-  command->add_option("input", options->input, "a video, a folder of pictures or a pattern such as 'shot_%02d.jpg'")->required();
-  command
-      ->add_option("--board", options->board,
-                   "chess:9x6:0.025 (inner corners, m) or charuco:COLSxROWS:SQUARE:MARKER:DICT, :inverted behind it where black "
-                   "and white are exchanged")
-      ->required();
-  command->add_option("-o,--out", options->out, "rig file for the camera");
-  command->add_option("--model", options->run.lens.model, "of the lens")
-      ->check(CLI::IsMember(calibrate::lens_models()))
-      ->capture_default_str();
-  command
-      ->add_option("--coefficients", options->run.lens.coefficients, "how many of the model's distortion coefficients are sought")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
-  command->add_flag("--square-pixels", options->run.lens.square_pixels, "one focal length for both axes");
-  command->add_option("--camera", options->name, "the camera's name in the rig")->capture_default_str();
-  command->add_option("--views", options->run.most_views, "pictures that the solution rests on, at most")
-      ->check(CLI::Range(3, 1000))
-      ->capture_default_str();
-  command->add_option("--picture", options->picture, "SVG of where corners were seen, with their errors");
-  command->add_flag("--json", options->json, "print JSON instead of a table");
-  command->add_flag("-q,--quiet", options->quiet, "no progress");
-  command->callback([options] { run(*options); });
+  Command command = calibrate.subcommand("lens", "One camera's lens, from pictures of a board");
+  command.input_file("INPUT", options->input, "a video, a folder of pictures or a pattern such as 'shot_%02d.jpg'").required();
+  add_board(command, options->board).required();
+  command.output_file("-o,--output", options->out, "rig file for the camera").ends_in({".toml"});
+  std::vector<std::pair<std::string, std::string>> models;
+  for (const auto& model : calibrate::lens_models()) models.emplace_back(model, model);
+  command.choice("--model", options->run.lens.model, models, "of the lens");
+  command.whole("--coefficients", options->run.lens.coefficients, "N", 0, 8,
+                "how many of the model's distortion coefficients are sought");
+  command.flag("--square-pixels", options->run.lens.square_pixels, "one focal length for both axes");
+  command.text("--camera", options->name, "the camera's name in the rig");
+  command.whole("--views", options->run.most_views, "N", 3, 1000, "pictures that the solution rests on, at most");
+  command.output_file("--picture", options->picture, "SVG of where corners were seen, with their errors").ends_in({".svg"});
+  command.reports(options->json, options->quiet, "table");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

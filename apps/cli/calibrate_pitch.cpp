@@ -6,23 +6,24 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/rig_sources.h"
 
-#include "calibrate_commands.h"
-#include "known.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
 #include "pitch_size.h"
 #include "progress_bar.h"
+#include "rig_inputs.h"
 
 namespace marey::cli {
 namespace {
 
 struct CalibratePitch {
-  std::string rig, out, pictures;
-  std::vector<std::string> sources, points;
+  RigAndSources inputs;
+  std::string out, pictures;
+  std::vector<std::string> points;
   std::string size = "105x68";
   bool synced = false;
   bool json = false;
@@ -34,25 +35,24 @@ std::map<std::string, std::string> parse_points(const std::vector<std::string>& 
   for (const std::string& pair : pairs) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
-      throw Error("--points {}: it must read CAMERA=FILE", pair);
+      throw WrongUsage("--points {}: it must read CAMERA=FILE", pair);
     if (!result.emplace(pair.substr(0, equals), pair.substr(equals + 1)).second)
-      throw Error("--points: camera \"{}\" is given twice", pair.substr(0, equals));
+      throw WrongUsage("--points: camera \"{}\" is given twice", pair.substr(0, equals));
   }
   return result;
 }
 
-nlohmann::json as_json(const pipeline::PitchRun& run) {
-  nlohmann::json cameras;
+Json as_json(const pipeline::PitchRun& run) {
+  Json cameras;
   double sum = 0, square = 0;
   int inliers = 0, observations = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     double camera_sum = 0, camera_square = 0;
     int good = 0;
-    nlohmann::json points = nlohmann::json::array();
+    Json points = Json::array();
     for (std::size_t k = 0; k < found.inlier.size(); ++k) {
-      nlohmann::json point = {
-          {"name", run.views[i].points[k].name}, {"error_px", found.error_px[k]}, {"used", found.inlier[k] != 0}};
+      Json point = {{"name", run.views[i].points[k].name}, {"error_px", found.error_px[k]}, {"used", found.inlier[k] != 0}};
       if (found.error_m[k]) point["error_m"] = *found.error_m[k];
       if (found.better_name[k]) point["fits"] = {found.better_name[k]->x(), found.better_name[k]->y()};
       points.push_back(std::move(point));
@@ -73,9 +73,9 @@ nlohmann::json as_json(const pipeline::PitchRun& run) {
                                {"points", points}};
     sum += camera_sum, square += camera_square, inliers += good, observations += all;
   }
-  nlohmann::json offsets = nlohmann::json::object();
+  Json offsets = Json::object();
   for (const pipeline::RigOffsets::Camera& camera : run.offsets.cameras) {
-    nlohmann::json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
+    Json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
     if (camera.found.verdict != calibrate::pitch::OffsetVerdict::found) continue;
     entry["offset_s"] = camera.offset_s;
     entry["found_s"] = camera.found.offset_s;
@@ -116,8 +116,7 @@ void print_report(const pipeline::PitchRun& run) {
 }
 
 void run(const CalibratePitch& command) {
-  Rig rig = format::rig::read_rig(command.rig);
-  pipeline::set_sources(rig, command.sources);
+  const Rig rig = rig_of(command.inputs);
   pipeline::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;
@@ -131,8 +130,8 @@ void run(const CalibratePitch& command) {
   format::rig::write_rig(found.rig, command.out);
   for (const std::string& sentence : found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (command.json) {
-    fmt::print("{}\n", as_json(found).dump(2));
-  } else {
+    print(as_json(found));
+  } else if (!command.quiet) {
     print_report(found);
     fmt::print("rig: {}\n", command.out);
     if (!command.pictures.empty()) fmt::print("pictures: {}\n", command.pictures);
@@ -141,26 +140,22 @@ void run(const CalibratePitch& command) {
 
 }  // namespace
 
-void add_calibrate_pitch(CLI::App& calibrate) {
+void add_calibrate_pitch(Command& calibrate) {
   auto options = std::make_shared<CalibratePitch>();
-  CLI::App* command =
-      calibrate.add_subcommand("pitch", "Lenses and places of cameras over a football pitch, from clicks and its white lines");
-  command->add_option("rig", options->rig, "rig file: the cameras' names and sources")->required();
-  command->add_option("sources", options->sources, "CAMERA=VIDEO, in place of the rig's sources");
-  command->add_option("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera")
-      ->required();
-  command->add_option("--size", options->size, "of the pitch, LENGTHxWIDTH in m")
-      ->check(known([](const std::string& text) { parse_pitch_size(text); }))
-      ->capture_default_str();
-  command->add_option("-o,--out", options->out, "rig file to write")->required();
-  command->add_option("--pictures", options->pictures,
-                      "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
-  command->add_flag(
+  Command command =
+      calibrate.subcommand("pitch", "Lenses and places of cameras over a football pitch, from clicks and its white lines");
+  Option rig = add_rig(command, options->inputs, "rig file: the cameras' names and sources").required();
+  command.input_files("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera")
+      .required();
+  command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
+  command.output_file("-o,--output", options->out, "rig file to write").required().ends_in({".toml"}).may_replace(rig);
+  command.output_folder("--pictures", options->pictures,
+                        "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
+  command.flag(
       "--synced", options->synced,
       "the cameras run on one clock; else when each was started is found from how people move, where the rig does not say");
-  command->add_flag("--json", options->json, "print JSON instead of a report");
-  command->add_flag("-q,--quiet", options->quiet, "no progress");
-  command->callback([options] { run(*options); });
+  command.reports(options->json, options->quiet, "report");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

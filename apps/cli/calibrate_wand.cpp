@@ -1,10 +1,10 @@
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/calibrate/wand/wand.h"
 #include "marey/core/error.h"
@@ -12,7 +12,10 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/camera_blobs.h"
 
-#include "calibrate_commands.h"
+#include "blob_options.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
 #include "progress_bar.h"
 #include "rig_inputs.h"
 
@@ -22,10 +25,10 @@ namespace {
 struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
-  std::string lens = "auto";
+  calibrate::wand::LensUse lens = calibrate::wand::LensUse::automatic;
   detect::markers::MarkerOptions markers;
   calibrate::wand::WandOptions options;
-  bool in_step = false;
+  bool synced = false;
   bool json = false;
   bool quiet = false;
 };
@@ -33,32 +36,32 @@ struct CalibrateWand {
 calibrate::wand::WandShape wand_of(const std::string& text) {
   calibrate::wand::WandShape wand;
   if (text == "led") return wand;
-  wand.distances = numbers_in(text, "--wand", "the markers' distances from the first in m, as 0,0.12,0.30, or led");
+  wand.distances = numbers_in(text, ',', closed(-100, 100), "the markers' distances from the first in m, as 0,0.12,0.30, or led");
   if (wand.distances.size() >= 2) return wand;
-  throw Error("--wand {}: a wand has two or three markers; a single light is \"led\"", text);
+  throw WrongUsage("{}: a wand has two or three markers; a single light is \"led\"", text);
 }
 
 std::optional<calibrate::wand::KnownDistance> distance_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto comma = text.find(','), equal = text.find('=');
   if (comma == std::string::npos || equal == std::string::npos || equal < comma) {
-    throw Error("--distance {}: write CAM1,CAM2=METRES, two cameras' names and how far they stand apart", text);
+    throw WrongUsage("{}: write CAM1,CAM2=METRES, two cameras' names and how far they stand apart", text);
   }
-  const double metres = numbers_in(text.substr(equal + 1), "--distance", "CAM1,CAM2=METRES").front();
+  const double metres = number_in(text.substr(equal + 1), "m", above(0, 1e5));
   return calibrate::wand::KnownDistance{text.substr(0, comma), text.substr(comma + 1, equal - comma - 1), metres};
 }
 
-nlohmann::json as_json(const calibrate::FitQuality& fit) {
+Json as_json(const calibrate::FitQuality& fit) {
   return {{"mean_px", fit.mean_px}, {"rms_px", fit.rms_px}, {"inliers", fit.inliers}, {"observations", fit.observations}};
 }
 
-nlohmann::json as_json(const calibrate::wand::WandResult& result) {
+Json as_json(const calibrate::wand::WandResult& result) {
   const calibrate::RigReport& report = result.report;
-  nlohmann::json json = {{"all", as_json(report.all)}, {"cameras", nlohmann::json::object()}};
+  Json json = {{"all", as_json(report.all)}, {"cameras", Json::object()}};
   json["all"]["noise_px"] = report.noise_px;
   for (std::size_t c = 0; c < report.cameras.size(); ++c) {
     const calibrate::CameraReport& camera = report.cameras[c];
-    nlohmann::json& entry = json["cameras"][camera.name] = as_json(camera.fit);
+    Json& entry = json["cameras"][camera.name] = as_json(camera.fit);
     entry["coverage"] = camera.coverage;
     entry["world_error_mm"] = camera.world_error_mm;
     entry["offset_s"] = result.rig.cameras[c].offset_s.value_or(0);
@@ -129,22 +132,20 @@ calibrate::wand::WandInput read(const CalibrateWand& command, bool& timed, Progr
 void run(const CalibrateWand& command) {
   calibrate::wand::WandOptions options = command.options;
   options.distance = distance_of(command.distance);
-  options.lens = command.lens == "fixed"     ? calibrate::wand::LensUse::fixed
-                 : command.lens == "refined" ? calibrate::wand::LensUse::refined
-                                             : calibrate::wand::LensUse::automatic;
+  options.lens = command.lens;
   calibrate::wand::WandResult result;
   {
     ProgressBar bar(command.quiet);
     bool timed = true;
     const calibrate::wand::WandInput input = read(command, timed, bar);
-    options.find_offsets = timed && !command.in_step;
+    options.find_offsets = timed && !command.synced;
     std::int64_t step = 0;
     options.step = [&](std::string_view what) { bar.show(what, step++, std::nullopt); };
     result = calibrate::wand::calibrate_wand(input, options);
   }
   format::rig::write_rig(result.rig, command.out);
   if (command.json) {
-    fmt::print("{}\n", as_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    print(as_json(result));
   } else if (!command.quiet) {
     print_table(result);
     fmt::print("rig: {}\n", command.out);
@@ -153,26 +154,27 @@ void run(const CalibrateWand& command) {
 
 }  // namespace
 
-void add_calibrate_wand(CLI::App& calibrate) {
+void add_calibrate_wand(Command& calibrate) {
   auto options = std::make_shared<CalibrateWand>();
-  CLI::App* command = calibrate.add_subcommand("wand", "Where the cameras stand, from a wand or a light waved before them");
-  add_rig_inputs(*command, options->inputs);
-  command->add_option("--wand", options->wand, "the markers' distances from the first, m, as 0,0.12,0.30; or led: a single light")
-      ->required();
-  command->add_option("--distance", options->distance,
-                      "CAM1,CAM2=METRES: how far two cameras stand apart, for a single light's scale");
-  command->add_option("-o,--out", options->out, "the rig file that is written")->required();
-  command->add_option("--lens", options->lens, "auto: refined where that explains more, estimated where not given; fixed; refined")
-      ->check(CLI::IsMember({"auto", "fixed", "refined"}))
-      ->capture_default_str();
-  command->add_flag("--in-step", options->in_step, "the cameras' clocks are right: look for no time offsets");
-  command->add_option("--seed", options->options.seed, "of the random draws")->capture_default_str();
-  command->add_flag("--json", options->json, "print JSON instead of a table");
-  command->add_flag("-q,--quiet", options->quiet, "no progress and no table");
-  command->add_option("--threshold", options->markers.threshold,
-                      "grey level that a marker's pixels pass (default: from the picture's noise)");
-  command->add_flag("--dark", options->markers.dark, "markers are darker than what is around them");
-  command->callback([options] { run(*options); });
+  using calibrate::wand::LensUse;
+  constexpr std::array<std::pair<const char*, LensUse>, 3> kLensUses{
+      {{"auto", LensUse::automatic}, {"fixed", LensUse::fixed}, {"refined", LensUse::refined}}};
+  Command command = calibrate.subcommand("wand", "Where the cameras stand, from a wand or a light waved before them");
+  Option rig = add_rig_inputs(command, options->inputs);
+  command.text("--wand", options->wand, "the markers' distances from the first, m, as 0,0.12,0.30; or led: a single light")
+      .required()
+      .check([](const std::string& text) { wand_of(text); });
+  command.text("--distance", options->distance, "CAM1,CAM2=METRES: how far two cameras stand apart, for a single light's scale")
+      .check([](const std::string& text) { distance_of(text); });
+  command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);
+  command.choice("--lens", options->lens, kLensUses,
+                 "refined where that explains more, and estimated where not given (auto); kept; refined");
+  command.flag("--synced", options->synced, "the cameras' clocks are right: look for no time offsets");
+  command.seed(options->options.seed, "of the random draws");
+  add_threshold(command, options->markers.threshold);
+  command.flag("--dark", options->markers.dark, "markers are darker than what is around them");
+  command.reports(options->json, options->quiet, "table");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

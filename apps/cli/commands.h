@@ -1,24 +1,34 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-// One short file a subcommand. Each adds itself to the program, with its options and the callback that runs it; the callback
-// throws marey::Error for what went wrong, and CLI::RuntimeError for another exit code.
+// One short file a subcommand. Each declares its options and what runs, which throws marey::Error for what went wrong, WrongUsage
+// where the command line asks for what cannot be, and EndWith for another exit code.
 namespace marey::cli {
 
-void add_track(CLI::App& app);
-void add_evaluate(CLI::App& app);
-void add_simulate(CLI::App& app);
-void add_simulate_people(CLI::App& simulate);  ///< below `simulate`
-void add_simulate_match(CLI::App& simulate);   ///< below `simulate`
-void add_simulate_room(CLI::App& simulate);    ///< below `simulate`
-void add_reconstruct(CLI::App& app);
-void add_experiment(CLI::App& app);
-void add_measure(CLI::App& app);
-void add_experiment_outlines(CLI::App& experiment);  ///< below `experiment`
-void add_experiment_hypotheses(CLI::App& experiment);
-void add_calibrate(CLI::App& app);
-void add_convert(CLI::App& app);
-void add_info(CLI::App& app);
+class Command;
+
+void add_track(Command& program);
+void add_evaluate(Command& program);
+void add_measure(Command& program);
+void add_reconstruct(Command& program);
+void add_convert(Command& program);
+void add_info(Command& program);
+
+void add_simulate(Command& program);
+void add_simulate_markers(Command& simulate);  ///< below `simulate`
+void add_simulate_people(Command& simulate);
+void add_simulate_match(Command& simulate);
+void add_simulate_room(Command& simulate);
+
+void add_calibrate(Command& program);
+void add_calibrate_lens(Command& calibrate);  ///< below `calibrate`
+void add_calibrate_pitch(Command& calibrate);
+void add_calibrate_wand(Command& calibrate);
+void add_calibrate_ground(Command& calibrate);
+void add_calibrate_board(Command& calibrate);
+
+void add_experiment(Command& program);
+void add_experiment_trackers(Command& experiment);  ///< below `experiment`
+void add_experiment_outlines(Command& experiment);
+void add_experiment_hypotheses(Command& experiment);
 
 }  // namespace marey::cli

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,9 +15,10 @@
 #include "marey/format/motion/motion.h"
 #include "marey/format/rig/rig_exchange.h"
 
+#include "command_line.h"
 #include "commands.h"
 #include "convert_ground.h"
-#include "known.h"
+#include "json_value.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -30,6 +32,7 @@ struct ConvertOptions {
   std::string up, from_up;
   GroundConversion ground;
   bool labelled = false;
+  bool json = false;
   bool quiet = false;
 };
 
@@ -42,7 +45,7 @@ std::pair<format::motion::UpAxis, format::motion::UpAxis> axes(const ConvertOpti
                                                                format::motion::MotionFormat to) {
   const format::motion::UpAxis up = axis_of(options.up);
   if (!options.from_up.empty()) {
-    if (from == format::motion::MotionFormat::take) throw Error("a take's z is up always; --from-up is for other files");
+    if (from == format::motion::MotionFormat::take) throw WrongUsage("a take's z is up always; --from-up is for other files");
     return {axis_of(options.from_up), up};
   }
   if (to == format::motion::MotionFormat::take) return {up, format::motion::UpAxis::z};
@@ -53,7 +56,8 @@ format::motion::MotionFormat format_to_write(const ConvertOptions& options) {
   if (!options.format.empty()) return format::motion::parse_motion_format(options.format);
   const auto format = format::motion::motion_format_of_name(options.to);
   if (!format)
-    throw Error("{}: its ending is of no format; name one with --format: {}", options.to, format::motion::motion_format_names());
+    throw WrongUsage("{}: its ending is of no format; name one with --format: {}", options.to,
+                     format::motion::motion_format_names());
   return *format;
 }
 
@@ -72,24 +76,30 @@ void leave_out_others(TakeFrame& frame, const std::vector<TakeTrack>& tracks) {
   });
 }
 
-void convert_rig(const ConvertOptions& options) {
+/// What was written, for the user.
+struct Written {
+  std::string format;
+  std::int64_t count = 0;
+  std::string of;  ///< what is counted, in the plural
+};
+
+Written convert_rig(const ConvertOptions& options) {
   const auto by_name = format::rig::rig_format_of_name(options.to);
   if (options.format.empty() && !by_name) {
-    throw Error("{}: its ending is of no format of calibrations; name one with --format: {}", options.to,
-                format::rig::rig_format_names());
+    throw WrongUsage("{}: its ending is of no format of calibrations; name one with --format: {}", options.to,
+                     format::rig::rig_format_names());
   }
   if (!options.up.empty() || !options.from_up.empty()) {
-    throw Error("{}: is a calibration, whose z is up always; --up and --from-up are for points", options.from);
+    throw WrongUsage("{}: is a calibration, whose z is up always; --up and --from-up are for points", options.from);
   }
-  format::rig::write_rig_as(format::rig::read_rig_any(options.from), options.to,
-                            options.format.empty() ? *by_name : format::rig::parse_rig_format(options.format));
+  const auto to = options.format.empty() ? *by_name : format::rig::parse_rig_format(options.format);
+  const Rig rig = format::rig::read_rig_any(options.from);
+  format::rig::write_rig_as(rig, options.to, to);
+  return {"a calibration", static_cast<std::int64_t>(rig.cameras.size()), "cameras"};
 }
 
-void convert_motion(const ConvertOptions& options) {
+Written convert_motion(const ConvertOptions& options) {
   const format::motion::MotionFormat from = format_to_read(options), to = format_to_write(options);
-  std::error_code error;
-  if (fs::equivalent(options.from, options.to, error))
-    throw Error("{}: cannot be converted into itself; name another file", options.to);
   const auto [from_up, to_up] = axes(options, from, to);
   // Read twice: most formats begin with what is known only at the end.
   const auto first = format::motion::open_motion(options.from, from, from_up);
@@ -111,64 +121,84 @@ void convert_motion(const ConvertOptions& options) {
     progress.show("converting", ++done, plan.info.frame_count);
   }
   writer->finish();
+  return {std::string(format::motion::motion_format_name(to)), done, "frames"};
 }
 
-void convert(const ConvertOptions& options) {
+Written convert(const ConvertOptions& options) {
   std::error_code error;
-  if (fs::equivalent(options.from, options.to, error))
-    throw Error("{}: cannot be converted into itself; name another file", options.to);
   if (format::match::ground_format_of_content(options.from)) {
     if (!options.up.empty() || !options.from_up.empty())
-      throw Error("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
-    return convert_ground(options.from, options.to, options.format, options.ground);
+      throw WrongUsage("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
+    const GroundWritten written = convert_ground(options.from, options.to, options.format, options.ground);
+    return {written.format, written.places, "places"};
   }
   const bool motion = fs::is_regular_file(options.from, error) && format::motion::motion_format_of_content(options.from);
   if (!motion && format::rig::rig_format_of_content(options.from)) return convert_rig(options);
-  convert_motion(options);
+  return convert_motion(options);
+}
+
+void run(const ConvertOptions& options) {
+  const Written written = convert(options);
+  if (options.json) {
+    print({{"from", options.from}, {"to", options.to}, {"format", written.format}, {written.of, written.count}});
+  } else if (!options.quiet) {
+    fmt::print(stderr, "{}: {}, {} {}\n", options.to, written.format, written.count, written.of);
+  }
+}
+
+void check_format(const std::string& name) {
+  const auto is = [&](auto parse) {
+    try {
+      parse(name);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  if (!is(format::motion::parse_motion_format) && !is(format::rig::parse_rig_format)) format::match::parse_ground_format(name);
+}
+
+/// What is read or written beside a file of people on the ground: Metrica's other half, TRACAB's metadata, EPTS's positions.
+std::vector<std::string> beside(const std::string& path) {
+  const auto with = [&](std::string_view ending, const char* other) { return path.substr(0, path.size() - ending.size()) + other; };
+  if (path.ends_with("_home.csv")) return {with("_home.csv", "_away.csv")};
+  if (path.ends_with("_away.csv")) return {with("_away.csv", "_home.csv")};
+  if (path.ends_with(".dat")) return {with(".dat", ".xml")};
+  if (path.ends_with(".xml")) return {with(".xml", ".txt")};
+  return {};
 }
 
 }  // namespace
 
-void add_convert(CLI::App& app) {
+void add_convert(Command& program) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert", "Write a recording of points, people on the ground, or a calibration, in another format");
+  Command command =
+      program.subcommand("convert", "Write a recording of points, people on the ground, or a calibration, in another format");
   command
-      ->add_option("A", options->from,
-                   "take, C3D, TRC, CSV (tidy, Motive's, Nexus's), people on the ground, or calibration; known by its content")
-      ->required();
+      .input_file("A", options->from,
+                  "take, C3D, TRC, CSV (tidy, Motive's, Nexus's), people on the ground, or calibration; known by its content")
+      .required();
   command
-      ->add_option("B", options->to,
-                   "what to write; its ending tells the format: .marey, .c3d, .trc, .csv; of people on the ground .csv, .txt "
-                   "(MOT), _home.csv "
-                   "(Metrica), .dat (TRACAB), .xml (EPTS), .json (SoccerNet); of a calibration .toml, .yml, .qca.txt, .xml")
-      ->required();
+      .output_file(
+          "B", options->to,
+          "what to write; its ending names the format: .marey, .c3d, .trc, .csv; of people on the ground .csv, .txt (MOT), "
+          "_home.csv (Metrica), .dat (TRACAB), .xml (EPTS), .json (SoccerNet); of a calibration .toml, .yml, .qca.txt, .xml")
+      .required();
   command
-      ->add_option("--format", options->format,
-                   "B's format in place of its ending: " + format::motion::motion_format_names() + "; of people on the ground " +
-                       format::match::ground_format_names() + "; of a calibration " + format::rig::rig_format_names())
-      ->check(known([](const std::string& name) {
-        const auto is = [&](auto parse) {
-          try {
-            parse(name);
-            return true;
-          } catch (const Error&) {
-            return false;
-          }
-        };
-        if (!is(format::motion::parse_motion_format) && !is(format::rig::parse_rig_format))
-          format::match::parse_ground_format(name);
-      }));
-  command->add_option("--up", options->up, "the axis that is up in B (in A, where B is a take); coordinates are turned accordingly")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->default_str("z");
-  command->add_option("--from-up", options->from_up, "the axis that is up in A")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->default_str("z");
-  command->add_flag("--labelled", options->labelled, "leave out tracks that have no label");
-  command->add_flag("-q,--quiet", options->quiet, "show no progress");
-  add_ground_conversion(*command, options->ground);
-  command->callback([options] { convert(*options); });
+      .text("--format", options->format,
+            "B's format in place of its ending: " + format::motion::motion_format_names() + "; of people on the ground " +
+                format::match::ground_format_names() + "; of a calibration " + format::rig::rig_format_names())
+      .check(check_format);
+  constexpr std::array<std::pair<const char*, const char*>, 2> kAxes{{{"y", "y"}, {"z", "z"}}};
+  command.choice("--up", options->up, kAxes,
+                 "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
+  command.choice("--from-up", options->from_up, kAxes, "the axis that is up in A, z where it is left out");
+  command.flag("--labelled", options->labelled, "leave out tracks that have no label");
+  add_ground_conversion(command, options->ground);
+  command.also_reads([options] { return beside(options->from); });
+  command.also_writes([options] { return beside(options->to); });
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

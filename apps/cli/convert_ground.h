@@ -1,9 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "command_line.h"
 
 namespace marey::cli {
 
@@ -15,9 +16,15 @@ struct GroundConversion {
   bool y_down = false, centred = false;
 };
 
-void add_ground_conversion(CLI::App& command, GroundConversion& options);
+void add_ground_conversion(Command& command, GroundConversion& options);
 
-/// Reads `from` and writes `to`; `format` is a name, or empty where the ending tells. Throws Error.
-void convert_ground(const std::string& from, const std::string& to, const std::string& format, const GroundConversion& options);
+struct GroundWritten {
+  std::string format;
+  std::int64_t places = 0;
+};
+
+/// Reads `from` and writes `to`; `format` is a name, or empty where the ending says it. Throws Error.
+GroundWritten convert_ground(const std::string& from, const std::string& to, const std::string& format,
+                             const GroundConversion& options);
 
 }  // namespace marey::cli

@@ -6,14 +6,15 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/evaluate/evaluation.h"
 #include "marey/format/tracks/mot.h"
 
+#include "command_line.h"
 #include "commands.h"
 #include "evaluate_ground.h"
+#include "json_value.h"
 #include "scores.h"
 
 namespace marey::cli {
@@ -26,6 +27,7 @@ struct EvaluateOptions {
   std::optional<double> distance;
   bool motchallenge = false;
   bool json = false;
+  bool quiet = false;
 };
 
 std::string frames_of(const std::vector<LabelledBox>& boxes) {
@@ -51,8 +53,8 @@ std::vector<std::string> doubts(const EvaluateOptions& options, const format::tr
   return sentences;
 }
 
-nlohmann::json as_json(const evaluate::Evaluation& result, double iou, const std::vector<std::string>& warnings) {
-  nlohmann::json json = cli::as_json(result);
+Json as_json(const evaluate::Evaluation& result, double iou, const std::vector<std::string>& warnings) {
+  Json json = cli::as_json(result);
   json["iou"] = iou;
   json["true_boxes"] = result.true_boxes;
   json["track_boxes"] = result.track_boxes;
@@ -106,8 +108,8 @@ void print_table(const evaluate::Evaluation& result, double iou) {
 }
 
 void run(const EvaluateOptions& options) {
-  if (options.truth == "-" && options.tracks == "-") throw Error("only one of --truth and --tracks can be standard input");
-  if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json);
+  if (options.truth == "-" && options.tracks == "-") throw WrongUsage("only one of --truth and --tracks can be standard input");
+  if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json, options.quiet);
   format::tracks::MotTable truth = format::tracks::read_mot(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const format::tracks::MotTable tracks = format::tracks::read_mot(options.tracks, format::tracks::MotKind::tracks);
@@ -115,44 +117,32 @@ void run(const EvaluateOptions& options) {
   const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {
-    fmt::print("{}\n", as_json(result, options.iou, warnings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+    print(as_json(result, options.iou, warnings));
+  } else if (!options.quiet) {
     print_table(result, options.iou);
   }
-  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }
 
 }  // namespace
 
-void add_evaluate(CLI::App& app) {
+void add_evaluate(Command& program) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "Judge tracks against the truth");
+  Command command = program.subcommand("evaluate", "Judge tracks against the truth");
   command
-      ->add_option("--truth", options->truth,
-                   "the truth, MOTChallenge text (with --distance, places on the ground); - for standard input")
-      ->required();
-  command->add_option("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input")->required();
-  CLI::Option* iou =
-      command->add_option("--iou", options->iou, "overlap (IoU) from which a box counts as found, above 0 and up to 1")
-          ->capture_default_str()
-          ->check(CLI::Validator(
-              [](std::string& text) -> std::string {
-                double value = 0;
-                const bool valid = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
-                return valid ? "" : "\"" + text + "\" is no overlap; it must be above 0 and at most 1";
-              },
-              "0..1"));
-  CLI::Option* motchallenge =
-      command->add_flag("--motchallenge", options->motchallenge,
-                        "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
+      .input_file("--truth", options->truth,
+                  "the truth, MOTChallenge text (with --distance, places on the ground); - for standard input")
+      .required();
+  command.input_file("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input").required();
+  const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");
+  const Option motchallenge = command.flag("--motchallenge", options->motchallenge,
+                                           "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
   command
-      ->add_option("--distance", options->distance,
-                   "judge places on the ground (CSV with frame,time,id,x,y): from how near someone counts as found, m")
-      ->check(CLI::Range(1e-6, 1e3))
-      ->excludes(iou)
-      ->excludes(motchallenge);
-  command->add_flag("--json", options->json, "print all figures as JSON, shares between 0 and 1");
-  command->callback([options] { run(*options); });
+      .number("--distance", options->distance, "m", closed(1e-6, 1e3),
+              "judge places on the ground (CSV with frame,time,id,x,y): from how near someone counts as found")
+      .excludes(iou)
+      .excludes(motchallenge);
+  command.reports(options->json, options->quiet, "figures");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

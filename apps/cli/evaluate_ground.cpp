@@ -7,22 +7,23 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/pipeline/judge_match.h"
 
+#include "command_line.h"
+#include "json_value.h"
 #include "scores.h"
 
 namespace marey::cli {
 namespace {
 
-void add_spread(nlohmann::json& json, const char* name, const char* unit, const std::optional<evaluate::ErrorSpread>& spread) {
+void add_spread(Json& json, const char* name, const char* unit, const std::optional<evaluate::ErrorSpread>& spread) {
   const auto key = [&](const char* which) { return fmt::format("{}_{}_{}", name, which, unit); };
-  json[key("rms")] = spread ? nlohmann::json(spread->rms) : nlohmann::json();
-  json[key("median")] = spread ? nlohmann::json(spread->median) : nlohmann::json();
-  json[key("p95")] = spread ? nlohmann::json(spread->p95) : nlohmann::json();
+  json[key("rms")] = spread ? Json(spread->rms) : Json();
+  json[key("median")] = spread ? Json(spread->median) : Json();
+  json[key("p95")] = spread ? Json(spread->p95) : Json();
 }
 
 std::optional<double> share_kept(const std::vector<evaluate::PersonFate>& people) {
@@ -37,14 +38,14 @@ std::optional<double> share_false(const evaluate::ClearScores& clear) {
   return 1 - *clear.precision;
 }
 
-nlohmann::json people_json(const pipeline::MatchJudgement& judgement) {
+Json people_json(const pipeline::MatchJudgement& judgement) {
   std::map<int, pipeline::PathLengths> ways;
   for (const pipeline::PathLengths& way : judgement.ways) ways[way.id] = way;
-  nlohmann::json people = nlohmann::json::array();
+  Json people = Json::array();
   for (const evaluate::PersonFate& person : judgement.evaluation.people) {
-    nlohmann::json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
-                         {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
-                         {"kept", person.kept()}};
+    Json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
+               {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
+               {"kept", person.kept()}};
     if (person.track) entry["track"] = *person.track;
     if (const auto way = ways.find(person.id); way != ways.end()) {
       entry["true_distance_m"] = way->second.true_m;
@@ -55,9 +56,9 @@ nlohmann::json people_json(const pipeline::MatchJudgement& judgement) {
   return people;
 }
 
-nlohmann::json as_json(const pipeline::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
+Json as_json(const pipeline::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
-  nlohmann::json json = cli::as_json(scores);
+  Json json = cli::as_json(scores);
   json["distance"] = distance;
   json["paired_by"] = judgement.by_time ? "time" : "frame";
   json["true_places"] = scores.true_boxes;
@@ -109,39 +110,38 @@ void print_table(const pipeline::MatchJudgement& judgement, double distance) {
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const GroundRecording& truth,
-                                const GroundRecording& tracks, const pipeline::MatchJudgement& judgement) {
+std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
+                                const Recording& tracks, const pipeline::MatchJudgement& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
-  if (truth.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
-  if (tracks.samples.empty()) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
-  if (truth.samples.empty() || tracks.samples.empty()) return sentences;
+  const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
+  if (truth_is_empty) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
+  if (tracks_are_empty) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
+  if (truth_is_empty || tracks_are_empty) return sentences;
   if (judgement.evaluation.scores.common_frames == 0) sentences.push_back("truth and tracks have no instant in common");
-  const double earlier = truth.samples.front().time - tracks.samples.front().time;
-  const double later = tracks.samples.back().time - truth.samples.back().time;
+  const double true_first = truth.seconds_at(0), true_last = truth.seconds_at(truth.instants().size() - 1);
+  const double first = tracks.seconds_at(0), last = tracks.seconds_at(tracks.instants().size() - 1);
   constexpr double much = 0.5;
-  if (earlier > much || later > much)
-    sentences.push_back(fmt::format("the tracks ({:.2f} to {:.2f} s) go beyond the truth ({:.2f} to {:.2f} s)",
-                                    tracks.samples.front().time, tracks.samples.back().time, truth.samples.front().time,
-                                    truth.samples.back().time));
+  if (true_first - first > much || last - true_last > much)
+    sentences.push_back(fmt::format("the tracks ({:.2f} to {:.2f} s) go beyond the truth ({:.2f} to {:.2f} s)", first, last,
+                                    true_first, true_last));
   return sentences;
 }
 
 }  // namespace
 
-void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json) {
+void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
   const format::match::GroundMatch tracks_match = format::match::read_ground_any(tracks_name);
-  const GroundRecording& tracks = tracks_match.recording;
+  const Recording& tracks = tracks_match.recording;
   // A truth that has frames and no times has the tracks'.
-  const GroundRecording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks_match.rate_hz}).recording;
+  const Recording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
   const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (json) {
-    fmt::print("{}\n", as_json(judgement, distance, warnings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+    print(as_json(judgement, distance, warnings));
+  } else if (!quiet) {
     print_table(judgement, distance);
   }
-  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }
 
 }  // namespace marey::cli

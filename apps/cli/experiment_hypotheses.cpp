@@ -3,10 +3,11 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "command_line.h"
 #include "commands.h"
 #include "experiments/hypotheses.h"
+#include "json_value.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -18,10 +19,10 @@ struct ExperimentHypotheses {
   bool quiet = false;
 };
 
-nlohmann::json as_json(const experiments::HypothesesExperiment& experiment) {
-  nlohmann::json list = nlohmann::json::array();
+Json as_json(const experiments::HypothesesExperiment& experiment) {
+  Json list = Json::array();
   for (std::size_t kind = 0; kind < experiment.kinds.size(); ++kind) {
-    nlohmann::json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
+    Json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
     for (const auto& row : experiment.rows) {
       const auto& score = row.scores[kind];
       entry["methods"][row.method] = {{"switches", score.switches},
@@ -43,39 +44,30 @@ void run(const ExperimentHypotheses& command) {
     options.progress = [&](int done, int all) { bar.show("scenes", done, all); };
     experiment = experiments::run_hypotheses_experiment(options);
   }
-  fmt::print("{}", command.json ? as_json(experiment).dump(2) + "\n" : experiments::to_text(experiment));
+  if (command.json) {
+    print(as_json(experiment));
+  } else if (!command.quiet) {
+    fmt::print("{}", experiments::to_text(experiment));
+  }
 }
 
 }  // namespace
 
-void add_experiment_hypotheses(CLI::App& experiment) {
+void add_experiment_hypotheses(Command& experiment) {
   auto options = std::make_shared<ExperimentHypotheses>();
-  CLI::App* hypotheses = experiment.add_subcommand(
+  Command command = experiment.subcommand(
       "hypotheses", "People who cross, run side by side and stop together: who keeps them apart, nearest neighbour or hypotheses");
   simulate::EncounterOptions& encounters = options->options.encounters;
   track::ground::GroundTrackerOptions& tracker = options->options.tracker;
-  hypotheses->add_option("--scenes", options->options.scenes, "of each kind of meeting")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  hypotheses->add_option("--seed", options->options.seed, "of the first scene; the others follow")->capture_default_str();
-  hypotheses->add_option("--missed", encounters.missed, "probability that somebody is not seen in a frame")
-      ->check(CLI::Range(0.0, 0.9))
-      ->capture_default_str();
-  hypotheses->add_option("--clutter", encounters.clutter, "false observations a frame")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  hypotheses->add_option("--merged", encounters.merged, "m; two nearer than this are seen as one")
-      ->check(CLI::Range(0.0, 5.0))
-      ->capture_default_str();
-  hypotheses->add_option("--hypotheses", tracker.hypotheses, "kept for each cluster, at most")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  hypotheses->add_option("--window", tracker.window, "s; what is older is decided")
-      ->check(CLI::Range(0.0, 60.0))
-      ->capture_default_str();
-  hypotheses->add_flag("--json", options->json, "print JSON instead of tables");
-  hypotheses->add_flag("-q,--quiet", options->quiet, "no progress");
-  hypotheses->callback([options] { run(*options); });
+  command.whole("--scenes", options->options.scenes, "N", 1, 10'000, "of each kind of meeting");
+  command.seed(options->options.seed, "of the first scene; the others follow");
+  command.number("--missed", encounters.missed, "probability", closed(0, 0.9), "that a person is not seen in a frame");
+  command.number("--clutter", encounters.clutter, "a frame", closed(0, 100), "false observations");
+  command.number("--merged", encounters.merged, "m", closed(0, 5), "two nearer than this are seen as one");
+  command.whole("--hypotheses", tracker.hypotheses, "N", 1, 10'000, "kept for each cluster, at most");
+  command.number("--window", tracker.window, "s", closed(0, 60), "what is older is decided");
+  command.reports(options->json, options->quiet, "tables");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

@@ -4,19 +4,30 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
 
-nlohmann::json path_or_null(const std::string& path) {
-  return path.empty() ? nlohmann::json() : nlohmann::json(path);
+Json path_or_null(const std::string& path) {
+  return path.empty() ? Json() : Json(path);
 }
 
 std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
   std::int64_t sum = 0;
-  for (const auto& camera : summary.cameras) sum += camera.counts.frames;
+  for (const auto& camera : summary.cameras) sum += camera.frames;
   return sum;
+}
+
+std::int64_t off_pitch(const pipeline::Summary& summary) {
+  const auto found = summary.left_out.find("off_pitch");
+  return found != summary.left_out.end() ? found->second : 0;
+}
+
+double joining_s(const pipeline::Summary& summary) {
+  const auto found = summary.figures.find("joining_s");
+  return found != summary.figures.end() ? found->second : 0;
 }
 
 double share(std::int64_t part, std::int64_t whole) {
@@ -26,53 +37,54 @@ double share(std::int64_t part, std::int64_t whole) {
 }  // namespace
 
 void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
-  nlohmann::json cameras = nlohmann::json::array();
-  for (const auto& [name, counts] : summary.cameras) {
-    cameras.push_back({{"name", name},
-                       {"frames", counts.frames},
-                       {"missed", counts.missed},
-                       {"detections", counts.detections},
-                       {"dropped", {{"outside", counts.outside}, {"noise", counts.noise}, {"misfits", counts.misfits}}}});
+  Json cameras = Json::array();
+  for (const pipeline::Summary::Camera& camera : summary.cameras) {
+    cameras.push_back({{"name", camera.name},
+                       {"frames", camera.frames},
+                       {"missed", camera.missed},
+                       {"detections", camera.detections},
+                       {"dropped", {{"outside", camera.outside}, {"noise", camera.noise}, {"misfits", camera.misfits}}}});
   }
-  nlohmann::json teams = nlohmann::json::array();
+  Json teams = Json::array();
   for (const analyse::Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
-  const nlohmann::json json = {{"frames", summary.frames},
-                               {"seconds", summary.seconds},
-                               {"people", summary.people},
-                               {"rows", summary.rows},
-                               {"predicted", summary.predicted},
-                               {"off_pitch", summary.off_pitch},
-                               {"cameras", cameras},
-                               {"teams", teams},
-                               {"elapsed", elapsed},
-                               {"tracking_s", summary.tracking_s},
-                               {"joining_s", summary.joining_s},
-                               {"stopped", summary.stopped},
-                               {"notes", summary.notes},
-                               {"warnings", summary.warnings},
-                               {"tracks", output.tracks},
-                               {"overlays", path_or_null(output.overlays)},
-                               {"pitch_view", path_or_null(output.pitch_view)}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  const Json json = {{"frames", summary.frames},
+                     {"seconds", summary.seconds},
+                     {"people", summary.tracks},
+                     {"rows", summary.samples},
+                     {"predicted", summary.samples - summary.measured},
+                     {"off_pitch", off_pitch(summary)},
+                     {"cameras", cameras},
+                     {"teams", teams},
+                     {"elapsed", elapsed},
+                     {"tracking_s", summary.first_pass_s},
+                     {"joining_s", joining_s(summary)},
+                     {"stopped", summary.stopped},
+                     {"notes", summary.notes},
+                     {"warnings", summary.warnings},
+                     {"tracks", output.tracks},
+                     {"overlays", path_or_null(output.overlays)},
+                     {"pitch_view", path_or_null(output.pitch_view)}};
+  print(json);
 }
 
 void print_summary(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
   for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   const std::size_t count = summary.cameras.size();
-  fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.people,
-             summary.people == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
+  fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.tracks,
+             summary.tracks == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
              static_cast<double>(camera_frames(summary)) / elapsed);
   for (const analyse::Teams::Team& team : summary.teams) fmt::print(stderr, "team {}: {} people\n", team.name, team.people);
-  if (summary.predicted > 0)
+  const std::int64_t predicted = summary.samples - summary.measured;
+  if (predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
-               share(summary.predicted, summary.rows));
-  if (summary.off_pitch > 0) fmt::print(stderr, "left out: {} who were never on the pitch\n", summary.off_pitch);
-  for (const auto& [name, counts] : summary.cameras) {
-    fmt::print(stderr, "{}: {} frames, {:.1f} people in each", name, counts.frames,
-               static_cast<double>(counts.detections) / static_cast<double>(std::max<std::int64_t>(1, counts.frames)));
-    if (counts.missed > 0) fmt::print(stderr, "; no frame for {} instants", counts.missed);
-    if (counts.outside > 0) fmt::print(stderr, "; left out: {} seen beyond the pitch", counts.outside);
-    if (counts.misfits > 0) fmt::print(stderr, "; {} moving regions that no body explains", counts.misfits);
+               share(predicted, summary.samples));
+  if (const auto off = off_pitch(summary)) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
+  for (const pipeline::Summary::Camera& camera : summary.cameras) {
+    fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
+               static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));
+    if (camera.missed > 0) fmt::print(stderr, "; no frame for {} instants", camera.missed);
+    if (camera.outside > 0) fmt::print(stderr, "; left out: {} seen beyond the pitch", camera.outside);
+    if (camera.misfits > 0) fmt::print(stderr, "; {} moving regions that no body explains", camera.misfits);
     fmt::print(stderr, "\n");
   }
   fmt::print(stderr, "tracks: {}\n", output.tracks);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
@@ -17,8 +16,10 @@
 #include "marey/format/rig/rig_exchange.h"
 #include "marey/format/take/take_file.h"
 
+#include "command_line.h"
 #include "commands.h"
 #include "info_ground.h"
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
@@ -27,6 +28,7 @@ struct InfoOptions {
   std::string file;
   std::string metadata;
   bool json = false;
+  bool quiet = false;
 };
 
 std::string_view words_of(format::motion::MotionFormat format) {
@@ -153,10 +155,10 @@ void print_motion(const std::string& path, format::motion::MotionFormat format, 
   print_tracks(summary);
 }
 
-nlohmann::json as_json(const Rig& rig) {
-  nlohmann::json cameras = nlohmann::json::array();
+Json as_json(const Rig& rig) {
+  Json cameras = Json::array();
   for (const RigCamera& camera : rig.cameras) {
-    nlohmann::json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
+    Json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
     if (!camera.detections.empty()) entry["detections"] = camera.detections;
     entry["ground"] = camera.ground_view().has_value();
     if (camera.offset_s) entry["offset_s"] = *camera.offset_s;
@@ -167,29 +169,29 @@ nlohmann::json as_json(const Rig& rig) {
   return cameras;
 }
 
-nlohmann::json as_json(format::motion::MotionFormat format, const format::motion::MotionInfo& info, const TakeSummary& summary) {
-  nlohmann::json tracks = nlohmann::json::array();
+Json as_json(format::motion::MotionFormat format, const format::motion::MotionInfo& info, const TakeSummary& summary) {
+  Json tracks = Json::array();
   for (const auto& count : summary.tracks) {
-    nlohmann::json entry{{"id", number(count.track.id)},
-                         {"label", count.track.label},
-                         {"measured", count.measured},
-                         {"filled", count.filled},
-                         {"predicted", count.predicted}};
+    Json entry{{"id", number(count.track.id)},
+               {"label", count.track.label},
+               {"measured", count.measured},
+               {"filled", count.filled},
+               {"predicted", count.predicted}};
     if (count.measured + count.filled + count.predicted > 0) {
       entry["first_frame"] = count.first_frame;
       entry["last_frame"] = count.last_frame;
     }
     tracks.push_back(std::move(entry));
   }
-  nlohmann::json result{{"format", format::motion::motion_format_name(format)},
-                        {"complete", summary.complete},
-                        {"name", info.header.name},
-                        {"made_by", info.header.made_by},
-                        {"rate_hz", info.header.rate_hz},
-                        {"frames", summary.frames},
-                        {"points", summary.points},
-                        {"observations", summary.observations},
-                        {"tracks", std::move(tracks)}};
+  Json result{{"format", format::motion::motion_format_name(format)},
+              {"complete", summary.complete},
+              {"name", info.header.name},
+              {"made_by", info.header.made_by},
+              {"rate_hz", info.header.rate_hz},
+              {"frames", summary.frames},
+              {"points", summary.points},
+              {"observations", summary.observations},
+              {"tracks", std::move(tracks)}};
   if (summary.first_frame) {
     result["first_frame"] = *summary.first_frame;
     result["last_frame"] = *summary.last_frame;
@@ -198,31 +200,28 @@ nlohmann::json as_json(format::motion::MotionFormat format, const format::motion
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::motion::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = as_json(*info.header.rig);
-  nlohmann::json edits = nlohmann::json::array();
+  Json edits = Json::array();
   for (const TakeEdit& edit : info.edits) edits.push_back({{"time", edit.time}, {"what", edit.what}});
   if (!edits.empty()) result["edits"] = std::move(edits);
   return result;
 }
 
-void print(const nlohmann::json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
-void tell_motion(const InfoOptions& options, format::motion::MotionFormat format) {
+void report_motion(const InfoOptions& options, format::motion::MotionFormat format) {
   const auto reader = format::motion::open_motion(options.file, format);
   const TakeSummary summary = format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary()
                                                                            : format::motion::summary_of(*reader);
   for (const std::string& sentence : reader->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {
     print(as_json(format, reader->info(), summary));
-  } else {
+  } else if (!options.quiet) {
     print_motion(options.file, format, reader->info(), summary);
   }
 }
 
-void tell_rig(const InfoOptions& options) {
+void report_rig(const InfoOptions& options) {
   const Rig rig = format::rig::read_rig_any(options.file);
   if (options.json) return print({{"format", "rig"}, {"cameras", as_json(rig)}});
+  if (options.quiet) return;
   fmt::print("{}: a rig of {} camera{}\n", options.file, rig.cameras.size(), rig.cameras.size() == 1 ? "" : "s");
   print_calibration(rig);
   print_cameras(rig);
@@ -232,27 +231,26 @@ void run(const InfoOptions& options) {
   const bool folder = std::filesystem::is_directory(options.file);
   const auto format = folder ? std::nullopt : format::motion::motion_format_of_content(options.file);
   if (!folder && format::match::ground_format_of_content(options.file)) {
-    tell_ground(options.file, options.metadata, options.json);
+    report_ground(options.file, options.metadata, options.json, options.quiet);
   } else if (format) {
-    tell_motion(options, *format);
+    report_motion(options, *format);
   } else if (format::rig::rig_format_of_content(options.file)) {
-    tell_rig(options);
+    report_rig(options);
   } else {
     throw Error("{}: is none of the files that Marey knows: points: {}; people on the ground: {}; calibrations: {}", options.file,
                 format::motion::motion_format_names(), format::match::ground_format_names(), format::rig::rig_format_names());
   }
-  if (std::fflush(stdout) != 0) throw Error("standard output: could not be written to the end");
 }
 
 }  // namespace
 
-void add_info(CLI::App& app) {
+void add_info(Command& program) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "Say what is in a file");
-  command->add_option("FILE", options->file, "take, C3D, TRC, CSV of points, people on the ground, or calibration")->required();
-  command->add_option("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside FILE under a like name");
-  command->add_flag("--json", options->json, "print it as JSON");
-  command->callback([options] { run(*options); });
+  Command command = program.subcommand("info", "Say what is in a file");
+  command.input_file("FILE", options->file, "take, C3D, TRC, CSV of points, people on the ground, or calibration").required();
+  command.input_file("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside FILE under a like name");
+  command.reports(options->json, options->quiet, "contents");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

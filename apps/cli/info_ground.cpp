@@ -6,10 +6,12 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/line_ups.h"
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
@@ -38,48 +40,52 @@ std::string_view words_of(format::match::GroundFormat format) {
 
 struct Extent {
   Vector<2> low = Vector<2>::Zero(), high = Vector<2>::Zero();
-  std::int64_t instants = 0;
-  std::vector<std::int64_t> seen;  // by person
 };
 
-Extent extent_of(const GroundRecording& recording) {
+Extent extent_of(const Recording& recording) {
   Extent extent;
-  extent.seen.assign(recording.people.size(), 0);
-  if (recording.samples.empty()) return extent;
-  extent.low = extent.high = recording.samples.front().place;
-  std::int64_t last = -1;
-  for (const auto& sample : recording.samples) {
-    extent.low = extent.low.cwiseMin(sample.place);
-    extent.high = extent.high.cwiseMax(sample.place);
-    extent.instants += sample.frame != last;
-    last = sample.frame;
-    ++extent.seen[static_cast<std::size_t>(sample.person)];
+  bool any = false;
+  for (const TrackColumns& track : recording.tracks()) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      const Vector<2> place = track.place(row);
+      extent.low = any ? Vector<2>(extent.low.cwiseMin(place)) : place;
+      extent.high = any ? Vector<2>(extent.high.cwiseMax(place)) : place;
+      any = true;
+    }
   }
   return extent;
 }
 
-nlohmann::json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
-  const GroundRecording& recording = match.recording;
-  nlohmann::json people = nlohmann::json::array(), periods = nlohmann::json::array();
-  for (std::size_t i = 0; i < recording.people.size(); ++i) {
-    const auto& person = recording.people[i];
-    people.push_back({{"id", person.id}, {"label", person.label}, {"team", person.team}, {"instants", extent.seen[i]}});
+std::vector<std::string> cameras_of(const Recording& recording) {
+  std::vector<std::string> names;
+  if (!recording.header.rig) return names;
+  for (const RigCamera& camera : recording.header.rig->cameras) names.push_back(camera.name);
+  return names;
+}
+
+Json as_json(const format::match::GroundMatch& match, format::match::GroundFormat format, const Extent& extent) {
+  const Recording& recording = match.recording;
+  Json people = Json::array(), periods = Json::array();
+  for (const std::size_t i : format::match::listed_tracks(match)) {
+    const TrackColumns& track = recording.tracks()[i];
+    people.push_back(
+        {{"id", number(track.id())}, {"label", track.name.label}, {"team", track.name.team}, {"instants", track.size()}});
   }
   for (const format::match::GroundPeriod& period : match.periods)
     periods.push_back({{"period", period.number}, {"first_frame", period.first_frame}, {"last_frame", period.last_frame}});
-  nlohmann::json result{{"format", format::match::ground_format_name(format)},
-                        {"rate_hz", match.rate_hz},
-                        {"instants", extent.instants},
-                        {"places", recording.samples.size()},
+  Json result{{"format", format::match::ground_format_name(format)},
+                        {"rate_hz", recording.header.rate_hz},
+                        {"instants", recording.instants().size()},
+                        {"places", recording.samples()},
                         {"people", people},
                         {"periods", periods},
                         {"home", match.home},
                         {"away", match.away},
                         {"pitch", {match.pitch.length, match.pitch.width}},
-                        {"cameras", recording.cameras}};
-  if (!recording.samples.empty()) {
-    result["first_frame"] = recording.samples.front().frame;
-    result["last_frame"] = recording.samples.back().frame;
+                        {"cameras", cameras_of(recording)}};
+  if (recording.samples() > 0) {
+    result["first_frame"] = recording.instants().front().index;
+    result["last_frame"] = recording.instants().back().index;
     result["x"] = {extent.low.x(), extent.high.x()};
     result["y"] = {extent.low.y(), extent.high.y()};
   }
@@ -92,36 +98,39 @@ void row(const char* name, const std::string& value) {
 
 void print_table(const std::string& file, const format::match::GroundMatch& match, format::match::GroundFormat format,
                  const Extent& extent) {
-  const GroundRecording& recording = match.recording;
+  const Recording& recording = match.recording;
   fmt::print("{}: {}\n", file, words_of(format));
-  if (recording.samples.empty()) return row("people", "nobody is in it");
-  const auto &first = recording.samples.front(), &last = recording.samples.back();
-  row("length", fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz", last.time - first.time + 1 / match.rate_hz,
-                            extent.instants, first.frame, last.frame, match.rate_hz));
+  if (recording.samples() == 0) return row("people", "nobody is in it");
+  const auto &first = recording.instants().front(), &last = recording.instants().back();
+  const double rate_hz = recording.header.rate_hz;
+  row("length", fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz",
+                            seconds(last.time) - seconds(first.time) + 1 / rate_hz, recording.instants().size(), first.index,
+                            last.index, rate_hz));
   for (const format::match::GroundPeriod& period : match.periods)
     row("period", fmt::format("{}: frames {} to {}", period.number, period.first_frame, period.last_frame));
   row("pitch", fmt::format("{:g} x {:g} m", match.pitch.length, match.pitch.width));
-  row("places", fmt::format("{}, x {:.2f} to {:.2f} m, y {:.2f} to {:.2f} m", recording.samples.size(), extent.low.x(),
+  const char* unit = recording.header.frame.metric() ? "m" : "px";
+  row("places", fmt::format("{0}, x {2:.2f} to {3:.2f} {1}, y {4:.2f} to {5:.2f} {1}", recording.samples(), unit, extent.low.x(),
                             extent.high.x(), extent.low.y(), extent.high.y()));
   if (!match.home.empty() || !match.away.empty()) row("teams", fmt::format("{} at home, {}", match.home, match.away));
   fmt::print("\n  {:>6}  {:<24}  {:<24}  {:>9}\n", "id", "label", "team", "instants");
-  for (std::size_t i = 0; i < recording.people.size(); ++i) {
-    const auto& person = recording.people[i];
-    fmt::print("  {:>6}  {:<24}  {:<24}  {:>9}\n", person.id, person.label, person.team, extent.seen[i]);
+  for (const std::size_t i : format::match::listed_tracks(match)) {
+    const TrackColumns& track = recording.tracks()[i];
+    fmt::print("  {:>6}  {:<24}  {:<24}  {:>9}\n", number(track.id()), track.name.label, track.name.team, track.size());
   }
 }
 
 }  // namespace
 
-void tell_ground(const std::string& file, const std::string& metadata, bool json) {
+void report_ground(const std::string& file, const std::string& metadata, bool json, bool quiet) {
   const auto format = format::match::ground_format_of_content(file);
   if (!format) throw Error("{}: holds no people on the ground; these are read: {}", file, format::match::ground_format_names());
   const format::match::GroundMatch match = format::match::read_ground_as(file, *format, {metadata, {}, 25});
   for (const std::string& sentence : match.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
   const Extent extent = extent_of(match.recording);
   if (json) {
-    fmt::print("{}\n", as_json(match, *format, extent).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+    print(as_json(match, *format, extent));
+  } else if (!quiet) {
     print_table(file, match, *format, extent);
   }
 }

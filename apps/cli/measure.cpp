@@ -1,18 +1,19 @@
-#include <charconv>
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/pipeline/measure_match.h"
 
+#include "command_line.h"
 #include "commands.h"
-#include "known.h"
+#include "json_value.h"
 #include "pitch_size.h"
 
 namespace marey::cli {
@@ -29,20 +30,15 @@ struct MeasureCommand {
 };
 
 std::vector<double> parse_zones(const std::string& text) {
-  std::vector<double> zones;
-  for (const char *at = text.data(), *end = at + text.size(); at < end;) {
-    double value = 0;
-    const auto [stop, failed] = std::from_chars(at, end, value);
-    if (failed != std::errc() || (stop != end && *stop != ',') || !(value > (zones.empty() ? 0 : zones.back())))
-      throw Error("\"{}\" are no speed zones; give growing speeds in m/s, as 2,4,5.5,7", text);
-    zones.push_back(value);
-    at = stop + 1;
-  }
+  constexpr const char* form = "growing speeds in m/s, as 2,4,5.5,7";
+  std::vector<double> zones = numbers_in(text, ',', above(0, 100), form);
+  if (std::adjacent_find(zones.begin(), zones.end(), std::greater_equal<>()) != zones.end())
+    throw WrongUsage("{}: the speeds do not grow; write {}", text, form);
   return zones;
 }
 
-void print_json(const analyse::Measurement& measured) {
-  nlohmann::json people = nlohmann::json::array(), teams = nlohmann::json::array();
+void report_json(const analyse::Measurement& measured) {
+  Json people = Json::array(), teams = Json::array();
   for (const analyse::PersonMeasure& person : measured.people) {
     people.push_back({{"id", person.id},
                       {"label", person.label},
@@ -65,7 +61,7 @@ void print_json(const analyse::Measurement& measured) {
                      {"width_m", team.width_m},
                      {"hull_m2", team.hull_m2}});
   }
-  fmt::print("{}\n", nlohmann::json{{"people", people}, {"teams", teams}}.dump(2));
+  print({{"people", people}, {"teams", teams}});
 }
 
 void print_table(const analyse::Measurement& measured) {
@@ -91,7 +87,7 @@ void run(const MeasureCommand& command) {
     pipeline::write_report(measured, options, std::filesystem::path(command.tracks).stem().string(), command.report);
   file.finish();
   if (command.json) {
-    print_json(measured);
+    report_json(measured);
   } else if (!command.quiet) {
     print_table(measured);
     if (!command.report.empty()) fmt::print("report: {}\n", (std::filesystem::path(command.report) / "report.html").string());
@@ -100,35 +96,28 @@ void run(const MeasureCommand& command) {
 
 }  // namespace
 
-void add_measure(CLI::App& app) {
+void add_measure(Command& program) {
   auto options = std::make_shared<MeasureCommand>();
-  CLI::App* command = app.add_subcommand("measure", "How far and how fast everyone ran, from places on the ground");
+  Command command = program.subcommand("measure", "How far and how fast everyone ran, from places on the ground");
   command
-      ->add_option(
+      .input_file(
           "TRACKS", options->tracks,
           "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y; or TRACAB, EPTS, Metrica, ...: see marey convert")
-      ->required();
-  command->add_option("-o,--output", options->out, "CSV with a row for each person")->required();
-  command->add_option("--report", options->report, "folder for a page with plots, tables, heat maps and ways");
-  command->add_option("--smoothing", options->method, "of the ways: lowpass, savgol, kalman or raw")
-      ->check(known([](const std::string& text) { analyse::parse_path_method(text); }))
-      ->capture_default_str();
-  command->add_option("--cutoff", options->options.path.cutoff_hz, "of lowpass, Hz")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
-  command->add_option("--zones", options->zones, "borders between speed zones, m/s")
-      ->check(known([](const std::string& text) { parse_zones(text); }))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "of the pitch, LENGTHxWIDTH in m")
-      ->check(known([](const std::string& text) { parse_pitch_size(text); }))
-      ->capture_default_str();
-  command->add_option("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
-  command->add_option("--rate", options->rate_hz, "frames a second, where TRACKS does not tell")
-      ->check(CLI::Range(0.1, 10'000.0))
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "print the figures as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "print nothing");
-  command->callback([options] { run(*options); });
+      .required();
+  command.output_file("-o,--output", options->out, "CSV with a row for each person").required().ends_in({".csv"});
+  command.output_folder("--report", options->report, "folder for a page with plots, tables, heat maps and paths");
+  command.text("--smoothing", options->method, "of the paths: lowpass, savgol, kalman or raw").check(analyse::parse_path_method);
+  command.number("--cutoff", options->options.path.cutoff_hz, "Hz", closed(0.01, 100), "of lowpass");
+  command.text("--zones", options->zones, "borders between speed zones, m/s").check(parse_zones);
+  command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
+  command.input_file("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
+  command.number("--rate", options->rate_hz, "Hz", kRates, "frames a second, where TRACKS does not say");
+  command.also_writes([options] {
+    if (options->report.empty()) return std::vector<std::string>{};
+    return std::vector{(std::filesystem::path(options->report) / "report.html").string()};
+  });
+  command.reports(options->json, options->quiet, "figures");
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

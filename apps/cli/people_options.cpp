@@ -3,7 +3,7 @@
 #include "marey/core/error.h"
 #include "marey/geometry/bspline.h"
 
-#include "known.h"
+#include "command_line.h"
 
 namespace marey::cli {
 namespace {
@@ -18,44 +18,34 @@ track::contour::OutlineOptions outline_options(const PeopleFlags& flags) {
   options.order = flags.order.value_or(options.order);
   options.lines = flags.lines.value_or(options.lines);
   options.control_points = flags.control_points;
-  if (options.order < 2 || options.order > geometry::SplineWeights::max_order) {
-    throw Error("--order {}: a spline's order is its degree + 1; give 2 to {}, 4 for a cubic", options.order,
-                geometry::SplineWeights::max_order);
-  }
-  if (options.lines < 1 || options.lines > kMostLines) {
-    throw Error("--lines {}: an outline is searched along 1 to {} measurement lines", options.lines, kMostLines);
-  }
-  const int least = std::max(3, options.order);
-  if (options.control_points && (*options.control_points < least || *options.control_points > kMostControlPoints)) {
-    throw Error("--control-points {}: a closed spline of order {} has {} to {} of them here", *options.control_points,
-                options.order, least, kMostControlPoints);
-  }
+  if (options.control_points && *options.control_points < options.order)
+    throw WrongUsage("--control-points {}: a closed spline of order {} has {} to {} of them here", *options.control_points,
+                     options.order, options.order, kMostControlPoints);
   return options;
 }
 
 }  // namespace
 
-void add_people_options(CLI::App& command, PeopleFlags& flags) {
-  const auto group = "Options for --targets people";
+void add_people_options(Command& command, PeopleFlags& flags) {
+  command.group("Options for --targets people");
+  command.text("--background", flags.background, "the model of the empty scene, one of " + detect::background::background_names())
+      .check(detect::background::parse_background);
+  const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
-      .add_option("--background", flags.background,
-                  "the model of the empty scene, one of " + detect::background::background_names())
-      ->check(known([](const std::string& text) { detect::background::parse_background(text); }))
-      ->group(group);
-  auto* outline = command.add_flag("--outline", flags.outline, "follow each person's outline too: a closed spline")->group(group);
+      .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,
+             "of each outline (default: as many as its silhouette needs, at most 24)")
+      .needs(outline);
+  command.whole("--order", flags.order, "N", 2, geometry::SplineWeights::max_order, "of the spline, degree + 1 (default: 4, cubic)")
+      .needs(outline);
   command
-      .add_option("--control-points", flags.control_points,
-                  "of each outline (default: as many as its silhouette needs, at most 24)")
-      ->needs(outline)
-      ->group(group);
-  command.add_option("--order", flags.order, "of the spline, degree + 1 (default: 4, cubic)")->needs(outline)->group(group);
-  command.add_option("--lines", flags.lines, "measurement lines across each outline, along which it is searched (default: 24)")
-      ->needs(outline)
-      ->group(group);
+      .whole("--lines", flags.lines, "N", 1, kMostLines,
+             "measurement lines across each outline, along which it is searched (default: 24)")
+      .needs(outline);
+  command.group("");
 }
 
-pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
-  pipeline::TrackPeopleOptions options;
+pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
+  pipeline::PeopleInPictureOptions options;
   options.background = detect::background::parse_background(flags.background);
   if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
     options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyHeight);

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "marey/pipeline/people_in_picture.h"
 
-#include "marey/pipeline/track_people.h"
+#include "command_line.h"
 
 namespace marey::cli {
 
@@ -18,9 +18,9 @@ struct PeopleFlags {
   std::optional<int> lines;
 };
 
-void add_people_options(CLI::App& command, PeopleFlags& flags);
+void add_people_options(Command& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.
-pipeline::TrackPeopleOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
+pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

@@ -1,24 +1,16 @@
 #include "pitch_size.h"
 
-#include <charconv>
-#include <string_view>
-
-#include "marey/core/error.h"
+#include "command_line.h"
 
 namespace marey::cli {
 
 geometry::PitchSize parse_pitch_size(const std::string& text) {
-  geometry::PitchSize size;
-  const auto cross = text.find('x');
-  const auto read = [](std::string_view part, double& value) {
-    const auto [stop, failed] = std::from_chars(part.data(), part.data() + part.size(), value);
-    return failed == std::errc() && stop == part.data() + part.size();
-  };
-  const std::string_view all = text;
-  if (cross == std::string::npos || !read(all.substr(0, cross), size.length) || !read(all.substr(cross + 1), size.width))
-    throw Error("\"{}\" is no size of a pitch; it must read LENGTHxWIDTH in m, as 105x68", text);
-  if (!(size.length >= 40 && size.length <= 130 && size.width >= 42 && size.width <= 100))
-    throw Error("a pitch of {} x {} m is none: the areas need 40 to 130 m by 42 to 100 m", size.length, size.width);
+  constexpr const char* form = "the pitch's size as LENGTHxWIDTH in m, as 105x68";
+  const std::vector<double> sides = numbers_in(text, 'x', closed(0, 1000), form);
+  if (sides.size() != 2) throw WrongUsage("\"{}\" is no size of a pitch; write {}", text, form);
+  const geometry::PitchSize size{sides[0], sides[1]};
+  if (!contains(closed(40, 130), size.length) || !contains(closed(42, 100), size.width))
+    throw WrongUsage("a pitch of {} x {} m is none: the areas need 40 to 130 m by 42 to 100 m", size.length, size.width);
   return size;
 }
 

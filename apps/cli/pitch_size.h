@@ -6,7 +6,7 @@
 
 namespace marey::cli {
 
-/// LENGTHxWIDTH in m. Throws Error for what is none, or no pitch.
+/// LENGTHxWIDTH in m. Throws WrongUsage for what is none, or no pitch.
 geometry::PitchSize parse_pitch_size(const std::string& text);
 
 }  // namespace marey::cli

@@ -1,53 +1,48 @@
 #include "rig_inputs.h"
 
-#include <algorithm>
-#include <cmath>
+#include <filesystem>
 
-#include "marey/core/error.h"
 #include "marey/format/observations.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/rig_sources.h"
 
 namespace marey::cli {
 
-void add_rig_inputs(CLI::App& command, RigInputs& inputs) {
-  command.add_option("RIG", inputs.rig, "the rig file; may be left out where --observations tells of the cameras");
-  command.add_option("VIDEOS", inputs.videos, "CAMERA=VIDEO: a camera's source, in place of the rig's");
-  command.add_option("--observations", inputs.observations,
-                     "in place of videos, blobs that another program found: a CSV with header camera,frame,x,y[,marker], or a "
-                     "MultiCamSelfCal folder");
+std::vector<std::string> files_of_rig(const std::string& rig) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(rig, error)) return {};
+  std::vector<std::string> files;
+  for (const RigCamera& camera : format::rig::read_rig(rig).cameras) {
+    files.push_back(camera.source);
+    files.push_back(camera.detections);
+  }
+  return files;
 }
 
-Rig rig_of(const RigInputs& inputs) {
-  if (inputs.rig.empty() && inputs.observations.empty()) throw CLI::ValidationError("RIG", "give a rig file, or --observations");
-  Rig rig = inputs.rig.empty() ? format::rig_of_observations(inputs.observations) : format::rig::read_rig(inputs.rig);
-  for (const std::string& video : inputs.videos) {
-    const auto equal = video.find('=');
-    if (equal == std::string::npos) throw Error("\"{}\" names no camera: write CAMERA=VIDEO", video);
-    const std::string name = video.substr(0, equal);
-    const auto camera =
-        std::find_if(rig.cameras.begin(), rig.cameras.end(), [&](const RigCamera& one) { return one.name == name; });
-    if (camera == rig.cameras.end()) throw Error("{} has no camera \"{}\", which {} names", inputs.rig, name, video);
-    camera->source = video.substr(equal + 1);
-  }
+Option add_rig(Command& command, RigAndSources& inputs, const std::string& meaning) {
+  const Option rig = command.input_file("RIG", inputs.rig, meaning);
+  command.input_files("SOURCES", inputs.sources, "CAMERA=VIDEO, CAMERA=FOLDER or CAMERA=PATTERN in place of the rig's own sources");
+  command.also_reads([&inputs] { return files_of_rig(inputs.rig); });
   return rig;
 }
 
-std::vector<double> numbers_in(const std::string& text, const char* option, const char* form) {
-  std::vector<double> values;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::string part = text.substr(at, text.find(',', at) - at);
-    std::size_t used = 0;
-    double value = 0;
-    try {
-      value = std::stod(part, &used);
-    } catch (const std::exception&) {
-      used = std::string::npos;
-    }
-    if (used != part.size() || !std::isfinite(value)) throw Error("{} {}: \"{}\" is no number; write {}", option, text, part, form);
-    values.push_back(value);
-    at += part.size() + 1;
-  }
-  return values;
+Rig rig_of(const RigAndSources& inputs) {
+  Rig rig = format::rig::read_rig(inputs.rig);
+  pipeline::set_sources(rig, inputs.sources);
+  return rig;
+}
+
+Option add_rig_inputs(Command& command, RigInputs& inputs) {
+  const Option rig = add_rig(command, inputs.rig, "the rig file; may be left out where --observations names the cameras");
+  command.input_file("--observations", inputs.observations,
+                     "in place of videos, blobs that another program found: a CSV with header camera,frame,x,y[,marker], or a "
+                     "MultiCamSelfCal folder");
+  return rig;
+}
+
+Rig rig_of(const RigInputs& inputs) {
+  if (inputs.rig.rig.empty() && inputs.observations.empty()) throw WrongUsage("RIG: give a rig file, or --observations");
+  return inputs.rig.rig.empty() ? format::rig_of_observations(inputs.observations) : rig_of(inputs.rig);
 }
 
 }  // namespace marey::cli

@@ -3,25 +3,36 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "marey/core/rig.h"
+
+#include "command_line.h"
 
 namespace marey::cli {
 
-/// The command line's `rig.toml [cam=VIDEO …] [--observations FILE|DIR]`.
-struct RigInputs {
+/// The command line's `RIG [CAMERA=SOURCE …]`.
+struct RigAndSources {
   std::string rig;
-  std::vector<std::string> videos;  ///< cam=VIDEO
+  std::vector<std::string> sources;
+};
+
+/// Both positionals. The rig's own sources and detections count as inputs too, where they are files.
+Option add_rig(Command& command, RigAndSources& inputs, const std::string& meaning);
+
+/// The rig that they name, its cameras' sources replaced. Throws Error.
+Rig rig_of(const RigAndSources& inputs);
+
+/// The sources and detections of a rig file's cameras; none where the rig is no file.
+std::vector<std::string> files_of_rig(const std::string& rig);
+
+/// The command line's `[RIG] [CAMERA=SOURCE …] [--observations FILE|FOLDER]`.
+struct RigInputs {
+  RigAndSources rig;
   std::string observations;
 };
 
-void add_rig_inputs(CLI::App& command, RigInputs& inputs);
+Option add_rig_inputs(Command& command, RigInputs& inputs);
 
-/// The rig that they name, its cameras' sources replaced; of observations alone the rig that these tell of. Throws Error.
+/// The rig that they name; of observations alone the rig that these name. Throws Error.
 Rig rig_of(const RigInputs& inputs);
-
-/// Numbers between commas. Throws Error with the option's name and the form it should have.
-std::vector<double> numbers_in(const std::string& text, const char* option, const char* form);
 
 }  // namespace marey::cli

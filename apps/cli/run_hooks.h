@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "marey/pipeline/run.h"
 
+#include "command_line.h"
 #include "progress_bar.h"
 
 namespace marey::cli {
@@ -22,39 +22,25 @@ bool interrupted();
 /// The exit code of a program that Ctrl-C ended, by the shell's convention.
 inline constexpr int kInterrupted = 130;
 
-constexpr std::string_view words_of(pipeline::TrackProgress::Step step) {
-  switch (step) {
-    case pipeline::TrackProgress::Step::clocks:
-      return "comparing clocks";
-    case pipeline::TrackProgress::Step::tracking:
-      return "tracking";
-    case pipeline::TrackProgress::Step::drawing:
-      return "drawing";
-  }
-  return {};
-}
-
-/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `tell(summary, elapsed)` says what came of it,
+/// Runs `track(hooks)` with a progress bar and a Ctrl-C that ends it in order; `report(summary, elapsed)` says what came of it,
 /// elapsed in s. Warnings go to standard error before.
-template <typename Track, typename Tell>
-void run_with_progress(bool quiet, Track&& track, Tell&& tell) {
+template <typename Track, typename Report>
+void run_with_progress(bool quiet, Track&& track, Report&& report) {
   catch_interrupts();
   const auto begin = std::chrono::steady_clock::now();
   const auto summary = [&] {
     ProgressBar bar(quiet);
-    pipeline::RunHooks hooks;
+    pipeline::Hooks hooks;
     hooks.stop = [] { return interrupted(); };
-    hooks.progress = [&](const pipeline::TrackProgress& progress) {
-      bar.show(words_of(progress.step), progress.done, progress.total);
-    };
+    hooks.progress = [&](const pipeline::Progress& progress) { bar.show(progress.step, progress.done, progress.total); };
     return track(hooks);
   }();
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "marey: warning: {}\n", warning);
-  tell(summary, elapsed);
+  report(summary, elapsed);
   if (summary.stopped) {
     fmt::print(stderr, "marey: stopped after {} frames; what was tracked until then is written\n", summary.frames);
-    throw CLI::RuntimeError(kInterrupted);
+    throw EndWith{kInterrupted};
   }
 }
 

@@ -1,7 +1,8 @@
 #include "scores.h"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json_value.h"
 
 namespace marey::cli {
 
@@ -9,11 +10,11 @@ std::string percent(std::optional<double> share) {
   return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
 }
 
-nlohmann::json or_null(std::optional<double> value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
+Json or_null(std::optional<double> value) {
+  return value ? Json(*value) : Json();
 }
 
-nlohmann::json as_json(const evaluate::Evaluation& scores) {
+Json as_json(const evaluate::Evaluation& scores) {
   const evaluate::ClearScores& clear = scores.clear;
   return {{"frames", scores.frames},
           {"common_frames", scores.common_frames},

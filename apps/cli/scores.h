@@ -3,18 +3,18 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "marey/evaluate/evaluation.h"
+
+#include "json_value.h"
 
 namespace marey::cli {
 
 /// "83.7 %", or "none".
 std::string percent(std::optional<double> share);
 
-nlohmann::json or_null(std::optional<double> value);
+Json or_null(std::optional<double> value);
 
 /// What `marey evaluate --json` tells of boxes and of places alike.
-nlohmann::json as_json(const evaluate::Evaluation& scores);
+Json as_json(const evaluate::Evaluation& scores);
 
 }  // namespace marey::cli

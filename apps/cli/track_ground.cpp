@@ -8,8 +8,9 @@
 #include "marey/pipeline/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
+#include "command_line.h"
+#include "file_checks.h"
 #include "ground_summary.h"
-#include "known.h"
 #include "pitch_size.h"
 #include "run_hooks.h"
 
@@ -25,11 +26,15 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
       .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
   const std::string format = command.format.empty() ? (flags.camera.empty() ? "csv" : "mot") : command.format;
   if (format != "csv" && format != "mot")
-    throw Error("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
+    throw WrongUsage("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
   if (format == "mot" && flags.camera.empty())
-    throw Error("--format mot holds the boxes in one camera's view; name the camera with --camera");
+    throw WrongUsage("--format mot holds the boxes in one camera's view; name the camera with --camera");
   if (format == "csv" && !flags.camera.empty())
-    throw Error("--camera {} is for --format mot; places on the ground are those of all cameras together", flags.camera);
+    throw WrongUsage("--camera {} is for --format mot; places on the ground are those of all cameras together", flags.camera);
+  const char* ending = format == "mot" ? ".txt" : ".csv";
+  if (command.format.empty() && !command.out.empty() && !is_stream(command.out) && !command.out.ends_with(ending))
+    throw WrongUsage("--output {}: {} is written, so its name ends in {}; or name the format with --format", command.out, format,
+                     ending);
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty())
     output.tracks = std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : "_ground.csv");
@@ -45,10 +50,10 @@ track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
 }
 
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
-pipeline::TrackGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
-                                        const Rig& rig) {
-  pipeline::TrackGroundOptions options;
-  options.eyes.background = detect::background::parse_background(people.background);
+pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
+                                           const Rig& rig) {
+  pipeline::PeopleOnGroundOptions options;
+  options.background = detect::background::parse_background(people.background);
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
@@ -58,55 +63,59 @@ pipeline::TrackGroundOptions options_of(const GroundCommand& command, const Grou
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
   if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? geometry::PitchSize{} : parse_pitch_size(flags.size);
   if (flags.margin && !options.pitch)
-    throw Error("--margin is counted from the edge of a pitch, and {} tells of none; give its --size", command.rig);
+    throw WrongUsage("--margin is counted from the edge of a pitch, and {} tells of none; give its --size", command.rig);
   options.margin = flags.margin.value_or(options.margin);
   return options;
 }
 
 }  // namespace
 
-void add_ground_options(CLI::App& command, GroundFlags& flags) {
-  const auto group = "Options for --ground";
-  auto* ground = command.add_flag("--ground", flags.ground, "INPUT is a rig file: follow people on the ground its cameras look at")
-                     ->group(group);
-  command.add_option("SOURCES", flags.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
+void add_ground_options(Command& command, GroundFlags& flags) {
+  command.group("Options for --ground");
+  const Option ground =
+      command.flag("--ground", flags.ground, "INPUT is a rig file: follow people on the ground its cameras look at");
+  command.input_files("SOURCES", flags.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
   command
-      .add_option("--size", flags.size,
-                  "of the pitch, LENGTHxWIDTH in m (default: 105x68 where the rig was calibrated over one, else there is none)")
-      ->check(known([](const std::string& text) { parse_pitch_size(text); }))
-      ->needs(ground)
-      ->group(group);
-  command.add_option("--margin", flags.margin, "m round the pitch where people still count (default: 2)")
-      ->check(CLI::NonNegativeNumber)
-      ->needs(ground)
-      ->group(group);
+      .text("--size", flags.size,
+            "of the pitch, LENGTHxWIDTH in m (default: 105x68 where the rig was calibrated over one, else there is none)")
+      .needs(ground)
+      .check(parse_pitch_size);
+  command.number("--margin", flags.margin, "m", closed(0, 1000), "round the pitch where people still count (default: 2)")
+      .needs(ground);
+  command.text("--teams", flags.teams, "the teams' colours, \"white,blue\", or what they are called, \"City=white,United=blue\"")
+      .needs(ground)
+      .check(analyse::parse_teams);
   command
-      .add_option("--teams", flags.teams,
-                  "what the teams wear, \"white,blue\", or what they are called, \"City=white,United=blue\"")
-      ->check(known([](const std::string& text) { analyse::parse_teams(text); }))
-      ->needs(ground)
-      ->group(group);
-  command
-      .add_option("--associate", flags.associate,
-                  "how what is seen finds whom it is of: gnn, jpda or mht (default: mht with pictures; gnn with detections alone, "
-                  "or --live)")
-      ->check(known([](const std::string& text) { track::ground::ground_association_named(text); }))
-      ->needs(ground)
-      ->group(group);
-  command.add_option("--camera", flags.camera, "with --format mot: in whose view")->needs(ground)->group(group);
-  command.add_option("--pitch-view", flags.pitch_view, "a film of the ground from above, with everybody's trail: FILE.mp4")
-      ->needs(ground)
-      ->group(group);
+      .text("--associate", flags.associate,
+            "how observations are associated with tracks: gnn, jpda or mht (default: mht with pictures; gnn with detections alone, "
+            "or --live)")
+      .needs(ground)
+      .check(track::ground::ground_association_named);
+  command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);
+  command.output_file("--pitch-view", flags.pitch_view, "a film of the ground from above, with everybody's trail: FILE.mp4")
+      .needs(ground)
+      .ends_in({".mp4"});
+  command.group("");
+}
+
+std::vector<std::string> ground_files(const GroundCommand& command, const GroundFlags& flags) {
+  std::vector<std::string> files;
+  if (command.out.empty()) files.push_back(output_of(command, flags).tracks);
+  std::error_code error;
+  if (command.overlay.empty() || !std::filesystem::is_regular_file(command.rig, error)) return files;
+  for (const RigCamera& camera : format::rig::read_rig(command.rig).cameras)
+    files.push_back((std::filesystem::path(command.overlay) / (camera.name + ".mp4")).string());
+  return files;
 }
 
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
-  if (people.outline) throw Error("--outline follows outlines in one picture; leave it out with --ground");
+  if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
   pipeline::set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
-  const pipeline::TrackGroundOptions options = options_of(command, flags, people, rig);
+  const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(
-      command.quiet, [&](const pipeline::RunHooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
+      command.quiet, [&](const pipeline::Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
       [&](const pipeline::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);

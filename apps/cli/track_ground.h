@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "people_options.h"
 
 namespace marey::cli {
@@ -29,9 +27,12 @@ struct GroundCommand {
   bool live = false, quiet = false, json = false;
 };
 
-void add_ground_options(CLI::App& command, GroundFlags& flags);
+void add_ground_options(Command& command, GroundFlags& flags);
 
-/// Follows people on the ground and tells what came of it. Throws Error.
+/// The files that are written although no option names them.
+std::vector<std::string> ground_files(const GroundCommand& command, const GroundFlags& flags);
+
+/// Follows people on the ground and reports what came of it. Throws Error.
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people);
 
 }  // namespace marey::cli

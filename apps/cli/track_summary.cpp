@@ -2,78 +2,77 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json_value.h"
 
 namespace marey::cli {
 namespace {
 
-nlohmann::json path_or_null(const std::string& path) {
-  return path.empty() ? nlohmann::json() : nlohmann::json(path);
+Json path_or_null(const std::string& path) {
+  return path.empty() ? Json() : Json(path);
 }
 
-void print_pictures(const pipeline::TrackOutput& output) {
-  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
-  if (!output.plot.empty()) fmt::print(stderr, "plot: {}\n", output.plot);
+std::int64_t left_out(const pipeline::Summary& summary, std::string_view reason) {
+  const auto found = summary.left_out.find(reason);
+  return found != summary.left_out.end() ? found->second : 0;
+}
+
+std::string_view counted(bool markers, std::int64_t count) {
+  if (markers) return count == 1 ? "marker" : "markers";
+  return count == 1 ? "person" : "people";
+}
+
+void print_left_out(const pipeline::Summary& summary) {
+  const auto print = [&](std::string_view reason, std::string_view what) {
+    if (const auto count = left_out(summary, reason)) fmt::print(stderr, "left out: {} {}\n", count, what);
+  };
+  print("too_brief", "seen too briefly to be believed");
+  print("noise", "moving regions too small to be a part of a person");
+  print("misfits", "moving regions that no body explains");
 }
 
 }  // namespace
 
-void print_json(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  nlohmann::json json = {{"frames", summary.frames},
-                         {"seconds", summary.seconds},
-                         {"people", summary.people},
-                         {"rows", summary.rows},
-                         {"detections", summary.detections},
-                         {"dropped", {{"noise", summary.noise}, {"misfits", summary.misfits}, {"too_brief", summary.too_brief}}},
-                         {"elapsed", elapsed},
-                         {"stopped", summary.stopped},
-                         {"warnings", summary.warnings},
-                         {"tracks", output.tracks},
-                         {"overlay", path_or_null(output.overlay)},
-                         {"plot", path_or_null(output.plot)}};
-  if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
+  Json json = {{"frames", summary.frames},
+               {"seconds", summary.seconds},
+               {markers ? "markers" : "people", summary.tracks},
+               {"rows", summary.samples},
+               {"detections", summary.detections},
+               {"elapsed", elapsed},
+               {"stopped", summary.stopped},
+               {"warnings", summary.warnings},
+               {"tracks", output.tracks},
+               {"overlay", path_or_null(output.overlay)},
+               {"plot", path_or_null(output.plot)}};
+  if (!markers) {
+    json["dropped"] = {{"noise", left_out(summary, "noise")},
+                       {"misfits", left_out(summary, "misfits")},
+                       {"too_brief", left_out(summary, "too_brief")}};
+  }
+  for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
+  if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};
+  print(json);
 }
 
-void print_summary(const pipeline::TrackSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.people, summary.people == 1 ? "person" : "people",
+void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
+  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
              summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
-  if (summary.too_brief > 0) fmt::print(stderr, "left out: {} seen too briefly to be believed\n", summary.too_brief);
-  if (summary.noise > 0) fmt::print(stderr, "left out: {} moving regions too small to be a part of a person\n", summary.noise);
-  if (summary.misfits > 0) fmt::print(stderr, "left out: {} moving regions that no body explains\n", summary.misfits);
+  print_left_out(summary);
+  if (const auto measured = summary.figures.find("measurement_px"); measured != summary.figures.end()) {
+    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n", measured->second,
+               summary.figures.at("acceleration_px_s2"));
+  }
   if (summary.outlines > 0) {
     fmt::print(stderr, "outlines: {}, {:.0f} % of them held while too little was seen\n", summary.outlines,
-               100.0 * static_cast<double>(summary.held) / static_cast<double>(summary.outlines));
+               100.0 * static_cast<double>(summary.held_outlines) / static_cast<double>(summary.outlines));
   }
   fmt::print(stderr, "tracks: {}\n", output.tracks);
-  print_pictures(output);
-}
-
-void print_json(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  nlohmann::json json = {{"frames", summary.frames},         {"seconds", summary.seconds},
-                         {"markers", summary.markers},       {"rows", summary.rows},
-                         {"detections", summary.detections}, {"elapsed", elapsed},
-                         {"stopped", summary.stopped},       {"warnings", summary.warnings},
-                         {"tracks", output.tracks},          {"overlay", path_or_null(output.overlay)},
-                         {"plot", path_or_null(output.plot)}};
-  if (summary.noise) {
-    json["noise"] = {{"measurement_px", summary.noise->measurement_sigma}, {"acceleration_px_s2", summary.noise->acceleration}};
-  }
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
-void print_summary(const pipeline::MarkerSummary& summary, const pipeline::TrackOutput& output, double elapsed) {
-  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.markers,
-             summary.markers == 1 ? "marker" : "markers", summary.frames, summary.seconds,
-             static_cast<double>(summary.frames) / elapsed);
-  if (summary.noise) {
-    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n",
-               summary.noise->measurement_sigma, summary.noise->acceleration);
-  }
-  fmt::print(stderr, "tracks: {}\n", output.tracks);
-  print_pictures(output);
+  if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
+  if (!output.plot.empty()) fmt::print(stderr, "plot: {}\n", output.plot);
 }
 
 }  // namespace marey::cli

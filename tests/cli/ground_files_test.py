@@ -26,10 +26,10 @@ class GroundFiles(unittest.TestCase):
         self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
         return done
 
-    def refused(self, *arguments):
+    def refused(self, *arguments, code=1):
         """Ends with one sentence and leaves nothing behind."""
         before = sorted(self.folder.rglob("*"))
-        said = self.marey(*arguments, code=1).stderr.strip()
+        said = self.marey(*arguments, code=code).stderr.strip()
         self.assertEqual(sorted(self.folder.rglob("*")), before, "something was left behind")
         self.assertEqual(len(said.splitlines()), 1, said)
         self.assertTrue(said.startswith("marey: "), said)
@@ -143,10 +143,10 @@ class GroundFiles(unittest.TestCase):
         self.write_run("run.csv", 12.5)
         self.assertIn("12.5", self.refused("convert", "run.csv", "run.dat"))
         self.assertIn("read only", self.refused("convert", "run.csv", "run.xml", "--format", "sportec"))
-        self.assertIn("ending", self.refused("convert", "run.csv", "run.odt"))
+        self.assertIn("ending", self.refused("convert", "run.csv", "run.odt", code=2))
         self.assertIn("nobody is of the team", self.refused("convert", "run.csv", "run_home.csv", "--home", "green"))
-        self.assertIn("itself", self.refused("convert", "run.csv", "run.csv"))
-        self.assertIn("--up", self.refused("convert", "run.csv", "run_home.csv", "--up", "y"))
+        self.assertIn("input", self.refused("convert", "run.csv", "run.csv", code=2))
+        self.assertIn("--up", self.refused("convert", "run.csv", "run_home.csv", "--up", "y", code=2))
         self.marey("convert", "run.csv", "run_home.csv", "--period", "9-3", code=2)
         self.marey("convert", "run.csv", "run_home.csv", "--format", "nonsense", code=2)
         (self.folder / "alone.dat").write_text("1:1,1,1,0,0,0.00;:0,0,0,0.00,H,Dead;:\n")

@@ -102,12 +102,12 @@ class Markers(unittest.TestCase):
         track = ("track", "plain/video.mp4", "--targets", "markers", "-o", "t.csv")
         self.assertIn("cannot be read", self.marey(*track, "--labels", "no.txt", code=1).stderr)
         self.assertIn("no such file", self.marey(*track, "--mask", "no.png", code=1).stderr)
-        self.assertIn("colour", self.marey(*track, "--colour", "blue-ish", code=1).stderr)
+        self.assertIn("colour", self.marey(*track, "--colour", "blue-ish", code=2).stderr)
         self.marey(*track, "--filter", "magic", code=2)
         self.marey("simulate", "markers", "juggling", code=2)
 
     def test_experiment_prints_the_papers_tables(self):
-        done = self.marey("experiment", "trackers", "--videos", 1, "--out", "plots", "-q")
+        done = self.marey("experiment", "trackers", "--videos", 1, "--output", "plots")
         for title in ("Table I.", "Table II.", "Table III.", "Table IV.", "Tables V-VII."):
             self.assertIn(title, done.stdout)
         self.assertEqual(len(list((self.folder / "plots").glob("*.svg"))), 6)

@@ -116,7 +116,7 @@ class Match(unittest.TestCase):
         for more in (["--cameras", 0], ["--cameras", 65], ["--seconds", -1], ["--rate", 0], ["--missed", 2], ["--stand", "roof"]):
             self.marey("simulate", "match", "-o", "match", *more, code=2)
         self.assertIn("--output", self.marey("simulate", "match", "--cameras", 2, code=2).stderr)
-        self.marey("simulate", "match", "-o", "match", "--pitch", "20x10", code=1)
+        self.marey("simulate", "match", "-o", "match", "--pitch", "20x10", code=2)
         (self.folder / "file").write_text("")
         said = self.marey("simulate", "match", "-o", "file/below", "--seconds", 1, code=1).stderr
         self.assertIn("the folder cannot be made", said)

@@ -94,7 +94,7 @@ class People(unittest.TestCase):
         for kind in told["kinds"]:
             switches = {name: method["switches"] for name, method in kind["methods"].items()}
             self.assertLess(switches["mht"], switches["gnn"], kind["meeting"])
-        self.assertIn("identity switches", self.run_marey("experiment", "hypotheses", "--scenes", 1, "--quiet").stdout)
+        self.assertIn("identity switches", self.run_marey("experiment", "hypotheses", "--scenes", 1).stdout)
         self.run_marey("experiment", "hypotheses", "--scenes", 0, code=2)
 
 

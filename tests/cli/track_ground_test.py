@@ -46,9 +46,9 @@ class TrackGround(unittest.TestCase):
     def track(self, rig, *more, code=0):
         return self.marey("track", rig, "--targets", "people", "--ground", *more, code=code)
 
-    def refused(self, *arguments):
+    def refused(self, *arguments, code=1):
         """Ends with one sentence and leaves nothing behind."""
-        said = self.marey("track", *arguments, code=1).stderr.strip()
+        said = self.marey("track", *arguments, code=code).stderr.strip()
         self.assertEqual(len(said.splitlines()), 1, said)
         self.assertFalse((self.folder / "match.csv").exists())
         return said
@@ -110,7 +110,7 @@ class TrackGround(unittest.TestCase):
         self.track(rig, "-o", "cam2.txt", "--format", "mot", "--camera", "cam2", "-q")
         told = self.marey("evaluate", "--truth", self.made / "boxes" / "cam2_truth.txt", "--tracks", "cam2.txt", "--json")
         self.assertGreater(json.loads(told.stdout)["idf1"], 0.8)
-        self.assertIn("--camera", self.refused(rig, "--ground", "-o", "match.csv", "--format", "mot"))
+        self.assertIn("--camera", self.refused(rig, "--ground", "-o", "match.csv", "--format", "mot", code=2))
         said = self.refused(rig, "--ground", "-o", "match.csv", "--format", "mot", "--camera", "cam9")
         self.assertIn("cam9", said)
         self.assertIn("cam1", said)
@@ -121,10 +121,10 @@ class TrackGround(unittest.TestCase):
 
     def test_rig_and_ground_go_together(self):
         rig = self.made / "boxes" / "rig.toml"
-        self.assertIn("--ground", self.refused(rig, "-o", "match.csv"))
+        self.assertIn("--ground", self.refused(rig, "-o", "match.csv", code=2))
         self.refused(self.made / "films" / "cam1.mp4", "--ground", "-o", "match.csv")
-        self.assertIn("--pitch-view", self.refused(rig, "--ground", "--plot", "ways.svg", "-o", "match.csv"))
-        self.assertIn("people", self.refused(rig, "--ground", "--targets", "markers", "-o", "match.csv"))
+        self.assertIn("--pitch-view", self.refused(rig, "--ground", "--plot", "ways.svg", "-o", "match.csv", code=2))
+        self.assertIn("people", self.refused(rig, "--ground", "--targets", "markers", "-o", "match.csv", code=2))
 
     def test_what_is_missing_is_named_with_its_camera(self):
         gone = self.edited("gone.toml", lambda text: text.replace('"cam3.txt"', '"nothing.txt"'))
@@ -159,7 +159,7 @@ class TrackGround(unittest.TestCase):
         self.assertIn("calibrate", self.refused("rig.toml", "--ground", "-o", "match.csv"))
 
     def test_a_margin_needs_a_pitch(self):
-        self.assertIn("--size", self.refused(self.made / "boxes" / "rig.toml", "--ground", "--margin", 3, "-o", "match.csv"))
+        self.assertIn("--size", self.refused(self.made / "boxes" / "rig.toml", "--ground", "--margin", 3, "-o", "match.csv", code=2))
 
 
 if __name__ == "__main__":

@@ -28,8 +28,8 @@ class Wand(unittest.TestCase):
         assert done.returncode == code, f"{arguments}\n{done.stdout}\n{done.stderr}"
         return done
 
-    def refused(self, *arguments):
-        said = self.marey("calibrate", *arguments, "-o", "never.toml", code=1).stderr.strip()
+    def refused(self, *arguments, code=1):
+        said = self.marey("calibrate", *arguments, "-o", "never.toml", code=code).stderr.strip()
         self.assertFalse((self.folder / "never.toml").exists())
         self.assertEqual(len(said.splitlines()), 1, said)
         self.assertTrue(said.startswith("marey: "), said)
@@ -51,10 +51,10 @@ class Wand(unittest.TestCase):
 
     def test_what_cannot_be_used(self):
         seen = ("--observations", "room/observations.csv")
-        self.assertIn("no number", self.refused("wand", "room/start.toml", *seen, "--wand", "0,a"))
-        self.assertIn("single light", self.refused("wand", "room/start.toml", *seen, "--wand", "0"))
+        self.assertIn("no number", self.refused("wand", "room/start.toml", *seen, "--wand", "0,a", code=2))
+        self.assertIn("single light", self.refused("wand", "room/start.toml", *seen, "--wand", "0", code=2))
         self.assertIn("grow from 0", self.refused("wand", "room/start.toml", *seen, "--wand", "0,0.3,0.1"))
-        self.assertIn("CAM1,CAM2=METRES", self.refused("wand", "room/start.toml", *seen, "--wand", "led", "--distance", "3"))
+        self.assertIn("CAM1,CAM2=METRES", self.refused("wand", "room/start.toml", *seen, "--wand", "led", "--distance", "3", code=2))
         self.assertIn("no source", self.refused("wand", "room/start.toml", "--wand", "0,0.12,0.30"))
         self.assertIn("no camera", self.refused("wand", "room/start.toml", "nobody=a.mp4", "--wand", "0,0.12,0.30"))
         self.assertIn("--wand", self.refused("wand", "room/start.toml", *seen, "--wand", "0,0.20,0.30"))

@@ -90,7 +90,7 @@ double hull_area(std::vector<Vector<2>> points) {
   return twice / 2;
 }
 
-std::vector<TeamMeasure> measure_teams(const GroundRecording& recording, const std::vector<PersonMeasure>& people) {
+std::vector<TeamMeasure> measure_teams(const Recording& recording, const std::vector<PersonMeasure>& people) {
   constexpr std::size_t fewest = 3;
   std::map<std::string, TeamMeasure> teams;
   for (const PersonMeasure& person : people) {
@@ -116,14 +116,14 @@ std::vector<TeamMeasure> measure_teams(const GroundRecording& recording, const s
       places.clear();
     }
   };
-  std::int32_t frame = -1;
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    if (sample.frame != frame) close_instant();
-    frame = sample.frame;
-    const std::string& team = recording.people[static_cast<std::size_t>(sample.person)].team;
-    if (teams.contains(team)) standing[team].push_back(sample.place);
+  InstantRows rows(recording);
+  for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = recording.tracks()[index];
+      if (teams.contains(track.name.team)) standing[track.name.team].push_back(track.place(row));
+    }
+    close_instant();
   }
-  close_instant();
   std::vector<TeamMeasure> result;
   for (auto& [name, team] : teams) {
     const double instants = std::max(1, team.instants);
@@ -135,21 +135,16 @@ std::vector<TeamMeasure> measure_teams(const GroundRecording& recording, const s
 
 }  // namespace
 
-Measurement measure(const GroundRecording& recording, const MeasureOptions& options) {
-  std::vector<std::vector<TimedPlace>> measured(recording.people.size());
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    auto& path = measured[static_cast<std::size_t>(sample.person)];
-    if (path.empty() || sample.time > path.back().time) path.push_back({sample.time, sample.place});
-  }
+Measurement measure(const Recording& recording, const MeasureOptions& options) {
+  require_ground(recording, "measuring");
   Measurement result;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const GroundRecording::Person& who = recording.people[i];
+  for (const TrackColumns& track : recording.tracks()) {
     PersonMeasure person;
-    person.id = who.id, person.label = who.label, person.team = who.team;
+    person.id = number(track.id()), person.label = track.name.label, person.team = track.name.team;
     person.zone_s.assign(options.zones.size() + 1, 0);
     person.zone_m = person.zone_s;
     person.heat = empty_map(options);
-    person.paths = smooth_paths(measured[i], options.path);
+    person.paths = paths_of(recording, track, options.path);
     double weight = 0;
     for (const Path& path : person.paths) {
       add_path(path, options, person);
@@ -160,7 +155,6 @@ Measurement measure(const GroundRecording& recording, const MeasureOptions& opti
     person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
     result.people.push_back(std::move(person));
   }
-  std::sort(result.people.begin(), result.people.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   result.teams = measure_teams(recording, result.people);
   return result;
 }

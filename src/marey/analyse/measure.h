@@ -7,7 +7,7 @@
 
 #include "marey/analyse/smooth_path.h"
 #include "marey/core/geometry.h"
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::analyse {
@@ -62,7 +62,9 @@ struct Measurement {
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
 };
 
-/// Distances, speeds, efforts and places of everyone, from smoothed paths (`smooth_paths`). Cost: linear in the samples.
-Measurement measure(const GroundRecording& recording, const MeasureOptions& options = {});
+/// Distances, speeds, efforts and places of everyone, from `paths_of`: smoothed by the options, or as recorded where the recording is
+/// smoothed already, so that a run has one speed. Throws Error for a recording that is not of the ground in m. Cost: linear in the
+/// samples.
+Measurement measure(const Recording& recording, const MeasureOptions& options = {});
 
 }  // namespace marey::analyse

@@ -6,20 +6,38 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/core/error.h"
+
 namespace marey::analyse {
 namespace {
 
-GroundRecording one_person(double rate, double seconds, const std::function<Vector<2>(double)>& place, double noise) {
-  GroundRecording recording;
-  recording.people = {{7, "seven", "white"}};
+RecordingHeader on_the_ground() {
+  RecordingHeader header;
+  header.name = "match.csv";
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = 25;
+  return header;
+}
+
+Sample sample_at(int track, const Vector<2>& place) {
+  Sample sample;
+  sample.track = TrackId{track};
+  sample.position.head<2>() = place;
+  return sample;
+}
+
+Recording one_person(double rate, double seconds, const std::function<Vector<2>(double)>& place, double noise) {
+  Recording recording(on_the_ground());
+  recording.set_name({TrackId{7}, "seven", "white"});
   std::mt19937 random(5);
   std::normal_distribution<double> off(0, noise);
   for (int i = 0; i <= rate * seconds; ++i) {
-    GroundRecording::Sample sample;
-    sample.frame = i;
-    sample.time = i / rate;
-    sample.place = place(sample.time) + Vector<2>(off(random), off(random));
-    recording.samples.push_back(sample);
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(i / rate);
+    const double dx = off(random), dy = off(random);
+    instant.samples = {sample_at(7, place(i / rate) + Vector<2>(dx, dy))};
+    recording.add(instant);
   }
   return recording;
 }
@@ -73,9 +91,9 @@ TEST(Measure, SprintsNeedSpeedAndTime) {
 
 TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
   for (const double hertz : {0.1, 1.0, 5.0}) {
-    std::vector<TimedPlace> measured;
-    for (int i = 0; i < 2000; ++i) measured.push_back({i / 50.0, {std::sin(2 * M_PI * hertz * i / 50.0), 0}});
-    const Path path = smooth_paths(measured)[0];
+    std::vector<double> times, x;
+    for (int i = 0; i < 2000; ++i) times.push_back(i / 50.0), x.push_back(std::sin(2 * M_PI * hertz * i / 50.0));
+    const Path path = smooth_paths(times, x, std::vector<double>(2000, 0.0))[0];
     double in_phase = 0, across = 0;
     for (int i = 500; i < 1500; ++i) {
       const double angle = 2 * M_PI * hertz * i / 50.0;
@@ -95,23 +113,82 @@ TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
   }
 }
 
-TEST(Measure, WaysAreCutAtLongGapsAndNobodyIsNoError) {
-  std::vector<TimedPlace> measured = {{0, {0, 0}}, {0.1, {1, 0}}, {5, {50, 0}}, {5.1, {51, 0}}, {9, {0, 0}}};
-  const auto paths = smooth_paths(measured);
-  ASSERT_EQ(paths.size(), 2u) << "a lone place is no way";
-  EXPECT_TRUE(measure({}).people.empty());
-  GroundRecording still;
-  still.people = {{1, "", ""}};
-  still.samples = {{0, 0, 0.0, {1, 1}, {0, 0}, 0, true}};
-  EXPECT_TRUE(measure(still).people.empty()) << "one place is no way";
+TEST(Measure, PathsAreCutAtLongGapsAndNobodyIsNoError) {
+  const std::vector<double> times = {0, 0.1, 5, 5.1, 5.1, 9}, x = {0, 1, 50, 51, 70, 0}, y(6, 0.0);
+  const auto paths = smooth_paths(times, x, y);
+  ASSERT_EQ(paths.size(), 2u) << "a lone place is no path";
+  EXPECT_EQ(paths[1].place.back().x(), 51) << "of two rows at one time the first counts";
+  EXPECT_TRUE(measure(Recording(on_the_ground())).people.empty());
+  Recording still(on_the_ground());
+  still.add({.index = 0, .time = {}, .samples = {sample_at(1, {1, 1})}, .seen = {}, .named = {}, .frames = {}});
+  EXPECT_TRUE(measure(still).people.empty()) << "one place is no path";
+}
+
+/// Runs at 6 m/s; the velocities recorded are off on purpose, so that one sees whose are taken.
+Recording with_velocities(bool smoothed) {
+  Recording recording(on_the_ground());
+  recording.header.smoothed = smoothed;
+  for (int i = 0; i < 250; ++i) {
+    Sample sample = sample_at(3, {0.24 * i, 20});
+    sample.velocity = Vector<3>(i == 100 ? 6.75 : 6.5, 0, 0);
+    recording.add({.index = i,
+                   .time = timestamp_from_seconds(i / 25.0),
+                   .samples = {sample},
+                   .seen = {},
+                   .named = {},
+                   .frames = {}});
+  }
+  return recording;
+}
+
+TEST(Measure, ASmoothedRunHasOneSpeed) {
+  const PersonMeasure recorded = measure(with_velocities(true)).people.at(0);
+  EXPECT_NEAR(recorded.top_mps, 6.75, 1e-9) << "the recording's own";
+  ASSERT_EQ(recorded.paths.size(), 1u);
+  ASSERT_EQ(recorded.paths[0].place.size(), 250u);
+  for (std::size_t i = 0; i < 250; ++i) {
+    EXPECT_NEAR(recorded.paths[0].velocity[i].x(), i == 100 ? 6.75 : 6.5, 1e-9) << i;
+    EXPECT_NEAR(recorded.paths[0].place[i].x(), 0.24 * static_cast<double>(i), 1e-9) << "not smoothed again";
+  }
+  MeasureOptions other;
+  other.path.method = PathOptions::Method::kalman;
+  EXPECT_EQ(measure(with_velocities(true), other).people.at(0).top_mps, recorded.top_mps) << "whatever smoother is asked for";
+  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps, 6, 0.05) << "of places that nobody has smoothed";
+}
+
+TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
+  Recording recording = one_person(25, 10, running, 0);
+  recording.header.smoothed = true;
+  EXPECT_NEAR(measure(recording).people.at(0).top_mps, 4, 1e-6);
+}
+
+TEST(Measure, PixelsAndSpaceAreRefused) {
+  for (const auto kind : {FrameOfReference::Kind::image, FrameOfReference::Kind::space}) {
+    RecordingHeader header = on_the_ground();
+    header.frame.kind = kind;
+    try {
+      measure(Recording(header));
+      ADD_FAILURE() << "measured " << to_string(header.frame);
+    } catch (const Error& error) {
+      const std::string sentence = error.what();
+      EXPECT_NE(sentence.find("match.csv"), std::string::npos) << sentence;
+      EXPECT_NE(sentence.find(to_string(header.frame)), std::string::npos) << sentence;
+    }
+  }
 }
 
 TEST(Measure, TeamsHaveALengthAWidthAndAHull) {
-  GroundRecording recording;
+  Recording recording(on_the_ground());
   const std::vector<Vector<2>> places = {{10, 10}, {30, 10}, {30, 40}, {10, 40}, {20, 25}};
-  for (int i = 0; i < 5; ++i) recording.people.push_back({i + 1, "", "blue"});
   for (int frame = 0; frame < 3; ++frame) {
-    for (int i = 0; i < 5; ++i) recording.samples.push_back({frame, i, frame * 0.04, places[i], {0, 0}, 0, true});
+    Instant instant;
+    instant.index = frame;
+    instant.time = timestamp_from_seconds(frame * 0.04);
+    for (int i = 0; i < 5; ++i) {
+      if (frame == 0) instant.named.push_back({TrackId{i + 1}, "", "blue"});
+      instant.samples.push_back(sample_at(i + 1, places[static_cast<std::size_t>(i)]));
+    }
+    recording.add(instant);
   }
   const auto result = measure(recording);
   ASSERT_EQ(result.teams.size(), 1u);

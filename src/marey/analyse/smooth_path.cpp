@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Dense>
 
@@ -11,8 +12,14 @@
 namespace marey::analyse {
 namespace {
 
-/// The places of one piece at an even rate: the median of its steps.
-Path evenly(std::span<const TimedPlace> piece) {
+struct Row {
+  double time = 0;  // s
+  Vector<2> place;
+  std::optional<Vector<2>> velocity = {};
+};
+
+/// The places of one piece at an even rate: the median of its steps. Velocities likewise, where all are known.
+Path evenly(std::span<const Row> piece) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < piece.size(); ++i) steps.push_back(piece[i].time - piece[i - 1].time);
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
@@ -22,13 +29,15 @@ Path evenly(std::span<const TimedPlace> piece) {
   const double span = piece.back().time - path.start_s;
   const auto count = static_cast<std::size_t>(std::max(1.0, std::round(span / path.step_s))) + 1;
   path.step_s = span / static_cast<double>(count - 1);
+  const bool moving = std::all_of(piece.begin(), piece.end(), [](const Row& row) { return row.velocity.has_value(); });
   std::size_t after = 1;
   for (std::size_t i = 0; i < count; ++i) {
     const double time = path.start_s + path.step_s * static_cast<double>(i);
     while (after + 1 < piece.size() && piece[after].time < time) ++after;
-    const TimedPlace &a = piece[after - 1], &b = piece[after];
+    const Row &a = piece[after - 1], &b = piece[after];
     const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
     path.place.emplace_back(a.place + share * (b.place - a.place));
+    if (moving) path.velocity.emplace_back(*a.velocity + share * (*b.velocity - *a.velocity));
   }
   return path;
 }
@@ -168,8 +177,23 @@ void smooth(Path& path, const PathOptions& options) {
     case PathOptions::Method::raw:
       break;
   }
-  if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
-  if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
+}
+
+/// Pieces without a long gap, each with what it has no smoother of its own for: differences.
+std::vector<Path> pieces_of(std::span<const Row> rows, const PathOptions& options, bool smoothed) {
+  std::vector<Path> paths;
+  for (std::size_t begin = 0; begin < rows.size();) {
+    std::size_t end = begin + 1;
+    while (end < rows.size() && rows[end].time - rows[end - 1].time <= options.longest_gap_s) ++end;
+    if (end - begin >= 2) {
+      Path& path = paths.emplace_back(evenly(rows.subspan(begin, end - begin)));
+      if (!smoothed) smooth(path, options);
+      if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
+      if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
+    }
+    begin = end;
+  }
+  return paths;
 }
 
 }  // namespace
@@ -182,18 +206,28 @@ PathOptions::Method parse_path_method(std::string_view name) {
   throw Error("\"{}\" is no way to smooth; these are: lowpass, savgol, kalman, raw", name);
 }
 
-std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathOptions& options) {
-  std::vector<Path> paths;
-  for (std::size_t begin = 0; begin < measured.size();) {
-    std::size_t end = begin + 1;
-    while (end < measured.size() && measured[end].time - measured[end - 1].time <= options.longest_gap_s) ++end;
-    if (end - begin >= 2) {
-      paths.push_back(evenly(measured.subspan(begin, end - begin)));
-      smooth(paths.back(), options);
-    }
-    begin = end;
+std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
+                               const PathOptions& options) {
+  std::vector<Row> rows;
+  rows.reserve(times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}});
   }
-  return paths;
+  return pieces_of(rows, options, false);
+}
+
+std::vector<Path> paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options) {
+  const bool smoothed = recording.header.smoothed;
+  std::vector<Row> rows;
+  rows.reserve(track.size());
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[i]));
+    if (!rows.empty() && time <= rows.back().time) continue;
+    rows.push_back({time, track.place(i)});
+    const auto velocity = smoothed ? track.velocity(i) : std::nullopt;
+    if (velocity) rows.back().velocity = velocity->head<2>();
+  }
+  return pieces_of(rows, options, smoothed);
 }
 
 }  // namespace marey::analyse

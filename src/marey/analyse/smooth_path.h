@@ -10,12 +10,12 @@
 // References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/core/recording.h"
 
 namespace marey::analyse {
 
@@ -44,12 +44,13 @@ struct Path {
   double seconds() const { return step_s * static_cast<double>(place.empty() ? 0 : place.size() - 1); }
 };
 
-struct TimedPlace {
-  double time = 0;  ///< s
-  Vector<2> place = Vector<2>::Zero();
-};
+/// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over,
+/// pieces of fewer than two places left out.
+std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
+                               const PathOptions& options = {});
 
-/// `measured` in the order of time, times growing. Pieces of fewer than two places are left out.
-std::vector<Path> smooth_paths(std::span<const TimedPlace> measured, const PathOptions& options = {});
+/// The same of a track of a recording in m. Where the recording is smoothed already it is not smoothed again: places and velocities
+/// are those that it has (velocities that are missing are differences), so that who measures finds the speeds that were recorded.
+std::vector<Path> paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options = {});
 
 }  // namespace marey::analyse

@@ -30,30 +30,36 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
-/// Where and for how long a person was seen.
+/// Where and for how long somebody was seen.
 struct Presence {
   double seconds = 0;
   double near_goal[2] = {0, 0};  // s before the goal at x = 0 and before the other
 };
 
-std::vector<Presence> presences(const GroundRecording& recording, const std::optional<geometry::PitchSize>& pitch) {
-  std::vector<Presence> all(recording.people.size());
-  std::vector<double> last(recording.people.size(), -1e9);
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    if (!sample.observed) continue;
-    const auto who = static_cast<std::size_t>(sample.person);
-    const double step = std::min(longest_step, sample.time - last[who]);
-    last[who] = sample.time;
+Presence presence_of(const Recording& recording, const TrackColumns& track, const std::optional<geometry::PitchSize>& pitch) {
+  Presence presence;
+  double last = -1e9;
+  for (std::size_t row = 0; row < track.size(); ++row) {
+    if (!track.measured(row)) continue;
+    const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[row]));
+    const double step = std::min(longest_step, time - last);
+    last = time;
     if (step >= longest_step) continue;
-    all[who].seconds += step;
-    if (!pitch || std::abs(sample.place.y() - pitch->width / 2) > keepers_width) continue;
-    if (sample.place.x() < keepers_length) all[who].near_goal[0] += step;
-    if (sample.place.x() > pitch->length - keepers_length) all[who].near_goal[1] += step;
+    presence.seconds += step;
+    if (!pitch || std::abs(track.y()[row] - pitch->width / 2) > keepers_width) continue;
+    if (track.x()[row] < keepers_length) presence.near_goal[0] += step;
+    if (track.x()[row] > pitch->length - keepers_length) presence.near_goal[1] += step;
   }
+  return presence;
+}
+
+std::vector<Presence> presences(const Recording& recording, const std::optional<geometry::PitchSize>& pitch) {
+  std::vector<Presence> all;
+  for (const TrackColumns& track : recording.tracks()) all.push_back(presence_of(recording, track, pitch));
   return all;
 }
 
-/// The kinds that are teams, in the order in which they are reported.
+/// The kinds that are teams, in the order in which they are told.
 std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::vector<TeamName>& names) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < mixture.kinds.size(); ++k) {
@@ -99,7 +105,7 @@ Appearance cast_of(const ColourMixture& mixture) {
   return cast;
 }
 
-/// Names for teams that the user has not named: by colour, distinguished by lightness where they have the same.
+/// Names for teams that the user has not named: by colour, told apart by lightness where they have the same.
 void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
   for (Teams::Team& team : teams) {
     Appearance colour = team.colour;
@@ -114,62 +120,54 @@ void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
 }
 
 /// The team whose players stood nearer to the goal of `end` (0: x = 0) while the keeper was seen.
-std::optional<int> team_of_keeper(const GroundRecording& recording, std::span<const Teams::Member> members, int keeper, int end) {
-  std::array<double, 2> sum{};
-  std::array<std::int64_t, 2> count{};
+std::optional<int> team_of_keeper(const Recording& recording, std::span<const Teams::Member> members, std::size_t keeper, int end) {
   double lead = 0;
-  const auto settle = [&](bool keeper_seen) {
-    if (keeper_seen && count[0] > 0 && count[1] > 0) {
-      lead += sum[0] / static_cast<double>(count[0]) - sum[1] / static_cast<double>(count[1]);
+  InstantRows rows(recording);
+  for (const std::int32_t instant : recording.tracks()[keeper].at()) {
+    std::array<double, 2> sum{};
+    std::array<std::int64_t, 2> count{};
+    for (const auto& [index, row] : rows.at(static_cast<std::size_t>(instant))) {
+      const Teams::Member& member = members[index];
+      if (member.role != Teams::Role::player || !member.team) continue;
+      const auto team = static_cast<std::size_t>(*member.team);
+      sum[team] += recording.tracks()[index].x()[row];
+      ++count[team];
     }
-    sum = {};
-    count = {};
-  };
-  std::int32_t frame = -1;
-  bool seen = false;
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    if (sample.frame != frame) settle(std::exchange(seen, false));
-    frame = sample.frame;
-    seen |= sample.person == keeper;
-    const Teams::Member& member = members[static_cast<std::size_t>(sample.person)];
-    if (member.role != Teams::Role::player || !member.team) continue;
-    sum[*member.team] += sample.place.x();
-    ++count[*member.team];
+    if (count[0] > 0 && count[1] > 0) lead += sum[0] / static_cast<double>(count[0]) - sum[1] / static_cast<double>(count[1]);
   }
-  settle(seen);
   if (lead == 0) return std::nullopt;
   return (lead > 0) == (end == 1) ? 0 : 1;
 }
 
-/// Each person's colour and time, for those who were seen long enough.
+/// Everybody's colour and time, for those who were seen long enough.
 struct Candidates {
   std::vector<int> people;
   std::vector<ColourSeen> seen;
 };
 
-Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> appearances, double shortest) {
+Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> wears, double shortest) {
   double longest = 0;
   for (const Presence& one : presence) longest = std::max(longest, one.seconds);
   Candidates result;
   for (std::size_t who = 0; who < presence.size(); ++who) {
-    if (!appearances[who] || presence[who].seconds < std::min(shortest, longest)) continue;
+    if (!wears[who] || presence[who].seconds < std::min(shortest, longest)) continue;
     result.people.push_back(static_cast<int>(who));
-    result.seen.push_back({*appearances[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
+    result.seen.push_back({*wears[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
   }
   return result;
 }
 
 class Finder {
  public:
-  Finder(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances, const TeamOptions& options)
+  Finder(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options)
       : recording_(recording),
         options_(options),
         presence_(presences(recording, options.pitch)),
-        candidates_(candidates(presence_, appearances, options.shortest)),
+        candidates_(candidates(presence_, wears, options.shortest)),
         mixture_(find_colours(candidates_.seen)) {}
 
   Teams find() {
-    teams_.members.resize(recording_.people.size());
+    teams_.members.resize(recording_.tracks().size());
     const std::vector<std::size_t> kinds = choose_teams(mixture_, options_.names);
     for (std::size_t t = 0; t < kinds.size(); ++t) {
       Teams::Team team;
@@ -206,7 +204,7 @@ class Finder {
     }
   }
 
-  /// Who is in no team's colour: a keeper, a referee, or unknown.
+  /// Who is in no team's colour: a keeper, a referee, or nobody knows.
   void place_official(std::size_t candidate) {
     const int who = candidates_.people[candidate];
     Teams::Member& member = teams_.members[static_cast<std::size_t>(who)];
@@ -219,14 +217,14 @@ class Finder {
     const Presence& presence = presence_[static_cast<std::size_t>(who)];
     for (const int end : {0, 1}) {
       if (presence.near_goal[end] < keepers_time * presence.seconds || presence.seconds == 0) continue;
-      member = {Teams::Role::keeper, teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, who, end) : std::nullopt,
+      member = {Teams::Role::keeper, teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, static_cast<std::size_t>(who), end) : std::nullopt,
                 confidence};
       return;
     }
     if (share_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};
   }
 
-  /// How many have this appearance: of all people's time.
+  /// How many wear what this one wears: of all people's time.
   double share_of_kind(std::size_t candidate) const {
     const std::vector<double>& whose = mixture_.whose[candidate];
     const auto likeliest = std::max_element(whose.begin(), whose.end());
@@ -234,7 +232,7 @@ class Finder {
     return mixture_.kinds[static_cast<std::size_t>(likeliest - whose.begin())].share;
   }
 
-  const GroundRecording& recording_;
+  const Recording& recording_;
   const TeamOptions& options_;
   std::vector<Presence> presence_;
   Candidates candidates_;
@@ -264,19 +262,19 @@ std::vector<TeamName> parse_teams(std::string_view text) {
   return names;
 }
 
-Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances,
-                 const TeamOptions& options) {
-  return Finder(recording, appearances, options).find();
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options) {
+  require_ground(recording, "finding teams");
+  return Finder(recording, wears, options).find();
 }
 
-void note_teams(const Teams& teams, GroundRecording& recording) {
-  for (std::size_t who = 0; who < recording.people.size(); ++who) {
+void note_teams(const Teams& teams, Recording& recording) {
+  for (std::size_t who = 0; who < recording.tracks().size(); ++who) {
     const Teams::Member& member = teams.members[who];
-    GroundRecording::Person& person = recording.people[who];
-    person.team = member.team ? teams.teams[static_cast<std::size_t>(*member.team)].name : std::string();
-    if (!person.label.empty()) continue;
-    if (member.role == Teams::Role::keeper) person.label = "keeper";
-    if (member.role == Teams::Role::referee) person.label = "referee";
+    TrackName name = recording.tracks()[who].name;
+    name.team = member.team ? teams.teams[static_cast<std::size_t>(*member.team)].name : std::string();
+    if (name.label.empty() && member.role == Teams::Role::keeper) name.label = "keeper";
+    if (name.label.empty() && member.role == Teams::Role::referee) name.label = "referee";
+    recording.set_name(name);
   }
 }
 

@@ -1,6 +1,6 @@
-// Who plays with whom, learned from the recording itself: each person's appearance over the whole of it (not frame by frame), the
-// few colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
-// colour and stay near a goal, or referees. Each vote comes with its probability; who cannot be decided stays without a team.
+// Who plays with whom, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
+// colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
+// colour and stay near a goal, or referees. Everybody's vote comes with its probability; who cannot be told stays without a team.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::analyse {
@@ -21,8 +21,7 @@ struct TeamName {
   Appearance colour;
 };
 
-/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be reported. Throws Error for what is not
-/// so.
+/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be told. Throws Error for what is not so.
 std::vector<TeamName> parse_teams(std::string_view text);
 
 struct TeamOptions {
@@ -45,15 +44,16 @@ struct Teams {
     double confidence = 0;         ///< probability of what is said, in [0, 1]
   };
   std::vector<Team> teams;      ///< two at most; as named, else the one most seen first
-  std::vector<Member> members;  ///< one a person
+  std::vector<Member> members;  ///< one a track, in the recording's order
 };
 
-/// `appearances` of each person of the recording, where known. `recording` in the pitch's frame where `pitch` is given.
-Teams find_teams(const GroundRecording& recording, std::span<const std::optional<Appearance>> appearances,
+/// `wears` of each track of the recording, in their order, where known. `recording` is of the ground, in the pitch's frame where
+/// `pitch` is given; throws Error for another.
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears,
                  const TeamOptions& options = {});
 
 /// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
 /// none.
-void note_teams(const Teams& teams, GroundRecording& recording);
+void note_teams(const Teams& teams, Recording& recording);
 
 }  // namespace marey::analyse

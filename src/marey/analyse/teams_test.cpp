@@ -1,7 +1,7 @@
 #include "marey/analyse/teams.h"
 
-#include <map>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,17 @@
 namespace marey::analyse {
 namespace {
 
+RecordingHeader on_the_pitch() {
+  RecordingHeader header;
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = 5;
+  return header;
+}
+
 /// People and what they wear; each stands about somewhere for some seconds.
 struct Scene {
-  GroundRecording recording;
-  std::vector<std::optional<Appearance>> appearances;
+  Recording recording{on_the_pitch()};
+  std::vector<std::optional<Appearance>> wears;
   std::mt19937_64 engine;
   double seconds = 20;
 
@@ -24,26 +31,24 @@ struct Scene {
 
   void add(const std::string& colour, double spread, double x, double y, double from = 0, double to = 1) {
     const Appearance typical = colour_named(colour);
-    appearances.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
-                                     .a = typical.a + static_cast<float>(normal(spread)),
-                                     .b = typical.b + static_cast<float>(normal(spread)),
-                                     .deviation = 3});
-    const auto who = static_cast<std::int32_t>(recording.people.size());
-    recording.people.push_back({who + 1, {}, {}});
+    wears.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
+                               .a = typical.a + static_cast<float>(normal(spread)),
+                               .b = typical.b + static_cast<float>(normal(spread)),
+                               .deviation = 3});
+    for (auto k = static_cast<int>(recording.instants().size()); k < static_cast<int>(seconds * 5); ++k)
+      recording.add_moment({k, timestamp_from_seconds(k / 5.0)});
+    TrackColumns track({TrackId{static_cast<int>(recording.tracks().size()) + 1}, {}, {}}, 2);
     for (int k = static_cast<int>(from * seconds * 5); k < static_cast<int>(to * seconds * 5); ++k) {
-      GroundRecording::Sample sample;
-      sample.frame = k;
-      sample.person = who;
-      sample.time = k / 5.0;
-      sample.place = {x + normal(2), y + normal(2)};
-      recording.samples.push_back(sample);
+      Sample sample;
+      const double dx = normal(2), dy = normal(2);
+      sample.position = {x + dx, y + dy, 0};
+      track.add(k, sample);
     }
+    recording.put(std::move(track));
   }
 
   Teams find(const TeamOptions& options = {.names = {}, .pitch = geometry::PitchSize{}}) {
-    std::stable_sort(recording.samples.begin(), recording.samples.end(),
-                     [](const auto& a, const auto& b) { return a.frame < b.frame; });
-    return find_teams(recording, appearances, options);
+    return find_teams(recording, wears, options);
   }
 };
 
@@ -94,10 +99,10 @@ TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
   EXPECT_EQ(teams.members[0].team, 1);
   EXPECT_EQ(teams.members[10].team, 0);
   note_teams(teams, scene.recording);
-  EXPECT_EQ(scene.recording.people[0].team, "Home");
-  EXPECT_EQ(scene.recording.people[20].label, "keeper");
-  EXPECT_EQ(scene.recording.people[22].label, "referee");
-  EXPECT_EQ(scene.recording.people[22].team, "");
+  EXPECT_EQ(scene.recording.tracks()[0].name.team, "Home");
+  EXPECT_EQ(scene.recording.tracks()[20].name.label, "keeper");
+  EXPECT_EQ(scene.recording.tracks()[22].name.label, "referee");
+  EXPECT_EQ(scene.recording.tracks()[22].name.team, "");
 }
 
 TEST(Teams, WhereKitsAreTheSameNobodyIsGivenTheWrongOne) {
@@ -122,9 +127,9 @@ TEST(Teams, WhoWasHardlySeenOrHasNoColourStaysWithout) {
   Scene scene = match(9);
   scene.add("white", 4, 50, 50, 0.5, 0.52);
   scene.add("white", 4, 50, 55);
-  scene.appearances.back().reset();
+  scene.wears.back().reset();
   scene.add("white", 4, 50, 58);
-  scene.appearances.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
+  scene.wears.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
   const Teams teams = scene.find();
   for (int who = 25; who < 28; ++who) EXPECT_FALSE(teams.members[who].team) << who;
 }
@@ -142,7 +147,8 @@ TEST(Teams, ManyShortPiecesOfPeopleAreNoTrouble) {
 }
 
 TEST(Teams, NobodyIsNoTeam) {
-  EXPECT_TRUE(find_teams({}, {}).teams.empty());
+  EXPECT_TRUE(find_teams(Recording(on_the_pitch()), {}).teams.empty());
+  EXPECT_THROW(find_teams(Recording(), {}), Error) << "space is no ground";
 }
 
 TEST(Teams, WhatIsNoColourIsSaid) {

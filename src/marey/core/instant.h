@@ -2,6 +2,7 @@
 // space. A stage makes instants, a sink takes them, a recording holds them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,11 +54,22 @@ struct Sample {
   bool measured() const { return provenance == Provenance::measured; }
 };
 
+/// Where a track of the ground or of space is seen in one camera's picture, or would be if nothing hid it.
+struct BoxInView {
+  CameraId camera{};
+  std::int64_t frame = 0;  ///< the camera's own count
+  TrackId track{};
+  Box box;                        ///< px
+  std::optional<Vector<2>> foot;  ///< px; where the track's position is, if that is in the picture's plane
+  bool seen = true;               ///< the camera saw it at this instant
+};
+
 /// What a track is called. Its label and its team are empty where none was given.
 struct TrackName {
   TrackId id{};
   std::string label;
   std::string team;
+  std::optional<std::array<std::uint8_t, 3>> colour = {};  ///< red, green, blue; to be drawn in, where it is not left to its number
 
   bool operator==(const TrackName&) const = default;
 };
@@ -69,6 +81,7 @@ struct Instant {
   std::vector<Sample> samples;   ///< by track, each at most once
   std::vector<SeenPoint> seen;   ///< what the cameras saw, where the recording keeps it
   std::vector<TrackName> named;  ///< tracks whose label or team is new, or another than before
+  std::vector<BoxInView> boxes;  ///< in cameras' pictures, where a sink asked for them; never stored
   std::vector<Frame> frames;     ///< the pictures of this moment, by camera, where a sink asked for them; never stored
 };
 

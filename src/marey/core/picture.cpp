@@ -59,4 +59,12 @@ cv::Mat Picture::bgr() const {
   return result.size() == luma_.size() ? result : result(cv::Rect(0, 0, luma_.cols, luma_.rows)).clone();
 }
 
+/// Chroma is stored at half size: a region that begins on an odd pixel is cut from the colours themselves.
+Picture Picture::part(const cv::Rect& region) const {
+  if (!is_colour()) return Picture(luma_(region));
+  if (region.x % 2 != 0 || region.y % 2 != 0) return from_bgr(bgr()(region));
+  const cv::Rect half(region.x / 2, region.y / 2, (region.width + 1) / 2, (region.height + 1) / 2);
+  return {luma_(region), cb_(half), cr_(half), range_, std::make_shared<Picture>(*this)};
+}
+
 }  // namespace marey

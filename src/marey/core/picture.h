@@ -28,6 +28,9 @@ class Picture {
   /// A new CV_8UC3 picture, blue first; 16-bit grey is scaled so that 65535 becomes 255.
   cv::Mat bgr() const;
 
+  /// The part within `region`, which lies within the picture; it shares the pixels where `region` begins on even ones.
+  Picture part(const cv::Rect& region) const;
+
   bool empty() const { return luma_.empty(); }
   bool is_colour() const { return !cb_.empty(); }
   cv::Size size() const { return luma_.size(); }

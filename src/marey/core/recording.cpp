@@ -32,6 +32,7 @@ std::string to_string(const FrameOfReference& frame) {
 
 void OptionalColumn::set(std::size_t row, std::span<const double> values) {
   const auto width = static_cast<std::size_t>(width_);
+  if (known_.empty() && rows_ > row) known_.reserve(rows_), values_.reserve(rows_ * width);
   known_.resize(row, false);
   known_.push_back(true);
   values_.resize(row * width);
@@ -115,6 +116,12 @@ void TrackColumns::add(std::int32_t instant, const Sample& sample) {
   if (sample.outline) outlines_.emplace(row, sample.outline);
 }
 
+void TrackColumns::reserve(std::size_t rows) {
+  at_.reserve(rows), x_.reserve(rows), y_.reserve(rows), provenance_.reserve(rows), cameras_.reserve(rows);
+  if (dimensions_ == 3) z_.reserve(rows);
+  for (OptionalColumn* column : {&velocity_, &covariance_, &score_, &box_, &residual_px_, &residual_m_}) column->reserve(rows);
+}
+
 const TrackColumns* Recording::find(TrackId id) const {
   const auto found =
       std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
@@ -165,6 +172,35 @@ void Recording::erase_tracks_if(const std::function<bool(const TrackColumns&)>& 
   std::erase_if(tracks_, leave_out);
 }
 
+InstantRows::InstantRows(const Recording& recording) : recording_(recording) {
+  const std::vector<TrackColumns>& tracks = recording.tracks();
+  for (std::size_t i = tracks.size(); i-- > 0;) {
+    if (!tracks[i].empty()) waiting_.push_back(i);
+  }
+  std::stable_sort(waiting_.begin(), waiting_.end(),
+                   [&](std::size_t a, std::size_t b) { return tracks[a].at().front() > tracks[b].at().front(); });
+}
+
+std::span<const InstantRows::Row> InstantRows::at(std::size_t instant) {
+  const std::vector<TrackColumns>& tracks = recording_.tracks();
+  const auto now = static_cast<std::int32_t>(instant);
+  for (; !waiting_.empty() && tracks[waiting_.back()].at().front() <= now; waiting_.pop_back()) {
+    const auto place = std::lower_bound(open_.begin(), open_.end(), waiting_.back(),
+                                        [](const Row& row, std::size_t track) { return row.track < track; });
+    open_.insert(place, {waiting_.back(), 0});
+  }
+  rows_.clear();
+  bool ended = false;
+  for (Row& next : open_) {
+    const std::span<const std::int32_t> at = tracks[next.track].at();
+    while (next.row < at.size() && at[next.row] < now) ++next.row;
+    if (next.row < at.size() && at[next.row] == now) rows_.push_back({next.track, next.row++});
+    ended |= next.row == at.size();
+  }
+  if (ended) std::erase_if(open_, [&](const Row& next) { return next.row == tracks[next.track].size(); });
+  return rows_;
+}
+
 std::optional<Instant> InstantsOf::next() {
   if (next_ == recording_.instants().size()) return std::nullopt;
   Instant instant;
@@ -172,14 +208,13 @@ std::optional<Instant> InstantsOf::next() {
   instant.time = recording_.instants()[next_].time;
   const auto seen = recording_.seen(next_);
   instant.seen.assign(seen.begin(), seen.end());
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const TrackColumns& track = recording_.tracks()[i];
-    std::size_t& row = rows_[i];
-    if (row == track.size() || static_cast<std::size_t>(track.at()[row]) != next_) continue;
+  const auto rows = rows_.at(next_++);
+  instant.samples.reserve(rows.size());
+  for (const auto& [index, row] : rows) {
+    const TrackColumns& track = recording_.tracks()[index];
     if (row == 0 && (!track.name.label.empty() || !track.name.team.empty())) instant.named.push_back(track.name);
-    instant.samples.push_back(track.sample(row++));
+    instant.samples.push_back(track.sample(row));
   }
-  ++next_;
   return instant;
 }
 
@@ -196,17 +231,20 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
   return 1 / *middle;
 }
 
-void require_metric(const Recording& recording, std::string_view what) {
-  if (recording.header.frame.metric()) return;
-  throw Error("{}: {} needs metres, and these positions are {}; track with a calibrated rig (marey track RIG --ground)",
-              recording.header.name, what, to_string(recording.header.frame));
+bool has_velocities(const Recording& recording) {
+  return std::any_of(recording.tracks().begin(), recording.tracks().end(), [](const TrackColumns& t) { return t.has_velocities(); });
 }
 
-void require_ground(const Recording& recording, std::string_view what) {
-  require_metric(recording, what);
-  if (recording.dimensions() == 2) return;
-  throw Error("{}: {} is of people on the ground, and these positions are {}", recording.header.name, what,
-              to_string(recording.header.frame));
+void require_metric(const RecordingHeader& header, std::string_view what) {
+  if (header.frame.metric()) return;
+  throw Error("{}: {} needs metres, and these positions are {}; track with a calibrated rig (marey track RIG --ground)", header.name,
+              what, to_string(header.frame));
+}
+
+void require_ground(const RecordingHeader& header, std::string_view what) {
+  require_metric(header, what);
+  if (header.frame.dimensions() == 2) return;
+  throw Error("{}: {} is of people on the ground, and these positions are {}", header.name, what, to_string(header.frame));
 }
 
 }  // namespace marey

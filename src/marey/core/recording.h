@@ -85,9 +85,12 @@ class OptionalColumn {
   const double* values(std::size_t row) const { return values_.data() + row * static_cast<std::size_t>(width_); }
   /// Rows before `row` that were never set are unknown. Rows come in growing order.
   void set(std::size_t row, std::span<const double> values);
+  /// So many rows will come: where any is known, no more is taken than they need.
+  void reserve(std::size_t rows) { rows_ = rows; }
 
  private:
   int width_;
+  std::size_t rows_ = 0;
   std::vector<double> values_;
   std::vector<bool> known_;
 };
@@ -122,6 +125,8 @@ class TrackColumns {
 
   /// `instant` is later than the last one's.
   void add(std::int32_t instant, const Sample& sample);
+  /// So many rows will come, so that memory is what they need.
+  void reserve(std::size_t rows);
 
  private:
   int dimensions_;
@@ -162,6 +167,8 @@ class Recording {
   void set_name(const TrackName& name);
   /// Puts a track in as a whole, in the place of one with its id. Its instants must be there already.
   void put(TrackColumns track);
+  /// Takes all tracks out, so that another recording can be made of them without holding both.
+  std::vector<TrackColumns> take_tracks() { return std::exchange(tracks_, {}); }
   void add_moment(const Moment& moment) { instants_.push_back(moment); }
   /// Leaves out the tracks for which this says so.
   void erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out);
@@ -175,25 +182,55 @@ class Recording {
   std::vector<std::size_t> seen_end_;  // by instant; empty where nothing seen is kept
 };
 
+/// Who is there at one instant after the other, without copying samples. Cost: linear in the rows, and at each instant in the
+/// tracks that have begun and not ended. The recording must outlive it and stay as it is.
+class InstantRows {
+ public:
+  struct Row {
+    std::size_t track = 0;  ///< index into the recording's tracks
+    std::size_t row = 0;    ///< in the track
+  };
+
+  explicit InstantRows(const Recording& recording);
+  /// The rows of this instant, by track; valid until the next call. Instants are asked for in growing order, some may be passed
+  /// over.
+  std::span<const Row> at(std::size_t instant);
+
+ private:
+  const Recording& recording_;
+  std::vector<std::size_t> waiting_;  // tracks that have not begun, the first to begin at the back
+  std::vector<Row> open_;             // of tracks that have begun, the next row of each; by track
+  std::vector<Row> rows_;
+};
+
 /// The recording's instants one after the other, as a sink takes them. The recording must outlive it.
 class InstantsOf {
  public:
-  explicit InstantsOf(const Recording& recording) : recording_(recording), rows_(recording.tracks().size(), 0) {}
+  explicit InstantsOf(const Recording& recording) : recording_(recording), rows_(recording) {}
   /// The next one, names at the first that shows them; nothing behind the last.
   std::optional<Instant> next();
 
  private:
   const Recording& recording_;
   std::size_t next_ = 0;
-  std::vector<std::size_t> rows_;  // of each track, the next to be given
+  InstantRows rows_;
 };
 
 /// The usual step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer
 /// than two instants.
 std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants);
 
+/// Whether a velocity is known anywhere.
+bool has_velocities(const Recording& recording);
+
 /// Throws Error, with `what` for the job that needs it, where the recording is not in that kind of frame.
-void require_metric(const Recording& recording, std::string_view what);
-void require_ground(const Recording& recording, std::string_view what);
+void require_metric(const RecordingHeader& header, std::string_view what);
+void require_ground(const RecordingHeader& header, std::string_view what);
+inline void require_metric(const Recording& recording, std::string_view what) {
+  require_metric(recording.header, what);
+}
+inline void require_ground(const Recording& recording, std::string_view what) {
+  require_ground(recording.header, what);
+}
 
 }  // namespace marey

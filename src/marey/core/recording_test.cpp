@@ -113,5 +113,31 @@ TEST(Recording, WhoNeedsMetresRefusesPixels) {
   EXPECT_THROW(require_ground(space, "measuring"), Error);
 }
 
+/// Against looking each track up at each instant.
+TEST(InstantRows, AreThoseThatAreThere) {
+  Recording recording(header_in(FrameOfReference::Kind::user_ground));
+  for (int i = 0; i < 200; ++i) {
+    Instant instant;
+    instant.index = i;
+    for (int track = 1; track <= 20; ++track) {
+      if (i >= 7 * track % 90 && i < 7 * track % 90 + 5 * track && (i * track) % 7 != 3)
+        instant.samples.push_back(sample_of(track, i));
+    }
+    recording.add(instant);
+  }
+  recording.set_name({TrackId{30}, "never there", ""});
+  for (const std::size_t step : {1, 3, 40}) {
+    InstantRows rows(recording);
+    for (std::size_t instant = 0; instant < 200; instant += step) {
+      std::vector<std::pair<std::size_t, std::size_t>> found, wanted;
+      for (const auto& [track, row] : rows.at(instant)) found.emplace_back(track, row);
+      for (std::size_t t = 0; t < recording.tracks().size(); ++t) {
+        if (const auto row = recording.tracks()[t].row_at(static_cast<std::int32_t>(instant))) wanted.emplace_back(t, *row);
+      }
+      EXPECT_EQ(found, wanted) << instant << " by " << step;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marey

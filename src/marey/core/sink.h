@@ -13,6 +13,7 @@ class Sink {
   /// What a sink must be given beside the samples.
   struct Wants {
     bool pictures = false;  ///< `Instant::frames`
+    bool boxes = false;     ///< `Instant::boxes`
     bool seen = false;      ///< `Instant::seen`
   };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "marey/core/detection.h"
@@ -25,6 +26,9 @@ class Detector {
   /// What is seen in `frame`. Frames come in order. `expected` says where the tracker expects its targets: a person who stands
   /// still there is not learned as background, and a region several share is split among them.
   virtual Detections detect(const Frame& frame, std::span<const Expected> expected) = 0;
+
+  /// What a user should know of what was seen so far, one sentence each.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 }  // namespace marey::detect

@@ -22,12 +22,12 @@ cv::Rect2f edge_of(const Box& box) {
           static_cast<float>(std::max(0.0, box.height - 1))};
 }
 
-Vector<2> foot_of(const Track<2>& track) {
-  return track.box ? track.box->foot() : track.position;
+Vector<2> foot_of(const Sample& sample) {
+  return sample.box ? sample.box->foot() : Vector<2>(sample.position.head<2>());
 }
 
-Vector<2> centre_of(const Track<2>& track) {
-  return track.outline ? track.outline->centre : track.position;
+Vector<2> centre_of(const Sample& sample) {
+  return sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
 }
 
 void draw_lines(Canvas& canvas, const Outline& outline, double unit) {
@@ -58,35 +58,35 @@ void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, do
 
 }  // namespace
 
-Colour Overlay::colour(TrackId id) const {
-  const auto own = options_.colours.find(id);
-  return own != options_.colours.end() ? own->second : colour_of(number(id));
+Colour colour_of(const TrackName& name, TrackId id) {
+  if (!name.colour) return colour_of(number(id));
+  return {(*name.colour)[0], (*name.colour)[1], (*name.colour)[2]};
 }
 
-Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks) {
+Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
   Canvas canvas(picture);
   // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
   const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
-  for (const Track<2>& track : tracks) {
-    const Vector<2> place = options_.trail_of_centres ? centre_of(track) : foot_of(track);
-    trails_.add(number(track.id), now, to_point(place), colour(track.id));
+  for (const Sample& sample : samples) {
+    const Vector<2> place = options_.trail_of_centres ? centre_of(sample) : foot_of(sample);
+    trails_.add(number(sample.track), now, to_point(place), colour_of(names.of(sample.track), sample.track));
   }
   trails_.draw(canvas, now, 0.9, 2 * unit);
 
-  for (const Track<2>& track : tracks) {
-    if (track.outline) {
-      draw_lines(canvas, *track.outline, unit);
-      draw_curve(canvas, *track.outline, colour(track.id), unit);
+  for (const Sample& sample : samples) {
+    if (sample.outline) {
+      draw_lines(canvas, *sample.outline, unit);
+      draw_curve(canvas, *sample.outline, colour_of(names.of(sample.track), sample.track), unit);
       continue;
     }
-    if (!track.box) continue;
-    const bool seen = track.state == Track<2>::State::observed;
-    canvas.rectangle(edge_of(*track.box), colour(track.id), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+    if (!sample.box) continue;
+    const bool seen = sample.measured();
+    canvas.rectangle(edge_of(*sample.box), colour_of(names.of(sample.track), sample.track), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
   }
-  for (const Track<2>& track : tracks) {
-    const Vector<2> corner = track.box ? Vector<2>(track.box->left - unit, track.box->top - unit) : track.position;
-    const std::string text = track.label.empty() ? std::to_string(number(track.id)) : track.label;
-    canvas.tag(text, to_point(corner), colour(track.id), 10 * unit);
+  for (const Sample& sample : samples) {
+    const Vector<2> corner =
+        sample.box ? Vector<2>(sample.box->left - unit, sample.box->top - unit) : Vector<2>(sample.position.head<2>());
+    canvas.tag(names.shown(sample.track), to_point(corner), colour_of(names.of(sample.track), sample.track), 10 * unit);
   }
   return canvas.take();
 }

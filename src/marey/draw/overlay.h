@@ -1,12 +1,11 @@
 #pragma once
 
-#include <map>
 #include <span>
 
 #include "marey/core/ids.h"
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
-#include "marey/core/track.h"
+#include "marey/core/track_names.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/fading_trails.h"
 
@@ -15,8 +14,10 @@ namespace marey::draw {
 struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
   bool trail_of_centres = false;             ///< trails show where centres went, not feet
-  std::map<TrackId, Colour> colours = {};    ///< of targets that have one of their own
 };
+
+/// What a track is drawn in: its own colour, or one that is steady by its number.
+Colour colour_of(const TrackName& name, TrackId id);
 
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
@@ -26,12 +27,10 @@ class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
 
-  /// Frames come in order. Keeps trails of those targets alone that were seen within `trail`.
-  Picture draw(const Picture& picture, Timestamp now, std::span<const Track<2>> tracks);
+  /// Instants come in order; px. Keeps trails of those targets alone that were seen within `trail`.
+  Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
-  Colour colour(TrackId id) const;
-
   OverlayOptions options_;
   FadingTrails trails_;
 };

@@ -13,13 +13,13 @@ Picture grey(int width, int height) {
   return Picture(cv::Mat(height, width, CV_8UC1, cv::Scalar(128)));
 }
 
-Track<2> at(int id, double left, double top, Track<2>::State state = Track<2>::State::observed) {
-  Track<2> track;
-  track.id = TrackId{id};
-  track.box = Box{left, top, 20, 50};
-  track.position = track.box->centre();
-  track.state = state;
-  return track;
+Sample at(int id, double left, double top, Provenance provenance = Provenance::measured) {
+  Sample sample;
+  sample.track = TrackId{id};
+  sample.box = Box{left, top, 20, 50};
+  sample.position.head<2>() = sample.box->centre();
+  sample.provenance = provenance;
+  return sample;
 }
 
 /// How many pixels of `part` differ between two pictures by more than a rounding.
@@ -65,39 +65,39 @@ TEST(Canvas, NeighbouringNumbersLookDifferent) {
 
 TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   Overlay overlay;
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   Picture last;
   for (int i = 0; i <= 10; ++i) {
-    last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{at(7, 20 + 10.0 * i, 40)});
+    last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{at(7, 20 + 10.0 * i, 40)}, {});
   }
   EXPECT_GT(changed(empty, last, {119, 39, 22, 52}), 200) << "the box";
   EXPECT_GT(changed(empty, last, {115, 15, 30, 22}), 50) << "the number above it";
   EXPECT_GT(changed(empty, last, {40, 85, 70, 8}), 70) << "the trail behind its foot";
-  last = overlay.draw(grey(200, 120), timestamp_from_seconds(20), {});
+  last = overlay.draw(grey(200, 120), timestamp_from_seconds(20), {}, {});
   EXPECT_EQ(changed(empty, last, {0, 0, 200, 120}), 0) << "all of it has faded";
 }
 
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
-  Track<2> track = at(1, 50, 40);
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
+  Sample sample = at(1, 50, 40);
   auto outline = std::make_shared<Outline>();
   outline->control_points = {{60, 40}, {70, 65}, {60, 90}, {50, 65}};
   outline->deviations.assign(4, {1, 1});
   outline->centre = {60, 65};
-  track.outline = outline;
-  const Picture curve = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{track});
+  sample.outline = outline;
+  const Picture curve = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
   EXPECT_EQ(changed(empty, curve, {66, 80, 8, 11}), 0) << "no corner of a box";
   EXPECT_GT(changed(empty, curve, {52, 45, 16, 40}), 60);
   outline->lines.push_back({.foot = {66, 65}, .normal = {1, 0}, .reach = 30, .finding = MeasurementLine::Finding::found});
-  const Picture lines = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{track});
+  const Picture lines = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
   EXPECT_GT(changed(curve, lines, {74, 64, 22, 3}), 20) << "the measurement line, outside of the curve";
 }
 
 TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {});
+  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   const cv::Rect all(0, 42, 200, 60);
-  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40)});
-  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40, Track<2>::State::predicted)});
+  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40)}, {});
+  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40, Provenance::predicted)}, {});
   EXPECT_LT(changed(empty, predicted, all), changed(empty, seen, all));
   EXPECT_GT(changed(empty, predicted, all), 50);
 }

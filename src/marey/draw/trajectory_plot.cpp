@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kShortest = 0.5;     // px; a step
 constexpr double kLongestSide = 900;  // units of the picture
-constexpr double kLeastSpan = 20;     // px shown at least, where nothing moves
+constexpr double kLeastSpan = 20;     // px shown at least, where nobody moves
 constexpr double kMargin = 56, kTop = 40, kBottom = 48;
 
 double round_step(double span) {
@@ -24,7 +24,7 @@ double round_step(double span) {
   return magnitude * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
 }
 
-/// The part of the image that is shown: what the trajectories span, and a twentieth more on each side.
+/// The part of the image that is shown: what the ways span, and a twentieth more on each side.
 Box window_of(const Vector<2>& low, const Vector<2>& high) {
   const Vector<2> middle = (low + high) / 2;
   const Vector<2> span = (1.1 * (high - low)).cwiseMax(kLeastSpan);
@@ -87,49 +87,50 @@ std::string css(const Colour& colour) {
 
 }  // namespace
 
-void TrajectoryPlot::add(std::int64_t frame, std::span<const Track<2>> tracks) {
-  for (const Track<2>& track : tracks) {
-    const Vector<2> place = track.outline ? track.outline->centre : track.position;
-    Path& path = paths_[track.id];
-    if (path.pieces.empty() || path.last_frame + 1 != frame) {
-      if (!path.pieces.empty() && path.pieces.back().back() != path.last) path.pieces.back().push_back(path.last);
-      path.pieces.push_back({place});
-      path.name = track.label.empty() ? fmt::format("{}", number(track.id)) : track.label;
-    } else if ((place - path.pieces.back().back()).norm() >= kShortest) {
-      path.pieces.back().push_back(place);
+void TrajectoryPlot::add(const Instant& instant) {
+  names_.add(instant.named);
+  for (const Sample& sample : instant.samples) {
+    const Vector<2> place = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
+    Way& way = ways_[sample.track];
+    if (way.pieces.empty() || way.last_frame + 1 != instant.index) {
+      if (!way.pieces.empty() && way.pieces.back().back() != way.last) way.pieces.back().push_back(way.last);
+      way.pieces.push_back({place});
+      way.name = names_.shown(sample.track);
+    } else if ((place - way.pieces.back().back()).norm() >= kShortest) {
+      way.pieces.back().push_back(place);
     }
-    path.last = place;
-    path.last_frame = frame;
+    way.last = place;
+    way.last_frame = instant.index;
   }
 }
 
 std::string TrajectoryPlot::to_svg(const std::string& title) const {
   Vector<2> low(HUGE_VAL, HUGE_VAL), high(-HUGE_VAL, -HUGE_VAL);
-  for (const auto& [id, path] : paths_) {
-    for (const auto& piece : path.pieces) {
+  for (const auto& [id, way] : ways_) {
+    for (const auto& piece : way.pieces) {
       for (const Vector<2>& place : piece) {
         low = low.cwiseMin(place);
         high = high.cwiseMax(place);
       }
     }
   }
-  if (paths_.empty()) low = high = Vector<2>::Zero();
+  if (ways_.empty()) low = high = Vector<2>::Zero();
   Page page(window_of(low, high));
   page.axes(title);
-  for (const auto& [id, path] : paths_) {
+  for (const auto& [id, way] : ways_) {
     const std::string colour = css(colour_of(number(id)));
-    for (std::size_t i = 0; i < path.pieces.size(); ++i) {
+    for (std::size_t i = 0; i < way.pieces.size(); ++i) {
       std::string points;
-      for (const Vector<2>& place : path.pieces[i])
+      for (const Vector<2>& place : way.pieces[i])
         fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ", page.x(place.x()), page.y(place.y()));
-      if (i + 1 == path.pieces.size() && path.pieces[i].back() != path.last)
-        fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f}", page.x(path.last.x()), page.y(path.last.y()));
+      if (i + 1 == way.pieces.size() && way.pieces[i].back() != way.last)
+        fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f}", page.x(way.last.x()), page.y(way.last.y()));
       page.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.6" stroke-linejoin="round"/>)", points, colour);
     }
-    const Vector<2>& begin = path.pieces.front().front();
+    const Vector<2>& begin = way.pieces.front().front();
     page.add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>)", page.x(begin.x()), page.y(begin.y()), colour);
     page.add(R"(<text x="{:.1f}" y="{:.1f}" fill="{}">{}</text>)", page.x(begin.x()) + 5, page.y(begin.y()) - 4, colour,
-             escaped(path.name));
+             escaped(way.name));
   }
   return std::move(page).finish();
 }

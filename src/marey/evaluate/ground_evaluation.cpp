@@ -46,8 +46,9 @@ GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<c
       if (column == assign::LinearAssigner::nobody) continue;
       const PersonPlace &is = walk.rows()[row], &said = walk.columns()[static_cast<std::size_t>(column)];
       position.push_back((is.place - said.place).norm());
-      speed.push_back(std::abs(is.velocity.norm() - said.velocity.norm()));
-      velocity.push_back((is.velocity - said.velocity).norm());
+      if (!is.velocity || !said.velocity) continue;
+      speed.push_back(std::abs(is.velocity->norm() - said.velocity->norm()));
+      velocity.push_back((*is.velocity - *said.velocity).norm());
     }
   };
   const Judged judged = judge(truth, tracks, farthest, close, matched);

@@ -14,7 +14,7 @@ struct PersonPlace {
   std::int32_t frame = 0;
   std::int32_t id = 0;
   Vector<2> place = Vector<2>::Zero();     ///< m
-  Vector<2> velocity = Vector<2>::Zero();  ///< m/s
+  std::optional<Vector<2>> velocity = {};  ///< m/s
 };
 
 /// What became of one true person.
@@ -40,8 +40,8 @@ struct GroundEvaluation {
   std::vector<PersonFate> people;
   /// Over CLEAR's matches; none without.
   std::optional<ErrorSpread> position;  ///< m
-  std::optional<ErrorSpread> speed;     ///< of the amount of the velocity, m/s
-  std::optional<ErrorSpread> velocity;  ///< of the difference of the velocities, m/s
+  std::optional<ErrorSpread> speed;     ///< of the amount of the velocity, m/s, where both are known
+  std::optional<ErrorSpread> velocity;  ///< of the difference of the velocities, m/s, likewise
 };
 
 /// Judges places by their distance: up to `farthest` m they may match, and for HOTA the similarity is 1 − distance / farthest.

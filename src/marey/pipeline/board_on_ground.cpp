@@ -7,7 +7,7 @@
 #include "marey/calibrate/board/board_detector.h"
 #include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
-#include "marey/source/open_source.h"
+#include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
 namespace {
@@ -16,15 +16,14 @@ constexpr int kMostPictures = 50;     // of a source that are searched for the b
 constexpr double kDisagree_m = 0.05;  // between cameras
 
 std::optional<Rigid3> camera_from_board(const RigCamera& camera, const calibrate::board::Board& board) {
-  const auto source = source::open_source(camera.source, camera.rate_hz);
+  Feed feed(camera, CameraId{}, {.ahead = 0});
   const calibrate::board::BoardDetector detector(board);
   for (int i = 0; i < kMostPictures; ++i) {
-    const auto frame = source->next();
-    if (!frame) break;
-    const Picture picture = camera.region ? Picture(frame->picture.luma()(*camera.region)) : frame->picture;
-    const auto view = detector.detect(picture);
+    const auto given = feed.next();
+    if (!given) break;
+    const auto view = detector.detect(given->frame.picture);
     if (!view) continue;
-    if (const auto pose = calibrate::board::board_pose(board, *view, *camera.lens)) return pose;
+    if (const auto pose = calibrate::board::board_pose(board, *view, *feed.camera().lens)) return pose;
   }
   return std::nullopt;
 }

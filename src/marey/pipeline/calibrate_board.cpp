@@ -11,9 +11,8 @@
 #include "marey/calibrate/lens_calibration.h"
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
+#include "marey/pipeline/feed.h"
 #include "marey/pipeline/find_boards.h"
-#include "marey/pipeline/read_ahead.h"
-#include "marey/source/open_source.h"
 #include "marey/source/picture_files.h"
 
 namespace marey::pipeline {
@@ -57,13 +56,14 @@ geometry::Lens lens_by_board(const RigCamera& camera, const calibrate::board::Bo
 
 calibrate::board::BoardRigCamera look(RigCamera& camera, const calibrate::board::BoardDetector& detector,
                                       const BoardRunOptions& options) {
-  const auto source = read_ahead(source::open_source(camera.source, camera.rate_hz));
+  RigCamera by_its_own_clock = camera;
+  by_its_own_clock.offset_s.reset();
+  Feed feed(by_its_own_clock, CameraId{});
   FindBoardsOptions how;
-  how.region = camera.region;
   if (options.progress) {
     how.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { options.progress(camera.name, done, all); };
   }
-  const BoardSightings seen = find_boards(*source, detector, how);
+  const BoardSightings seen = find_boards(feed, detector, how);
   if (seen.sightings.empty()) {
     throw Error("camera \"{}\": the board {} is in none of its {} pictures; are its kind, its numbers and its colours as given?",
                 camera.name, calibrate::board::to_string(detector.board()), seen.frames);

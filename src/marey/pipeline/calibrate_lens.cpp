@@ -7,8 +7,7 @@
 
 #include "marey/calibrate/board/choose_views.h"
 #include "marey/core/error.h"
-#include "marey/pipeline/read_ahead.h"
-#include "marey/source/open_source.h"
+#include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
 namespace {
@@ -18,12 +17,14 @@ constexpr std::int64_t kFramesLookedAt = 400;  // of a long film: neighbours sho
 }  // namespace
 
 LensRun calibrate_lens_from(const std::string& input, const calibrate::board::Board& board, const LensRunOptions& options) {
-  const auto source = read_ahead(source::open_source(input));
+  RigCamera camera;
+  camera.source = input;
+  camera.region = options.region;
+  Feed feed(camera, CameraId{});
   FindBoardsOptions how;
-  how.every = std::max<std::int64_t>(1, source->info().frame_count.value_or(0) / kFramesLookedAt);
-  how.region = options.region;
+  how.every = std::max<std::int64_t>(1, feed.info().frame_count.value_or(0) / kFramesLookedAt);
   how.progress = options.progress;
-  const BoardSightings found = find_boards(*source, calibrate::board::BoardDetector(board), how);
+  const BoardSightings found = find_boards(feed, calibrate::board::BoardDetector(board), how);
   if (found.sightings.empty())
     throw Error(
         "{}: the board {} is in none of the {} pictures looked at; are its kind, its numbers of {} and its colours as given?",

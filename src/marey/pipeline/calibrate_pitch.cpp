@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/rig.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
-#include "marey/source/open_source.h"
+#include "marey/pipeline/feed.h"
+#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {
@@ -22,7 +22,6 @@ namespace {
 // The empty ground is the median of this many pictures, spread over this long a beginning: who moves is in few of them.
 constexpr int kPictures = 15;
 constexpr double kSeconds = 60;
-constexpr double kUsualRate = 25;
 constexpr double kMargin = 2;  // m round the pitch, where people still count
 
 cv::Mat as_bytes(const cv::Mat& luma) {
@@ -33,21 +32,19 @@ cv::Mat as_bytes(const cv::Mat& luma) {
 }
 
 /// The median over time of each pixel, 8-bit luma.
-cv::Mat empty_ground(Source& source, const std::optional<cv::Rect>& region) {
-  const double rate = source.info().rate_hz.value_or(kUsualRate);
-  double span = kSeconds * rate;
-  if (source.info().frame_count) span = std::min(span, static_cast<double>(*source.info().frame_count));
+cv::Mat empty_ground(Feed& feed) {
+  double span = kSeconds * feed.rate_hz();
+  if (feed.info().frame_count) span = std::min(span, static_cast<double>(*feed.info().frame_count));
   const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kPictures));
   std::vector<cv::Mat> pictures;
   while (pictures.size() < kPictures) {
-    const auto frame = source.next();
-    if (!frame) break;
-    if (frame->index % step != 0) continue;
-    const cv::Mat luma = as_bytes(frame->picture.luma());
-    if (!pictures.empty() && luma.size() != source.info().size) continue;
-    pictures.push_back(region ? luma(*region & cv::Rect({}, luma.size())).clone() : luma.clone());
+    const auto given = feed.next();
+    if (!given) break;
+    if (given->frame.index % step != 0) continue;
+    const cv::Mat luma = as_bytes(given->frame.picture.luma());
+    if (luma.size() == feed.info().size) pictures.push_back(luma.clone());
   }
-  if (pictures.empty()) throw Error("{}: not one frame could be read", source.info().name);
+  if (pictures.empty()) throw Error("{}: not one frame could be read", feed.info().name);
   cv::Mat median(pictures[0].size(), CV_8UC1);
   std::vector<unsigned char> values(pictures.size());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -68,8 +65,10 @@ calibrate::pitch::PitchView view_of(RigCamera& camera, const std::string& clicks
   for (const format::PitchClicks::Point& click : clicks.points) view.points.push_back({click.ground, click.pixel, click.name});
   for (const format::PitchClicks::Line& line : clicks.lines) view.lines.push_back({line.from, line.to, line.pixels});
   if (!camera.source.empty()) {
-    const auto source = source::open_source(camera.source, camera.rate_hz);
-    view.empty_ground = empty_ground(*source, camera.region);
+    RigCamera uncalibrated = camera;  // of whatever size its pictures are
+    uncalibrated.size.reset();
+    Feed feed(uncalibrated, CameraId{}, {.ahead = 0});
+    view.empty_ground = empty_ground(feed);
     view.size = view.empty_ground.size();
     camera.size = view.size;
   } else if (camera.size) {
@@ -159,8 +158,8 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options) {
   const bool at_origin = run.calibration.corner.norm() < 0.01;
   const reconstruct::GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt,
                                      kMargin);
-  RunHooks hooks;
-  hooks.progress = [&](const TrackProgress& now) {
+  Hooks hooks;
+  hooks.progress = [&](const Progress& now) {
     options.progress("comparing clocks", static_cast<int>(now.done), static_cast<int>(now.total.value_or(0)));
   };
   try {

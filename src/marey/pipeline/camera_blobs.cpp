@@ -2,21 +2,20 @@
 
 #include <mutex>
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/pipeline/blob_feed.h"
+#include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
 namespace {
 
-std::vector<calibrate::wand::BlobFrame> all_of(BlobFeed& feed, double offset_s, const std::function<void()>& frame_done) {
+std::vector<calibrate::wand::BlobFrame> all_of(Feed& feed, double offset_s, const std::function<void()>& frame_done) {
   std::vector<calibrate::wand::BlobFrame> frames;
   while (const auto seen = feed.next()) {
-    calibrate::wand::BlobFrame& blobs = frames.emplace_back(calibrate::wand::BlobFrame{seconds(seen->time) - offset_s, {}});
-    for (const Observation<2>& blob : seen->blobs) blobs.blobs.push_back(blob.value);
+    calibrate::wand::BlobFrame& blobs = frames.emplace_back(calibrate::wand::BlobFrame{seconds(seen->frame.time) - offset_s, {}});
+    for (const Detection& blob : *seen->detections) blobs.blobs.push_back(blob.centre);
     frame_done();
   }
   return frames;
@@ -49,7 +48,11 @@ CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, 
     if (camera.source.empty())
       throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
   }
-  const auto feeds = open_videos(rig, options, std::nullopt);
+  auto feeds = open_feeds(rig, {.steady_times = true, .ahead = 4});
+  for (std::size_t c = 0; c < feeds.size(); ++c) {
+    feeds[c].find(std::make_unique<detect::markers::MarkerDetector>(options));
+    rig.cameras[c] = feeds[c].camera();
+  }
   CameraBlobs blobs;
   blobs.seen.resize(feeds.size());
   std::mutex telling;
@@ -60,10 +63,9 @@ CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, 
     if (progress) progress(done);
   };
   tbb::parallel_for(std::size_t{0}, feeds.size(),
-                    [&](std::size_t c) { blobs.seen[c] = all_of(*feeds[c], rig.cameras[c].offset_s.value_or(0), frame_done); });
+                    [&](std::size_t c) { blobs.seen[c] = all_of(feeds[c], rig.cameras[c].offset_s.value_or(0), frame_done); });
   for (std::size_t c = 0; c < feeds.size(); ++c) {
-    for (const std::string& sentence : feeds[c]->warnings())
-      blobs.warnings.push_back(fmt::format("{}: {}", rig.cameras[c].name, sentence));
+    for (std::string& sentence : feeds[c].warnings()) blobs.warnings.push_back(std::move(sentence));
   }
   return blobs;
 }

@@ -6,32 +6,23 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/calibrate/board/sharpness.h"
-#include "marey/core/error.h"
 
 namespace marey::pipeline {
 namespace {
 
 constexpr std::size_t kAtOnce = 16;  // frames
 
-Picture cut_out(const Picture& whole, const std::optional<cv::Rect>& region) {
-  return region ? Picture(whole.luma()(*region)) : whole;
-}
-
 }  // namespace
 
-BoardSightings find_boards(Source& source, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options) {
-  const SourceInfo& info = source.info();
+BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options) {
   BoardSightings found;
-  found.size = options.region ? options.region->size() : info.size;
-  if (options.region && (*options.region & cv::Rect({}, info.size)) != *options.region)
-    throw Error("{}: the region {}x{} at ({}, {}) is not within its pictures of {}x{} px", info.name, options.region->width,
-                options.region->height, options.region->x, options.region->y, info.size.width, info.size.height);
+  found.size = feed.info().size;
   std::vector<Frame> batch;
   std::vector<std::optional<BoardSighting>> seen;
   const auto look = [&] {
     seen.assign(batch.size(), std::nullopt);
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-      const Picture picture = cut_out(batch[i].picture, options.region);
+      const Picture& picture = batch[i].picture;
       auto view = detector.detect(picture);
       if (view)
         seen[i] = BoardSighting{batch[i].index, batch[i].time, calibrate::board::sharpness_of(picture, *view), std::move(*view)};
@@ -43,14 +34,14 @@ BoardSightings find_boards(Source& source, const calibrate::board::BoardDetector
     batch.clear();
   };
   std::int64_t count = 0;
-  while (auto frame = source.next()) {
-    if (count++ % options.every == 0) batch.push_back(std::move(*frame));
+  while (auto next = feed.next()) {
+    if (count++ % options.every == 0) batch.push_back(std::move(next->frame));
     if (batch.size() < kAtOnce) continue;
     look();
-    if (options.progress) options.progress(count, info.frame_count);
+    if (options.progress) options.progress(count, feed.info().frame_count);
   }
   look();
-  found.warnings = source.warnings();
+  found.warnings = feed.warnings();
   return found;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marey/calibrate/board/board_detector.h"
-#include "marey/core/source.h"
+#include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
 
@@ -21,19 +21,18 @@ struct BoardSighting {
 
 /// All that one camera saw of a board.
 struct BoardSightings {
-  cv::Size size;                         ///< px, of the region where there is one
+  cv::Size size;                         ///< px
   std::int64_t frames = 0;               ///< looked at
   std::vector<BoardSighting> sightings;  ///< in the order of time
-  std::vector<std::string> warnings;     ///< the source's
+  std::vector<std::string> warnings;     ///< the feed's
 };
 
 struct FindBoardsOptions {
   std::int64_t every = 1;                                                   ///< look at every so many-th frame only
-  std::optional<cv::Rect> region;                                           ///< px: the camera's part of a larger picture
   std::function<void(std::int64_t, std::optional<std::int64_t>)> progress;  ///< frames done and in all; may be empty
 };
 
-/// Looks for the board in the source's frames, several at once. Throws Error where the region is not within the picture.
-BoardSightings find_boards(Source& source, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options = {});
+/// Looks for the board in the camera's frames, several at once.
+BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options = {});
 
 }  // namespace marey::pipeline

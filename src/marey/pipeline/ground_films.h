@@ -1,68 +1,64 @@
-// What is made of ground tracks when they are known: films of each camera and from above, and the boxes in a camera's view. While
-// tracking goes on, ViewLog notes whose box was seen where; afterwards boxes are those that were seen, and where nobody was seen,
-// those that a person standing there would have.
+// What is made of people on the ground for the eye: the ground from above as a film, and the boxes in one camera's view.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
-#include "marey/draw/canvas.h"
-#include "marey/pipeline/ground_cameras.h"
-#include "marey/pipeline/run.h"
+#include "marey/core/sink.h"
+#include "marey/core/track_names.h"
+#include "marey/core/whole_file.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/draw/pitch_view.h"
 #include "marey/reconstruct/ground_area.h"
-#include "marey/track/ground/ground_recorder.h"
 
 namespace marey::pipeline {
 
-/// Whose box was where in one camera's pictures; 24 bytes a person and frame.
-class ViewLog {
+/// The boxes of everybody in the view of one camera, as MOT text by that camera's own frames.
+class ViewBoxFile final : public Sink {
  public:
-  /// The camera gave its frame `own` to the instant `frame`.
-  void add_frame(std::int32_t frame, std::int32_t own) { frames_.push_back({frame, own}); }
-  void add_box(std::int32_t frame, TrackId track, const Box& box);
+  /// Throws Error where it cannot be written.
+  ViewBoxFile(const std::string& path, CameraId camera) : path_(path), camera_(camera), file_(path) {}
 
-  struct FramePair {
-    std::int32_t instant = 0, own = 0;
-  };
-  std::span<const FramePair> frames() const { return frames_; }
-
-  /// Puts persons (index into the recording's people) in the place of tracks; boxes of nobody are forgotten.
-  void name(const std::function<std::optional<int>(TrackId, std::int32_t frame)>& person_of);
-  /// The box of this person at this instant, where the camera saw it. After `name`.
-  std::optional<Box> box(std::int32_t frame, std::int32_t person) const;
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& /*header*/) override { return {.boxes = true}; }
+  void write(const Instant& instant) override;
+  void finish() override { file_.finish(); }
 
  private:
-  struct Row {
-    std::int32_t frame = 0, who = 0;
-    float left = 0, top = 0, width = 0, height = 0;
+  std::string path_;
+  CameraId camera_;
+  WholeFile file_;
+};
+
+/// A film of the ground from above, a picture for each instant. Over a pitch it grows with the run; of a ground without one it is
+/// drawn at the end, when it is known where people were.
+class PitchViewFilm final : public Sink {
+ public:
+  /// Throws Error where it cannot be written.
+  PitchViewFilm(const std::string& path, const reconstruct::GroundArea& area, std::optional<double> rate_hz);
+
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& header) override;
+  void write(const Instant& instant) override;
+  void finish() override;
+
+ private:
+  struct Moment {
+    Timestamp time{};
+    std::vector<draw::PitchView::Mark> marks;
   };
-  std::vector<FramePair> frames_;
-  std::vector<Row> rows_;  // by frame, then by who once named
+  std::vector<draw::PitchView::Mark> marks_of(const Instant& instant) const;
+  void open(const Vector<2>& low, const Vector<2>& high);
+  void draw(const Moment& moment);
+
+  std::string path_;
+  reconstruct::GroundArea area_;
+  std::optional<double> rate_hz_;
+  TrackNames names_;
+  std::optional<draw::PitchView> view_;
+  std::optional<draw::MovieWriter> movie_;
+  std::vector<Moment> waiting_;
 };
-
-/// All that the films show. `recording` is in the user's coordinates.
-struct GroundShow {
-  const GroundRecording& recording;
-  const reconstruct::GroundArea& area;
-  const GroundCameras& cameras;
-  std::vector<draw::Colour> colours;  ///< of each person
-  const RunHooks& hooks;
-};
-
-/// The box of each person who may be seen in the view of camera `number`, as MOT text by that camera's own frames. Throws Error
-/// where it cannot be written.
-void write_view_boxes(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path);
-
-/// A film of camera `number` with boxes, numbers and ways on the ground. Whether it was stopped. Throws Error where it cannot be
-/// written.
-bool film_view(const GroundShow& show, std::size_t number, const ViewLog& log, const std::string& path);
-
-/// A film of the ground from above, a picture for each instant from the first to the last of `times` (s, by instant).
-bool film_ground(const GroundShow& show, std::span<const double> times, const std::string& path);
 
 }  // namespace marey::pipeline

@@ -1,12 +1,12 @@
 #include "marey/pipeline/ground_offsets.h"
 
 #include <algorithm>
-#include <mutex>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "marey/pipeline/ground_cameras.h"
+#include "marey/pipeline/feed.h"
+#include "marey/pipeline/ground_camera.h"
 
 namespace marey::pipeline {
 namespace {
@@ -18,40 +18,42 @@ bool looks_at_ground(const RigCamera& camera) {
   return (!camera.source.empty() || !camera.detections.empty()) && (camera.camera_from_world || camera.ground_from_image);
 }
 
-/// Follows people in one camera alone.
-class Alone {
+/// Follows people in one camera alone, by its own clock.
+class SingleCamera {
  public:
-  Alone(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
-      : cameras_(rig_of(camera), area, {options.eyes, options.rate_hz}),
-        tracker_(track::ground::make_ground_tracker(options.tracker, cameras_.views())),
+  SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
+      : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
+        camera_(feed_, area, {.background = options.background}),
+        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view()})),
         seconds_(options.seconds) {}
 
   std::optional<std::int64_t> frames() const {
-    const auto all = cameras_.frame_count();
+    const auto all = feed_.info().frame_count;
     if (!all) return std::nullopt;
-    return std::min(*all, static_cast<std::int64_t>(seconds_ * cameras_.rate_hz().value_or(25)));
+    return std::min(*all, static_cast<std::int64_t>(seconds_ * feed_.rate_hz()));
   }
 
   /// Takes in one frame; false at the end.
   bool step() {
-    if (!cameras_.next() || seconds(cameras_.time()) > seconds_) return false;
-    const auto looks = cameras_.look(tracker_->expected(cameras_.time()));
-    tracker_->step(cameras_.time(), looks);
-    log_.add(looks, tracker_->claims());
+    const auto given = feed_.next();
+    if (!given || seconds(given->frame.time) > seconds_) return false;
+    const Timestamp now = given->frame.time;
+    const auto seen = camera_.observe(*given, tracker_->expected(now));
+    tracker_->step(now, {&seen, 1});
+    log_.add({&seen, 1}, tracker_->claims());
     return true;
   }
 
   std::vector<calibrate::pitch::GroundPath> paths() const { return log_.paths(0); }
 
  private:
-  static Rig rig_of(const RigCamera& camera) {
-    Rig rig;
-    rig.cameras.push_back(camera);
-    rig.cameras[0].offset_s.reset();
-    return rig;
+  static RigCamera without_offset(RigCamera camera) {
+    camera.offset_s.reset();
+    return camera;
   }
 
-  GroundCameras cameras_;
+  Feed feed_;
+  GroundCamera camera_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   double seconds_;
   GroundPathLog log_{{0.0}};
@@ -60,17 +62,17 @@ class Alone {
 /// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
                                                                     const reconstruct::GroundArea& area,
-                                                                    const RigOffsetsOptions& options, const RunHooks& hooks) {
-  std::vector<std::unique_ptr<Alone>> runs(cameras.size());
+                                                                    const RigOffsetsOptions& options, const Hooks& hooks) {
+  std::vector<std::unique_ptr<SingleCamera>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
-                    [&](std::size_t i) { runs[i] = std::make_unique<Alone>(*cameras[i], area, options); });
+                    [&](std::size_t i) { runs[i] = std::make_unique<SingleCamera>(*cameras[i], area, options); });
   std::vector<char> goes_on(cameras.size(), 1);
   const auto total = runs.front()->frames();
   for (std::int64_t done = 1; std::find(goes_on.begin(), goes_on.end(), 1) != goes_on.end(); ++done) {
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (goes_on[i]) goes_on[i] = runs[i]->step() ? 1 : 0;
     });
-    if (hooks.tell({TrackProgress::Step::clocks, done, total})) break;
+    if (hooks.report({"comparing clocks", done, total}) == Continue::no) break;
   }
   std::vector<std::vector<calibrate::pitch::GroundPath>> paths;
   for (const auto& run : runs) paths.push_back(run->paths());
@@ -128,7 +130,7 @@ bool lacks_offsets(const Rig& rig) {
 }
 
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options,
-                            const RunHooks& hooks) {
+                            const Hooks& hooks) {
   RigOffsets result;
   std::vector<const RigCamera*> cameras;
   std::vector<double> assumed;

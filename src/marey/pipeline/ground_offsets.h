@@ -10,7 +10,7 @@
 
 #include "marey/calibrate/pitch/ground_offset.h"
 #include "marey/core/rig.h"
-#include "marey/pipeline/people_eyes.h"
+#include "marey/detect/background/background.h"
 #include "marey/pipeline/run.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -36,7 +36,7 @@ class GroundPathLog {
 };
 
 struct RigOffsetsOptions {
-  DetectionStageOptions eyes;
+  detect::background::BackgroundOptions background;
   std::optional<double> rate_hz;  ///< of cameras of which the rig does not say it
   track::ground::GroundTrackerOptions tracker;
   double seconds = 60;  ///< of each camera that are looked at
@@ -62,7 +62,7 @@ bool lacks_offsets(const Rig& rig);
 /// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error where a camera cannot be
 /// read.
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options = {},
-                            const RunHooks& hooks = {});
+                            const Hooks& hooks = {});
 
 /// Writes them into the rig where it says none; cameras for which none was found stay without.
 void enter_offsets(Rig& rig, const RigOffsets& offsets);

@@ -1,10 +1,11 @@
 // Judging tracks on the ground: which instants of the two recordings are the same, then the comparison place by place, then the
-// lengths of the paths.
+// paths' lengths. A recording's period is the median time between two of its instants.
 #include "marey/pipeline/judge_match.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "marey/analyse/smooth_path.h"
 #include "marey/evaluate/pair_instants.h"
@@ -13,57 +14,79 @@ namespace marey::pipeline {
 namespace {
 
 constexpr double kSlowest = 0.25;  // s between instants up to which a way between them is known
-bool has_velocities(const GroundRecording& recording) {
-  return std::any_of(recording.samples.begin(), recording.samples.end(),
-                     [](const auto& sample) { return sample.velocity != Vector<2>::Zero(); });
-}
 
-/// Velocities of smoothed ways. What is on no way, because it stands alone, keeps 0.
-GroundRecording with_velocities(GroundRecording recording) {
-  std::vector<std::vector<std::size_t>> samples_of(recording.people.size());
-  for (std::size_t i = 0; i < recording.samples.size(); ++i)
-    samples_of[static_cast<std::size_t>(recording.samples[i].person)].push_back(i);
-  for (const auto& mine : samples_of) {
-    std::vector<analyse::TimedPlace> measured;
-    for (const std::size_t i : mine) {
-      const auto& sample = recording.samples[i];
-      if (measured.empty() || sample.time > measured.back().time) measured.push_back({sample.time, sample.place});
+/// A velocity of each row of a track: as recorded, else of smoothed paths. What is on no path, because it stands alone, has none.
+using Velocities = std::vector<std::optional<Vector<2>>>;
+
+Velocities velocities_of(const Recording& recording, const TrackColumns& track, bool recorded) {
+  Velocities velocities(track.size());
+  if (recorded) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      if (const auto velocity = track.velocity(row)) velocities[row] = velocity->head<2>();
     }
-    const std::vector<analyse::Path> paths = analyse::smooth_paths(measured);
-    for (const std::size_t i : mine) {
-      auto& sample = recording.samples[i];
-      for (const analyse::Path& path : paths) {
-        const double at = (sample.time - path.start_s) / path.step_s;
-        if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
-        const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
-        sample.velocity = path.velocity[std::min(nearest, path.velocity.size() - 1)];
-      }
+    return velocities;
+  }
+  const std::vector<analyse::Path> paths = analyse::paths_of(recording, track);
+  for (std::size_t row = 0; row < track.size(); ++row) {
+    const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[row]));
+    for (const analyse::Path& path : paths) {
+      const double at = (time - path.start_s) / path.step_s;
+      if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
+      const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
+      velocities[row] = path.velocity[std::min(nearest, path.velocity.size() - 1)];
     }
   }
-  return recording;
+  return velocities;
 }
 
-struct SharedWay {
-  std::vector<analyse::TimedPlace> truth, track;
+std::vector<evaluate::PersonPlace> places_of(const Recording& recording, const evaluate::CommonNumbers& numbers) {
+  const bool recorded = has_velocities(recording);
+  std::vector<Velocities> velocities;
+  for (const TrackColumns& track : recording.tracks()) velocities.push_back(velocities_of(recording, track, recorded));
+  std::vector<evaluate::PersonPlace> places;
+  places.reserve(static_cast<std::size_t>(recording.samples()));
+  InstantRows rows(recording);
+  for (std::size_t instant = 0; instant < numbers.size(); ++instant) {
+    if (!numbers[instant]) continue;
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = recording.tracks()[index];
+      places.push_back({*numbers[instant], marey::number(track.id()), track.place(row), velocities[index][row]});
+    }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  return places;
+}
+
+struct PathColumns {
+  std::vector<double> x, y;
+
+  void add(const Vector<2>& place) { x.push_back(place.x()), y.push_back(place.y()); }
+
+  double length(const std::vector<double>& times) const {
+    double length = 0;
+    for (const analyse::Path& path : analyse::smooth_paths(times, x, y)) {
+      for (std::size_t i = 1; i < path.place.size(); ++i) length += (path.place[i] - path.place[i - 1]).norm();
+    }
+    return length;
+  }
 };
 
-double length_of(const std::vector<analyse::TimedPlace>& way) {
-  double length = 0;
-  for (const analyse::Path& path : analyse::smooth_paths(way)) {
-    for (std::size_t i = 1; i < path.place.size(); ++i) length += (path.place[i] - path.place[i - 1]).norm();
-  }
-  return length;
-}
+struct SharedPath {
+  std::vector<double> times;
+  PathColumns truth, track;
+};
 
-/// The ways of people and of their tracks, over the instants that both have; `times` are those of the truth's frames.
-std::vector<PathLengths> way_lengths(const std::vector<evaluate::PersonPlace>& truth,
-                                     const std::vector<evaluate::PersonPlace>& tracks,
-                                     const std::vector<evaluate::PersonFate>& people, const std::map<std::int32_t, double>& times) {
+/// The paths of people and of their tracks, over the instants that both have; `times` are those of the common numbers, by the
+/// truth.
+std::vector<PathLengths> path_lengths(const std::vector<evaluate::PersonPlace>& truth,
+                                      const std::vector<evaluate::PersonPlace>& tracks,
+                                      const std::vector<evaluate::PersonFate>& people,
+                                      const std::map<std::int32_t, double>& times) {
   std::map<int, int> track_of;
   for (const evaluate::PersonFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;
   }
-  std::map<int, SharedWay> ways;
+  std::map<int, SharedPath> shared;
   std::size_t begin = 0;  // of the tracks' places in this frame
   for (const evaluate::PersonPlace& place : truth) {
     while (begin < tracks.size() && tracks[begin].frame < place.frame) ++begin;
@@ -72,44 +95,40 @@ std::vector<PathLengths> way_lengths(const std::vector<evaluate::PersonPlace>& t
     std::size_t theirs = begin;
     while (theirs < tracks.size() && tracks[theirs].frame == place.frame && tracks[theirs].id != track->second) ++theirs;
     if (theirs == tracks.size() || tracks[theirs].frame != place.frame) continue;
-    SharedWay& way = ways[place.id];
-    const double time = times.at(place.frame);
-    way.truth.push_back({time, place.place});
-    way.track.push_back({time, tracks[theirs].place});
+    SharedPath& path = shared[place.id];
+    path.times.push_back(times.at(place.frame));
+    path.truth.add(place.place);
+    path.track.add(tracks[theirs].place);
   }
   std::vector<PathLengths> lengths;
-  for (const auto& [id, way] : ways) lengths.push_back({id, length_of(way.truth), length_of(way.track)});
+  for (const auto& [id, path] : shared) lengths.push_back({id, path.truth.length(path.times), path.track.length(path.times)});
   return lengths;
 }
 
 }  // namespace
 
-MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& tracks, double farthest) {
+MatchJudgement judge_match(const Recording& truth, const Recording& tracks, double farthest) {
+  require_ground(truth, "judging places");
+  require_ground(tracks, "judging places");
   MatchJudgement judgement;
   const evaluate::InstantClock true_clock = evaluate::clock_of(truth), track_clock = evaluate::clock_of(tracks);
   const evaluate::InstantPairing pairing = evaluate::pair_instants(true_clock, track_clock);
   judgement.warnings = pairing.warnings;
   judgement.by_time = pairing.by_time;
-  const auto moving = [](const GroundRecording& recording, const evaluate::InstantClock& clock) {
-    const double period = clock.period.value_or(0);
-    return has_velocities(recording) || (period > 0 && period <= kSlowest);
+  const auto moving = [](const Recording& recording, const evaluate::InstantClock& clock) {
+    return has_velocities(recording) || (clock.period > 0 && clock.period <= kSlowest);
   };
-  const auto prepared = [](const GroundRecording& recording, const evaluate::CommonNumbers& numbers) {
-    return has_velocities(recording) ? evaluate::places_of(recording, numbers)
-                                     : evaluate::places_of(with_velocities(recording), numbers);
-  };
-  const std::vector<evaluate::PersonPlace> true_places = prepared(truth, pairing.truth),
-                                           track_places = prepared(tracks, pairing.tracks);
+  const std::vector<evaluate::PersonPlace> true_places = places_of(truth, pairing.truth),
+                                           track_places = places_of(tracks, pairing.tracks);
   judgement.evaluation = evaluate::evaluate_ground(true_places, track_places, farthest);
   judgement.has_speed = moving(truth, true_clock) && moving(tracks, track_clock);
-  const double period = std::max(true_clock.period.value_or(0), track_clock.period.value_or(0));
+  const double period = std::max(true_clock.period, track_clock.period);
   if (period > 0 && period <= kSlowest) {
     std::map<std::int32_t, double> times;
-    for (const auto& instant : true_clock.instants) {
-      if (const auto number = pairing.truth.find(instant.frame); number != pairing.truth.end())
-        times[number->second] = instant.time;
+    for (std::size_t i = 0; i < pairing.truth.size(); ++i) {
+      if (pairing.truth[i]) times[*pairing.truth[i]] = true_clock.time(i);
     }
-    judgement.ways = way_lengths(true_places, track_places, judgement.evaluation.people, times);
+    judgement.ways = path_lengths(true_places, track_places, judgement.evaluation.people, times);
     double error = 0, length = 0;
     for (const PathLengths& way : judgement.ways) error += std::abs(way.track_m - way.true_m), length += way.true_m;
     if (length > 0) judgement.distance_error = error / length;

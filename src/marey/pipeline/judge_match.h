@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/evaluate/ground_evaluation.h"
 
 namespace marey::pipeline {
 
-/// How far a person went by the truth and by the track that is theirs, over the instants that both have. Ways are smoothed alike.
+/// How far a person went by the truth and by the track that is theirs, over the instants that both have. Paths are smoothed alike.
 struct PathLengths {
   int id = 0;
   double true_m = 0, track_m = 0;
@@ -27,7 +27,7 @@ struct MatchJudgement {
 
 /// Pairs the instants of both and judges the tracks. Instants go together by frame number where frames mean the same time in both,
 /// else by time, the nearest within half a period; where one file has instants more often, the other's instants alone are judged. A
-/// side without velocities gets them from its smoothed ways.
-MatchJudgement judge_match(const GroundRecording& truth, const GroundRecording& tracks, double farthest);
+/// side without velocities gets them from its smoothed paths. Throws Error where a recording is not of the ground in m.
+MatchJudgement judge_match(const Recording& truth, const Recording& tracks, double farthest);
 
 }  // namespace marey::pipeline

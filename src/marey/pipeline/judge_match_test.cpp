@@ -2,28 +2,50 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/core/error.h"
+
 namespace marey::pipeline {
 namespace {
 
+RecordingHeader on_the_pitch() {
+  RecordingHeader header;
+  header.name = "match";
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  return header;
+}
+
+struct Runners {
+  double rate_hz = 25;
+  double shift_m = 0;
+  bool with_velocity = true;
+  int every = 1;       ///< frame that is there
+  double stretch = 1;  ///< of the lengths
+  double later_s = 0;  ///< by the clock
+};
+
 /// Two people who run straight at 2 and 4 m/s for 10 s.
-GroundRecording runners(double rate_hz, int first_frame = 0, double shift_m = 0, bool with_velocity = true) {
-  GroundRecording recording;
-  recording.people = {{1, "", ""}, {2, "", ""}};
-  for (int i = 0; i <= static_cast<int>(10 * rate_hz); ++i) {
+Recording runners(const Runners& how = {}) {
+  Recording recording(on_the_pitch());
+  recording.header.rate_hz = how.rate_hz;
+  for (int i = 0; i <= static_cast<int>(10 * how.rate_hz); i += how.every) {
+    const double time = i / how.rate_hz;
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(time + how.later_s);
     for (int person = 0; person < 2; ++person) {
-      const double time = i / rate_hz, speed = 2 * (person + 1);
-      GroundRecording::Sample sample;
-      sample.frame = first_frame + i, sample.person = person, sample.time = time;
-      sample.place = {10 + speed * time, 20.0 * person + shift_m};
-      if (with_velocity) sample.velocity = {speed, 0};
-      recording.samples.push_back(sample);
+      const double speed = 2 * (person + 1);
+      Sample& sample = instant.samples.emplace_back();
+      sample.track = TrackId{person + 1};
+      sample.position = {10 + how.stretch * speed * time, 20.0 * person + how.shift_m, 0};
+      if (how.with_velocity) sample.velocity = Vector<3>(speed, 0, 0);
     }
+    recording.add(instant);
   }
   return recording;
 }
 
 TEST(JudgeMatch, SameRateGoesByFrame) {
-  const MatchJudgement judgement = judge_match(runners(25), runners(25, 0, 0.3), 1);
+  const MatchJudgement judgement = judge_match(runners(), runners({.shift_m = 0.3}), 1);
   EXPECT_FALSE(judgement.by_time);
   EXPECT_TRUE(judgement.warnings.empty());
   EXPECT_EQ(judgement.evaluation.scores.clear.matches, 502);
@@ -34,7 +56,7 @@ TEST(JudgeMatch, SameRateGoesByFrame) {
 
 TEST(JudgeMatch, OtherRatesGoByTime) {
   for (const double rate : {5.0, 12.5, 100.0}) {
-    const MatchJudgement judgement = judge_match(runners(25), runners(rate), 1);
+    const MatchJudgement judgement = judge_match(runners(), runners({.rate_hz = rate}), 1);
     EXPECT_TRUE(judgement.by_time) << rate;
     EXPECT_EQ(judgement.warnings.size(), 2U) << rate;
     EXPECT_DOUBLE_EQ(*judgement.evaluation.scores.clear.mota, 1) << rate;
@@ -44,9 +66,7 @@ TEST(JudgeMatch, OtherRatesGoByTime) {
 }
 
 TEST(JudgeMatch, SparseTruthIsJudgedWhereItIs) {
-  GroundRecording truth = runners(25, 0, 0, false);
-  std::erase_if(truth.samples, [](const auto& sample) { return sample.frame % 25 != 0; });
-  const MatchJudgement judgement = judge_match(truth, runners(25), 1);
+  const MatchJudgement judgement = judge_match(runners({.with_velocity = false, .every = 25}), runners(), 1);
   EXPECT_FALSE(judgement.by_time);
   EXPECT_EQ(judgement.evaluation.scores.clear.matches, 22);
   EXPECT_EQ(judgement.evaluation.scores.clear.false_positives, 0);
@@ -55,30 +75,34 @@ TEST(JudgeMatch, SparseTruthIsJudgedWhereItIs) {
 }
 
 TEST(JudgeMatch, SpeedsThatAFileLacksComeFromItsWays) {
-  const MatchJudgement judgement = judge_match(runners(25, 0, 0, false), runners(25), 1);
+  const MatchJudgement judgement = judge_match(runners({.with_velocity = false}), runners(), 1);
   EXPECT_TRUE(judgement.has_speed);
   EXPECT_NEAR(judgement.evaluation.speed->rms, 0, 1e-4);
 }
 
 TEST(JudgeMatch, ClocksThatDisagreeAreTold) {
-  GroundRecording tracks = runners(25);
-  for (auto& sample : tracks.samples) sample.time += 2;
-  const MatchJudgement judgement = judge_match(runners(25), tracks, 1);
+  const MatchJudgement judgement = judge_match(runners(), runners({.later_s = 2}), 1);
   ASSERT_EQ(judgement.warnings.size(), 1U);
   EXPECT_NE(judgement.warnings[0].find("2 s later"), std::string::npos);
   EXPECT_DOUBLE_EQ(*judgement.evaluation.scores.clear.mota, 1);
 }
 
 TEST(JudgeMatch, ALongerWayIsAnError) {
-  GroundRecording tracks = runners(25);
-  for (auto& sample : tracks.samples) sample.place.x() += 0.01 * (sample.place.x() - 10);
-  EXPECT_NEAR(*judge_match(runners(25), tracks, 1.5).distance_error, 0.01, 1e-3);
+  EXPECT_NEAR(*judge_match(runners(), runners({.stretch = 1.01}), 1.5).distance_error, 0.01, 1e-3);
 }
 
 TEST(JudgeMatch, NobodyIsAnAnswerToo) {
-  const MatchJudgement judgement = judge_match({}, {}, 1);
+  const Recording nobody(on_the_pitch());
+  const MatchJudgement judgement = judge_match(nobody, nobody, 1);
   EXPECT_FALSE(judgement.evaluation.scores.clear.mota);
-  EXPECT_EQ(judge_match(runners(25), {}, 1).evaluation.scores.clear.misses, 502);
+  EXPECT_EQ(judge_match(runners(), nobody, 1).evaluation.scores.clear.misses, 502);
+}
+
+TEST(JudgeMatch, PixelsAreRefused) {
+  Recording pixels = runners();
+  pixels.header.frame.kind = FrameOfReference::Kind::image;
+  EXPECT_THROW(judge_match(runners(), pixels, 1), Error);
+  EXPECT_THROW(judge_match(pixels, runners(), 1), Error);
 }
 
 }  // namespace

@@ -1,30 +1,33 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <utility>
 
+#include "marey/core/sink.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/trajectory_plot.h"
 
 namespace marey::pipeline {
 
 /// A plot of trajectories that becomes a file at the end of a run; that it can be written shows at the beginning.
-class PlotFile {
+class PlotFile final : public Sink {
  public:
   /// Throws Error where nothing can be written at `path`.
-  PlotFile(const std::string& path, std::string title) : file_(path), title_(std::move(title)) {}
+  explicit PlotFile(const std::string& path) : path_(path), file_(path) {}
 
-  void add(std::int64_t frame, std::span<const Track<2>> tracks) { plot_.add(frame, tracks); }
-
-  /// Throws Error where the place is full.
-  void finish() {
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& header) override {
+    title_ = "Trajectories in " + header.name;
+    return {};
+  }
+  void write(const Instant& instant) override { plot_.add(instant); }
+  void finish() override {
     file_.write(plot_.to_svg(title_));
     file_.finish();
   }
 
  private:
+  std::string path_;
   WholeFile file_;
   std::string title_;
   draw::TrajectoryPlot plot_;

@@ -1,11 +1,9 @@
 #include "marey/pipeline/reconstruct.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,227 +11,9 @@
 #include "marey/core/error.h"
 #include "marey/format/motion/motion.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/blob_feed.h"
-#include "marey/pipeline/instants.h"
-#include "marey/pipeline/set_labels.h"
-#include "marey/reconstruct/learned_noise.h"
-#include "marey/track/gap_filler.h"
 
 namespace marey::pipeline {
 namespace {
-
-constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
-
-constexpr double kVaguest = 1;  // px; a blob whose centre is known no better would widen every gate
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-class Reconstruction {
- public:
-  Reconstruction(Rig rig, const std::string& observations, const std::string& out, const ReconstructOptions& options,
-                 const RunHooks& hooks)
-      : rig_(std::move(rig)),
-        options_(options),
-        hooks_(hooks),
-        instants_(observations.empty() ? open_videos(rig_, options.markers, options.rate_hz)
-                                       : open_observations(observations, rig_, options.rate_hz),
-                  std::nullopt),
-        noise_(options.noise_px),
-        labels_(options.set),
-        filler_(frames_in(options.fill_s), frames_in(std::min(options.predict_s, options.fill_s))) {
-    if (instants_.rate_hz() <= 0) throw Error("not one frame could be read from any camera");
-    choose_cameras();
-    track::RosterTrackerOptions tracker = options.tracker;
-    if (!options.set.has_places()) tracker.labels = options.set.labels;
-    tracker_ = track::make_roster_tracker<3>(tracker);
-    writer_ = std::make_unique<format::take::TakeWriter>(
-        out,
-        TakeHeader{.name = out, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = instants_.rate_hz(), .rig = rig_});
-  }
-
-  ReconstructSummary operator()() {
-    while (const Instant* instant = instants_.next()) {
-      step(*instant);
-      summary_.stopped = hooks_.tell({TrackProgress::Step::tracking, summary_.frames, std::nullopt});
-      if (summary_.stopped) break;
-    }
-    if (summary_.frames == 0) throw Error("not one frame could be read from any camera");
-    filler_.finish();
-    drain();
-    writer_->finish();
-    return finish();
-  }
-
- private:
-  int frames_in(double duration) const { return static_cast<int>(std::lround(duration * instants_.rate_hz())); }
-
-  /// The cameras whose calibration is known, and their numbers among those.
-  void choose_cameras() {
-    std::vector<Camera> cameras;
-    for (const RigCamera& camera : rig_.cameras) {
-      const auto whole = camera.camera();
-      number_of_.push_back(whole ? static_cast<int>(cameras.size()) : -1);
-      if (whole) {
-        rig_number_.push_back(static_cast<int>(number_of_.size()) - 1);
-        cameras.push_back(*whole);
-      } else {
-        summary_.warnings.push_back(fmt::format("camera \"{}\" has no calibration and is left out", camera.name));
-      }
-    }
-    reconstruct::CorrespondOptions correspond = options_.correspond;
-    correspond.noise_px = noise_.px();
-    if (cameras.size() == 2) correspond.fewest_rays = 2;
-    corresponder_.emplace(std::move(cameras), correspond);
-  }
-
-  void step(const Instant& instant) {
-    seen_.clear();
-    for (Observation<2> blob : instant.seen) {
-      const int number = number_of_[static_cast<std::size_t>(marey::number(blob.camera))];
-      if (number < 0 || blob.covariance.trace() > 2 * kVaguest * kVaguest) continue;
-      blob.camera = CameraId{number};
-      seen_.push_back(blob);
-    }
-    const auto begin = Clock::now();
-    expect(instant.time);
-    const reconstruct::Correspondences* found = &corresponder_->match(seen_, expected_);
-    if (noise_.learn(*found)) {
-      corresponder_->set_noise(noise_.px());
-      if (summary_.frames == 0) found = &corresponder_->match(seen_, expected_);
-    }
-    const auto matched = Clock::now();
-    corresponding_.add(std::chrono::duration<double>(matched - begin).count());
-    points_.clear();
-    for (const reconstruct::Placed& placed : found->points) {
-      Observation<3> point;
-      point.value = placed.point.position;
-      point.covariance = placed.point.covariance;
-      points_.push_back(point);
-    }
-    const auto tracks = tracker_->step(instant.time, points_);
-    labels_.give(tracks);
-    tracking_.add(since(matched));
-    record(instant, *found, tracks);
-    drain();
-    ++summary_.frames;
-    summary_.seconds = seconds(instant.time);
-    chain_.add(since(begin));
-  }
-
-  void expect(Timestamp now) {
-    expected_.clear();
-    for (const Track<3>& track : tracker_->expected(now)) {
-      if (track.covariance.trace() < 3 * kSurePrediction * kSurePrediction) expected_.push_back(track);
-    }
-  }
-
-  void record(const Instant& instant, const reconstruct::Correspondences& found, std::span<const Track<3>> tracks) {
-    TakeFrame frame{.index = instant.index, .time = instant.time, .observations = {}, .points = {}};
-    for (const Observation<2>& blob : seen_) {
-      frame.observations.push_back({.camera = CameraId{rig_number_[static_cast<std::size_t>(number(blob.camera))]},
-                                    .pixel = blob.value,
-                                    .sigma = std::sqrt(std::max(0.0, blob.covariance.trace() / 2)),
-                                    .area = blob.box ? blob.box->area() : 0,
-                                    .track = {}});
-    }
-    for (const Track<3>& track : tracks) {
-      if (!track.confirmed) continue;
-      name(track);
-      if (!track.observation) continue;
-      const reconstruct::Placed& placed = found.points[static_cast<std::size_t>(*track.observation)];
-      TakePoint point;
-      point.track = track.id;
-      point.position = placed.point.position;
-      point.covariance = placed.point.covariance;
-      point.residual_px = placed.point.residual_px;
-      for (const int i : placed.seen) {
-        TakeObservation& blob = frame.observations[static_cast<std::size_t>(i)];
-        blob.track = track.id;
-        point.cameras |= CameraMask{1} << number(blob.camera);
-      }
-      squares_ += placed.point.residual_px * placed.point.residual_px;
-      ++summary_.measured;
-      frame.points.push_back(point);
-    }
-    summary_.observations += std::ssize(seen_);
-    summary_.unexplained += found.unexplained;
-    filler_.add(std::move(frame), tracks);
-  }
-
-  void name(const Track<3>& track) {
-    const std::string& label = track.label.empty() ? labels_.of(track.id) : track.label;
-    std::string& known = names_[track.id];
-    if (known == label) return;
-    known = label;
-    writer_->set_label(track.id, label);
-  }
-
-  void drain() {
-    const auto begin = Clock::now();
-    while (const auto frame = filler_.next()) {
-      for (const TakePoint& point : frame->points) {
-        summary_.filled += point.provenance == Provenance::filled;
-        summary_.predicted += point.provenance == Provenance::predicted;
-      }
-      writer_->write(*frame);
-    }
-    writing_.add(since(begin));
-  }
-
-  ReconstructSummary finish() {
-    summary_.rate_hz = instants_.rate_hz();
-    summary_.markers = std::ssize(names_);
-    for (const auto& [id, label] : names_) summary_.labelled += !label.empty();
-    summary_.noise_px = noise_.px();
-    if (summary_.measured > 0) summary_.residual_px = std::sqrt(squares_ / static_cast<double>(summary_.measured));
-    for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-      summary_.cameras.push_back({rig_.cameras[c].name, instants_.frames(c), instants_.missed(c)});
-      if (number_of_[c] >= 0 && instants_.frames(c) == 0) {
-        summary_.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", rig_.cameras[c].name));
-      } else if (instants_.missed(c) > 0) {
-        summary_.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others went on without it",
-                                                rig_.cameras[c].name, instants_.missed(c), summary_.frames));
-      }
-    }
-    const auto tell = [&](const char* stage, const StageTimes& times) {
-      summary_.stages.push_back({stage, times.count(), times.quantile(0.5), times.quantile(0.99)});
-    };
-    tell("decode", instants_.decoding());
-    tell("detect", instants_.detecting());
-    tell("correspond", corresponding_);
-    tell("track", tracking_);
-    tell("write", writing_);
-    tell("blobs to take", chain_);
-    for (const std::string& warning : instants_.warnings()) summary_.warnings.push_back(warning);
-    if (summary_.measured == 0) {
-      summary_.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and in step?");
-    }
-    return std::move(summary_);
-  }
-
-  Rig rig_;
-  ReconstructOptions options_;
-  RunHooks hooks_;
-  Instants instants_;
-  reconstruct::LearnedNoise noise_;
-  SetLabels labels_;
-  track::GapFiller filler_;
-  std::optional<reconstruct::Corresponder> corresponder_;
-  std::unique_ptr<track::Tracker<3>> tracker_;
-  std::unique_ptr<format::take::TakeWriter> writer_;
-  ReconstructSummary summary_;
-  StageTimes corresponding_, tracking_, writing_, chain_;
-  double squares_ = 0;
-  std::map<TrackId, std::string> names_;
-  std::vector<int> number_of_, rig_number_;  // rig's cameras to calibrated ones, and back
-  std::vector<Observation<2>> seen_;
-  std::vector<Track<3>> expected_;
-  std::vector<Observation<3>> points_;
-};
 
 /// A file that is gone with its owner.
 struct ForAWhile {
@@ -244,34 +24,93 @@ struct ForAWhile {
   }
 };
 
+class TakeSink final : public Sink {
+ public:
+  explicit TakeSink(const std::string& path) : path_(path) {}
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& header) override {
+    writer_.emplace(
+        path_,
+        TakeHeader{.name = path_, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = header.rate_hz, .rig = header.rig});
+    return {.seen = true};
+  }
+  void write(const Instant& instant) override {
+    for (const TrackName& name : instant.named) writer_->set_label(name.id, name.label);
+    TakeFrame frame{.index = instant.index, .time = instant.time, .observations = {}, .points = {}};
+    for (const SeenPoint& seen : instant.seen)
+      frame.observations.push_back({seen.camera, seen.pixel, seen.sigma.value_or(0), seen.area.value_or(0), seen.track});
+    for (const Sample& sample : instant.samples)
+      frame.points.push_back({sample.track, sample.position, sample.covariance, sample.provenance, sample.cameras,
+                              sample.residual_px, sample.residual_m});
+    writer_->write(frame);
+  }
+  void finish() override { writer_->finish(); }
+
+ private:
+  std::string path_;
+  std::optional<format::take::TakeWriter> writer_;
+};
+
 /// Most formats begin with what is known only at the end: the take is read twice.
 void rewrite(const std::string& take, const std::string& out, format::motion::MotionFormat format) {
-  const format::motion::MotionPlan plan =
-      format::motion::plan_of(*format::motion::open_motion(take, format::motion::MotionFormat::take), take);
-  const auto reader = format::motion::open_motion(take, format::motion::MotionFormat::take);
-  const auto writer = format::motion::create_motion(out, format, plan);
+  const format::motion::MotionPlan plan = plan_of(*open_motion(take, format::motion::MotionFormat::take), take);
+  const auto reader = open_motion(take, format::motion::MotionFormat::take);
+  const auto writer = create_motion(out, format, plan);
   while (const auto frame = reader->next()) writer->write(*frame);
   writer->finish();
 }
 
-}  // namespace
-
-track::RosterTrackerOptions space_tracker_options() {
-  return {.filter = filter::KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4},
-          .labels = {},
-          .max_speed = 15,
-          .marker_width = 0.02,
-          .place_noise = 1e-4,
-          .companions = true};
+Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInSpaceOptions& options) {
+  constexpr int kAhead = 4;  // frames of each camera
+  std::vector<Feed> feeds = observations.empty()
+                                ? open_feeds(rig, {.rate_hz = options.rate_hz, .steady_times = true, .ahead = kAhead}, true)
+                                : open_observations(observations, rig, options.rate_hz);
+  for (Feed& feed : feeds) {
+    if (feed.has_pictures()) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.markers));
+  }
+  return Clock(std::move(feeds), {.pace = ClockOptions::Pace::even, .interpolate = true});
 }
 
-ReconstructSummary reconstruct(Rig rig, const std::string& observations, const std::string& out, const ReconstructOptions& options,
-                               const RunHooks& hooks) {
+void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const std::string& name = rig.cameras[c].name;
+    summary.cameras.push_back({.name = name, .frames = clock.frames(c), .missed = clock.missed(c)});
+    if (rig.cameras[c].camera() && clock.frames(c) == 0) {
+      summary.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", name));
+    } else if (clock.missed(c) > 0) {
+      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others went on without it",
+                                             name, clock.missed(c), summary.frames));
+    }
+  }
+  const auto step = [](const char* name, const StageTimes& times) {
+    return Summary::StepTime{name, times.count(), times.quantile(0.5), times.quantile(0.99)};
+  };
+  summary.steps.insert(summary.steps.begin(), {step("decode", clock.decoding()), step("detect", clock.detecting())});
+}
+
+Summary record(const Rig& rig, const std::string& observations, const std::string& take, const MarkersInSpaceOptions& options,
+               const Hooks& hooks) {
+  Clock clock = clock_of(rig, observations, options);
+  if (clock.rate_hz() <= 0) throw Error("{}", "not one frame could be read from any camera");
+  Rig fitted = rig;
+  for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
+  const auto stage = markers_in_space(fitted, clock.rate_hz(), options);
+  Sinks sinks;
+  sinks.add(std::make_unique<TakeSink>(take));
+  Summary summary = run(*stage, clock, sinks, hooks);
+  report_cameras(clock, fitted, summary);
+  return summary;
+}
+
+}  // namespace
+
+Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out, const MarkersInSpaceOptions& options,
+                    const Hooks& hooks) {
   const auto format = format::motion::motion_format_of_name(out);
   if (!format) throw Error("{}: its ending is of no format; .marey is a take, {} are others", out, ".c3d, .trc and .csv");
-  if (*format == format::motion::MotionFormat::take) return Reconstruction(std::move(rig), observations, out, options, hooks)();
+  if (*format == format::motion::MotionFormat::take) return record(rig, observations, out, options, hooks);
   const ForAWhile take{out + ".part.marey"};
-  ReconstructSummary summary = Reconstruction(std::move(rig), observations, take.path, options, hooks)();
+  Summary summary = record(rig, observations, take.path, options, hooks);
   rewrite(take.path, out, *format);
   return summary;
 }

@@ -15,7 +15,6 @@
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/instants.h"
 #include "marey/pipeline/simulation_files.h"
 #include "marey/reconstruct/layout.h"
 #include "marey/simulate/room/room.h"
@@ -72,8 +71,8 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   write_room(scene, folder.path());
   const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   EXPECT_EQ(summary.frames, 600);
-  EXPECT_NEAR(summary.noise_px, 0.1, 0.02);
-  EXPECT_EQ(summary.stages.size(), 6);
+  EXPECT_NEAR(summary.figures.at("noise_px"), 0.1, 0.02);
+  EXPECT_EQ(summary.steps.size(), 5);
   Score score = score_of(folder / "walk.marey", scene);
   EXPECT_GT(score.points, 0.95 * 600 * 30);
   EXPECT_LT(static_cast<double>(score.far), 0.002 * static_cast<double>(score.points));
@@ -124,7 +123,7 @@ TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
   const simulate::room::RoomScene scene(
       {.motion = simulate::room::RoomMotion::still, .markers = 20, .frames = 60, .occlusion = false, .bump = {}});
   write_room(scene, folder.path());
-  ReconstructOptions options;
+  MarkersInSpaceOptions options;
   options.set.labels = scene.labels();
   const Rigid3 turned{geometry::rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
   for (const Vector<3>& place : scene.points(0)) options.set.places.push_back(turned * place);
@@ -221,7 +220,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   const std::string data = test::data("wing");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not here";
   const test::TemporaryFolder folder;
-  ReconstructOptions options;
+  MarkersInSpaceOptions options;
   options.markers.dark = true;
   options.markers.widest = 9;
   options.markers.min_area = 4;

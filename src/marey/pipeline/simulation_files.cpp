@@ -324,16 +324,19 @@ void write_match(const MatchFilesOptions& options, const std::string& folder, co
     files.push_back(std::make_unique<MatchCameraFiles>(cameras[i], options, place));
   }
   simulate::match::MatchTruth truth(scene);
-  std::vector<std::string> names;
-  for (const RigCamera& camera : scene.rig.cameras) names.push_back(camera.name);
-  format::match::GroundWriter writer((place / "truth.csv").string(), names);
+  format::match::GroundWriter writer((place / "truth.csv").string());
+  RecordingHeader header;
+  header.name = "truth.csv";
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = options.cameras.rate_hz;
+  header.rig = scene.rig;
+  writer.begin(header);
   for (std::int64_t frame = 0; frame < frames; ++frame) {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       cameras[i].advance();
       files[i]->write();
     });
-    const auto samples = truth.next(cameras);
-    for (std::size_t i = 0; i < samples.size(); ++i) writer.write(samples[i], truth.people()[i]);
+    writer.write(truth.next(cameras));
     if (progress) progress(frame + 1, frames);
   }
   for (const auto& each : files) each->finish();

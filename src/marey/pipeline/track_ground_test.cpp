@@ -48,8 +48,8 @@ GroundOutput to(const std::string& tracks) {
   return output;
 }
 
-TrackGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double margin = 2) {
-  TrackGroundOptions options;
+PeopleOnGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double margin = 2) {
+  PeopleOnGroundOptions options;
   options.pitch = pitch, options.margin = margin;
   return options;
 }
@@ -79,7 +79,7 @@ TEST(TrackGround, SixCamerasGiveEverybodyOneNumber) {
   const Rig rig = simulate(folder.path(), match(11, 24));
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch());
   EXPECT_EQ(summary.frames, 300);
-  EXPECT_EQ(summary.people, 25);
+  EXPECT_EQ(summary.tracks, 25);
   EXPECT_NEAR(summary.seconds, 299 / 12.5, 1e-6);
   const MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
   EXPECT_GT(*judgement.evaluation.scores.identity.f1, 0.97);
@@ -137,11 +137,13 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   Rig rig;
   rig.cameras = {plan("left", 0, folder / "left.txt"), plan("right", 51, folder / "right.txt")};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
-  EXPECT_EQ(summary.people, 2);
-  const GroundRecording found = format::match::read_ground(folder / "out.csv");
+  EXPECT_EQ(summary.tracks, 2);
+  const Recording found = format::match::read_ground(folder / "out.csv");
   std::map<int, CameraMask> seen_by;
-  for (const auto& sample : found.samples) seen_by[sample.person] |= sample.cameras;
-  EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{0, 3}, {1, 1}})) << "who walks is seen by both";
+  for (const TrackColumns& track : found.tracks()) {
+    for (const CameraMask cameras : track.cameras()) seen_by[number(track.id())] |= cameras;
+  }
+  EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{1, 3}, {2, 1}})) << "who walks is seen by both";
 }
 
 TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {
@@ -152,11 +154,11 @@ TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {
   test::write_file(folder / "boxes.txt", boxes);
   Rig rig;
   rig.cameras = {plan("above", 0, folder / "boxes.txt")};
-  const auto people = [&](double margin) { return track_ground(rig, to(folder / "out.csv"), over_pitch({50, 40}, margin)).people; };
+  const auto people = [&](double margin) { return track_ground(rig, to(folder / "out.csv"), over_pitch({50, 40}, margin)).tracks; };
   EXPECT_EQ(people(0), 1);
   EXPECT_EQ(people(4), 2);
   EXPECT_EQ(people(8), 3);
-  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).people, 3) << "without a pitch everybody counts";
+  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).tracks, 3) << "without a pitch everybody counts";
 }
 
 TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
@@ -172,17 +174,21 @@ TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
   rig.cameras = {plan("first", 0, folder / "first.txt"), plan("second", 0, folder / "second.txt")};
   rig.cameras[1].offset_s = 2;
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
-  EXPECT_EQ(summary.people, 1);
-  EXPECT_EQ(summary.cameras[1].counts.missed, 20) << "before it was started";
-  for (const auto& sample : format::match::read_ground(folder / "out.csv").samples)
-    EXPECT_NEAR(sample.place.x(), 10 + 0.2 * sample.frame, 0.2) << sample.frame;
+  EXPECT_EQ(summary.tracks, 1);
+  EXPECT_EQ(summary.cameras[1].missed, 20) << "before it was started";
+  const Recording found = format::match::read_ground(folder / "out.csv");
+  ASSERT_EQ(found.tracks().size(), 1u);
+  for (std::size_t row = 0; row < found.tracks()[0].size(); ++row) {
+    const auto frame = static_cast<double>(found.instants()[row].index);
+    EXPECT_NEAR(found.tracks()[0].x()[row], 10 + 0.2 * frame, 0.2) << frame;
+  }
 }
 
 TEST(TrackGround, LiveAndLaterTheSameEveryTime) {
   const test::TemporaryFolder folder;
   const Rig rig = simulate(folder.path(), match(6, 8, 4));
   for (const bool live : {false, true}) {
-    TrackGroundOptions options = over_pitch();
+    PeopleOnGroundOptions options = over_pitch();
     options.live = live;
     const auto bytes = [&] {
       track_ground(rig, to(folder / "out.csv"), options);
@@ -203,10 +209,13 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
   GroundOutput view_of = to(folder / "cam2_out.txt");
   view_of.boxes_of = "cam2";
   track_ground(rig, view_of, over_pitch());
-  const GroundRecording ground = format::match::read_ground(folder / "out.csv");
   std::map<std::pair<int, int>, Vector<2>> places;
-  for (const auto& sample : ground.samples)
-    places[{sample.frame, ground.people[static_cast<std::size_t>(sample.person)].id}] = sample.place;
+  const Recording ground = format::match::read_ground(folder / "out.csv");
+  InstantsOf instants(ground);
+  while (const auto instant = instants.next()) {
+    for (const Sample& sample : instant->samples)
+      places[{static_cast<int>(instant->index), number(sample.track)}] = sample.position.head<2>();
+  }
   const GroundView view = *rig.cameras[1].ground_view();
   const format::tracks::MotTable boxes = format::tracks::read_mot(folder / "cam2_out.txt", format::tracks::MotKind::tracks);
   EXPECT_GT(boxes.boxes.size(), 1500U);
@@ -232,7 +241,7 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
   const GroundOutput output{
       .tracks = folder / "out.csv", .boxes_of = "", .overlays = folder / "films", .pitch_view = folder / "above.mp4"};
   const GroundSummary summary = track_ground(rig, output, over_pitch());
-  EXPECT_GT(share(summary.cameras[0].counts.detections, summary.cameras[0].counts.frames), 8);
+  EXPECT_GT(share(summary.cameras[0].detections, summary.cameras[0].frames), 8);
   const auto& clear = judge(folder / "truth.csv", folder / "out.csv").evaluation.scores.clear;
   EXPECT_GT(share(clear.matches, clear.matches + clear.misses), 0.9);
   EXPECT_LT(share(clear.false_positives, clear.matches + clear.false_positives), 0.1);
@@ -244,12 +253,12 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
 TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {
   const test::TemporaryFolder folder;
   const Rig rig = simulate(folder.path(), match(1, 8, 2));
-  RunHooks hooks;
+  Hooks hooks;
   hooks.stop = [calls = 0]() mutable { return ++calls > 50; };
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch(), hooks);
   EXPECT_TRUE(summary.stopped);
   EXPECT_LT(summary.frames, 100);
-  EXPECT_LT(format::match::read_ground(folder / "out.csv").samples.back().frame, summary.frames);
+  EXPECT_LT(format::match::read_ground(folder / "out.csv").instants().back().index, summary.frames);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@ namespace marey::reconstruct {
 
 class Corresponder::Impl {
  public:
-  Impl(std::vector<Camera> cameras, const CorrespondOptions& options)
+  Impl(std::vector<Camera> cameras, const CorrespondOptions& options, std::span<const CameraId> ids)
       : options_(options),
         triangulator_(options.triangulate),
-        frame_(std::move(cameras)),
+        frame_(std::move(cameras), ids),
         track_matches_(options.sigmas, triangulator_),
         intersections_(frame_.all_cameras(), options.sigmas, triangulator_) {}
 
@@ -58,12 +58,13 @@ class Corresponder::Impl {
   Correspondences result_;
 };
 
-Corresponder::Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options) {
+Corresponder::Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options, std::vector<CameraId> ids) {
   if (cameras.size() < 2 || cameras.size() > 64) {
     throw Error("{} calibrated {} given; a place in space takes 2 to 64", cameras.size(),
                 cameras.size() == 1 ? "camera is" : "cameras are");
   }
-  impl_ = std::make_unique<Impl>(std::move(cameras), options);
+  for (int i = 0; ids.size() < cameras.size(); ++i) ids.push_back(CameraId{i});
+  impl_ = std::make_unique<Impl>(std::move(cameras), options, ids);
 }
 Corresponder::~Corresponder() = default;
 Corresponder::Corresponder(Corresponder&&) noexcept = default;

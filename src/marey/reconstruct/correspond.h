@@ -52,8 +52,9 @@ struct Correspondences {
 
 class Corresponder {
  public:
-  /// CameraId i is cameras[i]. Throws Error where there are fewer than two or more than 64.
-  explicit Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options = {});
+  /// `ids[i]` is the CameraId of cameras[i], so that a rig may have others whose calibration is not known; empty: i. Observations
+  /// of other cameras are left out. Throws Error where there are fewer than two or more than 64.
+  explicit Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options = {}, std::vector<CameraId> ids = {});
   ~Corresponder();
   Corresponder(Corresponder&&) noexcept;
   Corresponder& operator=(Corresponder&&) noexcept;

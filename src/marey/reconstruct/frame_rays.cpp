@@ -11,21 +11,31 @@ constexpr int kMostCells = 4096;     // a camera
 
 }  // namespace
 
+FrameRays::FrameRays(std::vector<Camera> cameras, std::span<const CameraId> ids)
+    : cameras_(std::move(cameras)), grids_(cameras_.size()) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto id = static_cast<std::size_t>(number(ids[i]));
+    if (number_of_.size() <= id) number_of_.resize(id + 1);
+    number_of_[id] = static_cast<int>(i);
+  }
+}
+
 void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
   lines_.clear();
   pixels_.clear();
   observations_.clear();
   starts_.assign(cameras_.size() + 1, 0);
-  const auto known = [&](const Observation<2>& one) {
-    return number(one.camera) >= 0 && number(one.camera) < cameras() && one.value.allFinite();
+  const auto camera_of = [&](const Observation<2>& one) -> std::optional<int> {
+    const auto id = static_cast<std::size_t>(number(one.camera));
+    return id < number_of_.size() && one.value.allFinite() ? number_of_[id] : std::nullopt;
   };
   for (const Observation<2>& one : seen) {
-    if (known(one)) ++starts_[number(one.camera) + 1];
+    if (const auto camera = camera_of(one)) ++starts_[*camera + 1];
   }
   for (std::size_t c = 0; c < cameras_.size(); ++c) starts_[c + 1] += starts_[c];
   by_camera_.resize(static_cast<std::size_t>(starts_.back()));
   for (int i = 0; i < std::ssize(seen); ++i) {
-    if (known(seen[i])) by_camera_[starts_[number(seen[i].camera)]++] = i;
+    if (const auto camera = camera_of(seen[i])) by_camera_[starts_[*camera]++] = i;
   }
   // Each start has moved to the next one's.
   for (int c = 0, begin = 0; c < cameras(); begin = starts_[c++]) {

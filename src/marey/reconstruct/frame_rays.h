@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace marey::reconstruct {
 /// Steady state allocates nothing. Cost: one lens inversion a blob, and a counting sort.
 class FrameRays {
  public:
-  explicit FrameRays(std::vector<Camera> cameras) : cameras_(std::move(cameras)), grids_(cameras_.size()) {}
+  /// `ids[i]` is what observations call cameras[i].
+  FrameRays(std::vector<Camera> cameras, std::span<const CameraId> ids);
 
   /// Takes in what was seen. Blobs that no direction leads to, and those of cameras that the rig does not have, are left out.
   /// `noise_px` is the standard deviation, along each axis, of what an observation's own covariance does not cover.
@@ -65,6 +67,7 @@ class FrameRays {
   void lay_grid(int camera, std::span<const Observation<2>> seen);
 
   std::vector<Camera> cameras_;
+  std::vector<std::optional<int>> number_of_;  // by CameraId, the camera's place in `cameras_`
   std::vector<Grid> grids_;
   std::vector<SightLine> lines_;
   std::vector<Vector<2>> pixels_;

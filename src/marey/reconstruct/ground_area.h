@@ -1,8 +1,11 @@
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "marey/core/geometry.h"
+#include "marey/core/other_ground.h"
+#include "marey/core/recording.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
 
@@ -20,6 +23,8 @@ class GroundArea {
   Vector<2> ground(const Vector<2>& world) const;
   Vector<2> ground_velocity(const Vector<2>& velocity) const;
   Vector<2> world(const Vector<2>& ground) const;
+  /// The same for a whole recording. This must outlive it.
+  GroundChange change() const;
 
   /// Whether a person at this place of the world counts; with `slack` m more on all sides.
   bool holds(const Vector<2>& world, double slack = 0) const;
@@ -34,5 +39,16 @@ class GroundArea {
   std::optional<geometry::PitchSize> pitch_;
   double margin_ = 0;
 };
+
+/// A recording of those who count.
+struct KeptPeople {
+  Recording recording;
+  std::map<TrackId, TrackId> now;  ///< what each track that is kept is called
+};
+
+/// Leaves out places that do not count, and who was nowhere else; the others are numbered anew from 1, by their first instant. What
+/// is kept is in the user's frame of reference. `recording` is of the world's ground and used up track by track. Throws Error for
+/// another frame.
+KeptPeople people_in(const GroundArea& area, Recording recording);
 
 }  // namespace marey::reconstruct

@@ -7,14 +7,6 @@
 namespace marey::source {
 namespace {
 
-/// Chroma is stored at half size: a region that begins on an odd pixel is cut from the colours themselves.
-Picture cut(const Picture& picture, const cv::Rect& region) {
-  if (!picture.is_colour()) return Picture(picture.luma()(region));
-  if (region.x % 2 != 0 || region.y % 2 != 0) return Picture::from_bgr(picture.bgr()(region));
-  const cv::Rect half(region.x / 2, region.y / 2, (region.width + 1) / 2, (region.height + 1) / 2);
-  return {picture.luma()(region), picture.cb()(half), picture.cr()(half), picture.range(), std::make_shared<Picture>(picture)};
-}
-
 class RegionSource final : public Source {
  public:
   RegionSource(std::unique_ptr<Source> source, const cv::Rect& region) : source_(std::move(source)), region_(region) {
@@ -35,7 +27,7 @@ class RegionSource final : public Source {
       ++left_out_;
       frame = source_->next();
     }
-    if (frame && !frame->picture.empty()) frame->picture = cut(frame->picture, region_);
+    if (frame && !frame->picture.empty()) frame->picture = frame->picture.part(region_);
     return frame;
   }
 

@@ -5,13 +5,13 @@
 
 namespace marey::track {
 
-TakeFrame* GapFiller::frame_at(std::int64_t number) {
+Instant* GapFiller::frame_at(std::int64_t number) {
   const std::int64_t back = added_ - number;  // 1: the last one
   if (back < 1 || back > std::ssize(waiting_)) return nullptr;
   return &waiting_[static_cast<std::size_t>(std::ssize(waiting_) - back)];
 }
 
-void GapFiller::add(TakeFrame frame, std::span<const Track<3>> tracks) {
+void GapFiller::add(Instant frame, std::span<const Track<3>> tracks) {
   const Timestamp now = frame.time;
   waiting_.push_back(std::move(frame));
   ++added_;
@@ -31,12 +31,12 @@ void GapFiller::add(TakeFrame frame, std::span<const Track<3>> tracks) {
     if (std::ssize(gap.guesses) > longest_) continue;  // nothing will fill it
     gap.guesses.push_back({now, track.position, track.velocity, track.covariance});
     if (std::ssize(gap.guesses) > predicted_) continue;
-    TakePoint point;
+    Sample point;
     point.track = track.id;
     point.position = track.position;
     point.covariance = track.covariance;
     point.provenance = Provenance::predicted;
-    waiting_.back().points.push_back(point);
+    waiting_.back().samples.push_back(point);
   }
 }
 
@@ -49,25 +49,25 @@ void GapFiller::close(Gap& gap, const Guess& end, TrackId track) {
   const Vector<3> miss = end.position - (last.position + last.velocity * seconds(end.time - last.time));
   const Vector<3> miss_of_velocity = end.velocity - last.velocity;
   for (std::int64_t i = 0; i < length; ++i) {
-    TakeFrame* frame = frame_at(gap.first + i);
+    Instant* frame = frame_at(gap.first + i);
     if (frame == nullptr) continue;
     const Guess& guess = gap.guesses[static_cast<std::size_t>(i)];
     const double s = seconds(guess.time - gap.seen) / duration;
     const Vector<3> position = guess.position + s * s * (3 - 2 * s) * miss + s * s * (s - 1) * duration * miss_of_velocity;
-    std::erase_if(frame->points, [&](const TakePoint& point) { return point.track == track; });
-    TakePoint point;
+    std::erase_if(frame->samples, [&](const Sample& point) { return point.track == track; });
+    Sample point;
     point.track = track;
     point.position = position;
     point.provenance = Provenance::filled;
-    frame->points.push_back(point);
+    frame->samples.push_back(point);
   }
 }
 
-std::optional<TakeFrame> GapFiller::next() {
+std::optional<Instant> GapFiller::next() {
   if (waiting_.empty() || (!ended_ && std::ssize(waiting_) <= longest_ + 1)) return std::nullopt;
-  TakeFrame frame = std::move(waiting_.front());
+  Instant frame = std::move(waiting_.front());
   waiting_.pop_front();
-  std::sort(frame.points.begin(), frame.points.end(), [](const TakePoint& a, const TakePoint& b) { return a.track < b.track; });
+  std::sort(frame.samples.begin(), frame.samples.end(), [](const Sample& a, const Sample& b) { return a.track < b.track; });
   return frame;
 }
 

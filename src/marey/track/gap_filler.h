@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/core/take.h"
+#include "marey/core/instant.h"
 #include "marey/core/track.h"
 
 namespace marey::track {
@@ -21,10 +21,10 @@ class GapFiller {
   GapFiller(int longest, int predicted) : longest_(longest), predicted_(predicted) {}
 
   /// The frame with its measured points, and what the tracker says of the markers that it does not have.
-  void add(TakeFrame frame, std::span<const Track<3>> expected);
+  void add(Instant frame, std::span<const Track<3>> expected);
 
   /// The next frame that nothing more can be added to; nothing where it has to wait.
-  std::optional<TakeFrame> next();
+  std::optional<Instant> next();
   /// From here on no frame waits: the recording has ended.
   void finish() { ended_ = true; }
 
@@ -41,12 +41,12 @@ class GapFiller {
   };
 
   void close(Gap& gap, const Guess& end, TrackId track);
-  TakeFrame* frame_at(std::int64_t number);
+  Instant* frame_at(std::int64_t number);
 
   int longest_, predicted_;
   bool ended_ = false;
   std::int64_t added_ = 0;
-  std::deque<TakeFrame> waiting_;
+  std::deque<Instant> waiting_;
   std::map<TrackId, Gap> gaps_;
   std::map<TrackId, Timestamp> last_seen_;
 };

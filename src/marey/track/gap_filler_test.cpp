@@ -19,11 +19,13 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
     track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
     track.velocity = velocity;
     track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
-    TakeFrame frame{.index = i, .time = timestamp_from_seconds(t), .observations = {}, .points = {}};
+    Instant frame;
+    frame.index = i;
+    frame.time = timestamp_from_seconds(t);
     if (seen) {
-      frame.points.emplace_back();
-      frame.points.back().track = track.id;
-      frame.points.back().position = track.position;
+      frame.samples.emplace_back();
+      frame.samples.back().track = track.id;
+      frame.samples.back().position = track.position;
     }
     filler.add(frame, std::span(&track, 1));
   }
@@ -31,9 +33,9 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
   for (int i = 0; i < 20; ++i) {
     const auto frame = filler.next();
     ASSERT_TRUE(frame);
-    ASSERT_EQ(frame->points.size(), 1) << i;
-    EXPECT_EQ(frame->points[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
-    EXPECT_LT((frame->points[0].position - at(0.1 * i)).norm(), 1e-9) << i;
+    ASSERT_EQ(frame->samples.size(), 1) << i;
+    EXPECT_EQ(frame->samples[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
+    EXPECT_LT((frame->samples[0].position - at(0.1 * i)).norm(), 1e-9) << i;
   }
 }
 
@@ -44,8 +46,10 @@ TEST(GapFiller, OfALongGapTheBeginningIsPredicted) {
     Track<3> track;
     track.id = TrackId{1};
     track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
-    TakeFrame frame{.index = i, .time = timestamp_from_seconds(0.1 * i), .observations = {}, .points = {}};
-    if (seen) frame.points.emplace_back().track = track.id;
+    Instant frame;
+    frame.index = i;
+    frame.time = timestamp_from_seconds(0.1 * i);
+    if (seen) frame.samples.emplace_back().track = track.id;
     filler.add(frame, std::span(&track, 1));
   }
   filler.finish();
@@ -53,8 +57,8 @@ TEST(GapFiller, OfALongGapTheBeginningIsPredicted) {
     const auto frame = filler.next();
     ASSERT_TRUE(frame);
     const bool predicted = i == 5 || i == 6;
-    ASSERT_EQ(frame->points.size(), i < 7 || i > 14 ? 1U : 0U) << i;
-    if (predicted) EXPECT_EQ(frame->points[0].provenance, Provenance::predicted) << i;
+    ASSERT_EQ(frame->samples.size(), i < 7 || i > 14 ? 1U : 0U) << i;
+    if (predicted) EXPECT_EQ(frame->samples[0].provenance, Provenance::predicted) << i;
   }
   EXPECT_FALSE(filler.next());
 }

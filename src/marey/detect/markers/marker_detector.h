@@ -59,6 +59,7 @@ class MarkerDetector final : public Detector {
   Detections detect(const Frame& frame, std::span<const Expected> expected) override;
 
   const MarkerCounts& counts() const;
+  std::vector<std::string> warnings() const override { return markers::warnings(counts()); }
   /// The contrast that a pixel must have to pass and the pixels' noise, grey levels, as of the last frame; for the summary.
   double typical_threshold() const;
   double noise() const;

@@ -46,7 +46,7 @@ class Reader {
       where_ = std::move(where);
       read_line(line);
     });
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -62,7 +62,7 @@ class Reader {
   void read_globals(const pugi::xml_node& metadata) {
     const pugi::xml_node global = metadata.child("GlobalConfig");
     if (!global) throw Error("{}: is no metadata of EPTS: <GlobalConfig> is missing", metadata_name_);
-    match_.rate_hz = number(global.child("FrameRate"), "FrameRate", 0.1, 10'000);
+    match_.recording.header.rate_hz = number(global.child("FrameRate"), "FrameRate", 0.1, 10'000);
     const pugi::xml_node size = metadata.child("Sessions").child("Session").child("FieldSize");
     if (size) {
       match_.pitch.length = number(size.child("Width"), "FieldSize's Width", 1, 1000);
@@ -174,7 +174,8 @@ class Reader {
       if (!x || !y) throw Error("{}: {}, {} is no place", where_, shown(place[0]), shown(place[1]));
       const double right = normalized_ ? match_.pitch.length * *x : *x;
       const double up = normalized_ ? match_.pitch.width * (1 - *y) : *y;
-      builder_.add(static_cast<std::int32_t>(*frame), static_cast<double>(*frame) / match_.rate_hz, person, right, up, where_);
+      builder_.add(static_cast<std::int32_t>(*frame), static_cast<double>(*frame) / match_.recording.header.rate_hz, person, right,
+                   up, where_);
     }
   }
 

@@ -20,8 +20,8 @@ constexpr double kPerHour = 3.6;  // km/h in a m/s
 
 /// What the metadata and the text must agree on.
 struct Plan {
-  LineUps squads;
-  std::vector<std::int32_t> people;  // home, then away
+  LineUps line_ups;
+  std::vector<std::size_t> people;  // home, then away
   bool speed = false;
   std::vector<GroundPeriod> periods;
 };
@@ -37,7 +37,7 @@ void add_globals(pugi::xml_node& metadata, const GroundMatch& match, const Plan&
   add_text(global, "TrackingType", "Optical");
   // Readers take the frame that they know for this provider's, and know no other.
   add_text(global, "ProviderName", "Metrica Sports");
-  add_text(global, "FrameRate", fmt::format("{}", whole_rate(match.rate_hz, "EPTS")));
+  add_text(global, "FrameRate", fmt::format("{}", whole_rate(match.recording.header.rate_hz, "EPTS")));
   pugi::xml_node parameters = global.append_child("ProviderGlobalParameters");
   for (const GroundPeriod& period : plan.periods) {
     if (period.number < 1 || period.number > static_cast<int>(kPeriodNames.size())) continue;
@@ -61,8 +61,8 @@ void add_session(pugi::xml_node& metadata, const GroundMatch& match) {
   add_text(size, "Height", fmt::format("{:g}", match.pitch.width));
 }
 
-std::string player_id(const GroundMatch& match, std::int32_t person) {
-  return fmt::format("Track_{}", match.recording.people[static_cast<std::size_t>(person)].id);
+std::string player_id(const GroundMatch& match, std::size_t person) {
+  return fmt::format("Track_{}", number(match.recording.tracks()[person].id()));
 }
 
 void add_people(pugi::xml_node& metadata, const GroundMatch& match, const Plan& plan) {
@@ -70,11 +70,11 @@ void add_people(pugi::xml_node& metadata, const GroundMatch& match, const Plan& 
   for (std::size_t i = 0; i < kTeamIds.size(); ++i) {
     pugi::xml_node team = teams.append_child("Team");
     team.append_attribute("id") = kTeamIds[i];
-    add_text(team, "Name", plan.squads.teams[i]);
+    add_text(team, "Name", plan.line_ups.teams[i]);
   }
   pugi::xml_node players = metadata.append_child("Players");
-  for (const std::int32_t person : plan.people) {
-    const LineUps::Member& member = plan.squads.members[static_cast<std::size_t>(person)];
+  for (const std::size_t person : plan.people) {
+    const LineUps::Member& member = plan.line_ups.members[person];
     pugi::xml_node player = players.append_child("Player");
     player.append_attribute("id") = player_id(match, person).c_str();
     player.append_attribute("teamId") = kTeamIds[member.side == Side::home ? 0 : 1];
@@ -109,7 +109,7 @@ void add_channels(pugi::xml_node& metadata, const GroundMatch& match, const Plan
   add_sensor(sensors, "position", "Position", {{"x", "position_x", "normalized"}, {"y", "position_y", "normalized"}});
   if (plan.speed) add_sensor(sensors, "speed", "Speed in kilometers per hour", {{"s", "speed_kph", "kph"}});
   pugi::xml_node channels = metadata.append_child("PlayerChannels");
-  for (const std::int32_t person : plan.people) {
+  for (const std::size_t person : plan.people) {
     for (const char* channel : channels_of(plan)) {
       pugi::xml_node node = channels.append_child("PlayerChannel");
       node.append_attribute("channelId") = channel;
@@ -127,12 +127,12 @@ pugi::xml_node add_split(pugi::xml_node& parent, const char* separator) {
 
 void add_layout(pugi::xml_node& root, const GroundMatch& match, const Plan& plan) {
   pugi::xml_node layout = root.append_child("DataFormatSpecifications").append_child("DataFormatSpecification");
-  layout.append_attribute("startFrame") = match.recording.samples.front().frame;
-  layout.append_attribute("endFrame") = match.recording.samples.back().frame;
+  layout.append_attribute("startFrame") = match.recording.instants().front().index;
+  layout.append_attribute("endFrame") = match.recording.instants().back().index;
   layout.append_attribute("separator") = ":";
   layout.append_child("StringRegister").append_attribute("name") = "frameCount";
   pugi::xml_node players = add_split(layout, ";");
-  for (const std::int32_t person : plan.people) {
+  for (const std::size_t person : plan.people) {
     pugi::xml_node player = add_split(players, ",");
     for (const char* channel : channels_of(plan))
       player.append_child("PlayerChannelRef").append_attribute("playerChannelId") =
@@ -163,41 +163,46 @@ void write_metadata(const GroundMatch& match, const Plan& plan, const std::strin
 }  // namespace
 
 std::vector<std::string> write_epts(const GroundMatch& match, const std::string& path) {
-  if (match.recording.samples.empty()) throw Error("nobody is in the recording, and EPTS's readers take that for broken");
+  if (match.recording.samples() == 0) throw Error("nobody is in the recording, and EPTS's readers take that for broken");
   Plan plan{line_ups_of(match), {}, has_velocities(match.recording), periods_of(match)};
-  plan.people = plan.squads.of(Side::home);
-  const std::vector<std::int32_t> guests = plan.squads.of(Side::away);
+  plan.people = plan.line_ups.of(Side::home);
+  const std::vector<std::size_t> guests = plan.line_ups.of(Side::away);
   plan.people.insert(plan.people.end(), guests.begin(), guests.end());
   WholeFile file(with_ending(path, ".txt"));
   std::string text;
-  std::vector<const GroundRecording::Sample*> sample_of(match.recording.people.size());
-  for_each_instant(match.recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample> samples) {
-    std::fill(sample_of.begin(), sample_of.end(), nullptr);
-    for (const auto& sample : samples) sample_of[static_cast<std::size_t>(sample.person)] = &sample;
-    fmt::format_to(std::back_inserter(text), "{}:", frame);
+  const std::vector<TrackColumns>& tracks = match.recording.tracks();
+  std::vector<std::optional<std::size_t>> row_of(tracks.size());
+  InstantRows rows(match.recording);
+  for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
+    std::fill(row_of.begin(), row_of.end(), std::nullopt);
+    for (const auto& [index, row] : rows.at(instant)) row_of[index] = row;
+    fmt::format_to(std::back_inserter(text), "{}:", match.recording.instants()[instant].index);
     for (std::size_t i = 0; i < plan.people.size(); ++i) {
-      const GroundRecording::Sample* sample = sample_of[static_cast<std::size_t>(plan.people[i])];
+      const TrackColumns& track = tracks[plan.people[i]];
+      const auto row = row_of[plan.people[i]];
       if (i > 0) text += ';';
-      if (sample == nullptr) {
+      if (!row) {
         text += plan.speed ? "NaN,NaN,NaN" : "NaN,NaN";
         continue;
       }
-      fmt::format_to(std::back_inserter(text), "{:.5f},{:.5f}", sample->place.x() / match.pitch.length,
-                     1 - sample->place.y() / match.pitch.width);
-      if (plan.speed) fmt::format_to(std::back_inserter(text), ",{:.3f}", kPerHour * sample->velocity.norm());
+      fmt::format_to(std::back_inserter(text), "{:.5f},{:.5f}", track.x()[*row] / match.pitch.length,
+                     1 - track.y()[*row] / match.pitch.width);
+      const auto velocity = track.velocity(*row);
+      if (plan.speed) fmt::format_to(std::back_inserter(text), ",{:.3f}", velocity ? kPerHour * velocity->head<2>().norm() : 0);
     }
     text += ":NaN,NaN\n";
-    if (text.size() < (std::size_t{1} << 20)) return;
+    if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
-  });
+  }
   file.write(text);
   write_metadata(match, plan, with_ending(path, ".xml"));
   file.finish();
-  const auto left_out = match.recording.people.size() - plan.people.size();
+  const auto left_out = tracks.size() - plan.people.size();
   if (left_out > 0)
-    plan.squads.warnings.push_back(fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));
-  return plan.squads.warnings;
+    plan.line_ups.warnings.push_back(
+        fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));
+  return plan.line_ups.warnings;
 }
 
 }  // namespace marey::format::match

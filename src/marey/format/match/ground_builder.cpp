@@ -11,41 +11,106 @@ namespace {
 
 constexpr double kFarthest = 1e5;  // m
 
+bool by_frame(const GroundBuilder::Row& a, const GroundBuilder::Row& b) {
+  return a.frame < b.frame;
+}
+
+/// Puts the frames of a person's rows, which are sorted, among those that are there already.
+void add_moments(const std::deque<GroundBuilder::Row>& rows, std::vector<Recording::Moment>& moments) {
+  const auto by_index = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index < b.index; };
+  std::vector<Recording::Moment> fresh;
+  auto at = moments.begin();
+  for (const GroundBuilder::Row& row : rows) {
+    const Recording::Moment moment{row.frame, timestamp_from_seconds(row.time)};
+    if (at == moments.begin()) at = std::lower_bound(at, moments.end(), moment, by_index);
+    while (at != moments.end() && at->index < row.frame) ++at;
+    if (at == moments.end() || at->index != row.frame) fresh.push_back(moment);
+  }
+  const auto known = std::ssize(moments);
+  moments.insert(moments.end(), fresh.begin(), fresh.end());
+  std::inplace_merge(moments.begin(), moments.begin() + known, moments.end(), by_index);
+}
+
+TrackColumns columns_of(const TrackName& name, const std::deque<GroundBuilder::Row>& rows,
+                        const std::vector<Recording::Moment>& moments) {
+  TrackColumns track(name, 2);
+  track.reserve(rows.size());
+  std::size_t at = 0;
+  for (const GroundBuilder::Row& row : rows) {
+    while (moments[at].index < row.frame) ++at;
+    Sample sample;
+    sample.position.head<2>() = row.place;
+    if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), 0);
+    sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
+    sample.cameras = row.cameras;
+    track.add(static_cast<std::int32_t>(at), sample);
+  }
+  return track;
+}
+
 }  // namespace
 
 std::int32_t GroundBuilder::person(const std::string& key, int wanted, const std::string& label, const std::string& team) {
-  const auto [entry, is_new] = index_of_.try_emplace(key, static_cast<std::int32_t>(recording_.people.size()));
+  const auto [entry, is_new] = index_of_.try_emplace(key, static_cast<std::int32_t>(people_.size()));
   if (!is_new) return entry->second;
   const bool free = wanted > 0 && !by_id_.contains(wanted);
-  const int id = free ? wanted : by_id_.empty() ? 1 : by_id_.rbegin()->first + 1;
-  by_id_[id] = entry->second;
-  recording_.people.push_back({id, label, team});
+  return person(free ? wanted : by_id_.empty() ? 1 : by_id_.rbegin()->first + 1, label, team);
+}
+
+std::int32_t GroundBuilder::person(int id, const std::string& label, const std::string& team) {
+  const auto [entry, is_new] = by_id_.try_emplace(id, static_cast<std::int32_t>(people_.size()));
+  if (is_new) people_.push_back({{TrackId{id}, {}, {}}, {}});
+  TrackName& name = people_[static_cast<std::size_t>(entry->second)].name;
+  if (name.label.empty()) name.label = label;
+  if (name.team.empty()) name.team = team;
   return entry->second;
 }
 
 void GroundBuilder::add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where) {
   if (!(std::abs(x) <= kFarthest && std::abs(y) <= kFarthest))
     throw Error("{}: ({:g}, {:g}) m is no place near a pitch", where, x, y);
-  GroundRecording::Sample sample;
-  sample.frame = frame, sample.time = time, sample.person = person;
-  sample.place = {x, y};
-  recording_.samples.push_back(sample);
+  add(person, {.frame = frame, .time = time, .place = {x, y}});
 }
 
-GroundRecording GroundBuilder::finish() {
-  const auto order = [&](const GroundRecording::Sample& one) {
-    return std::pair(one.frame, recording_.people[static_cast<std::size_t>(one.person)].id);
-  };
-  auto& samples = recording_.samples;
-  const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
-  if (!std::is_sorted(samples.begin(), samples.end(), before)) std::stable_sort(samples.begin(), samples.end(), before);
-  const auto twice =
-      std::adjacent_find(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) == order(b); });
-  if (twice != samples.end()) {
-    const GroundRecording::Person& person = recording_.people[static_cast<std::size_t>(twice->person)];
-    throw Error("{}: someone (\"{}\", team \"{}\") is twice in frame {}", name_, person.label, person.team, twice->frame);
+void GroundBuilder::for_each_row(const std::function<void(Row&)>& change) {
+  for (Person& person : people_) {
+    for (Row& row : person.rows) change(row);
   }
-  return std::move(recording_);
+}
+
+void GroundBuilder::require_once() const {
+  const Person* who = nullptr;
+  std::pair<std::int32_t, int> first;  // frame and id
+  for (const Person& person : people_) {
+    const auto twice = std::adjacent_find(person.rows.begin(), person.rows.end(),
+                                          [](const Row& a, const Row& b) { return a.frame == b.frame; });
+    if (twice == person.rows.end()) continue;
+    const std::pair found(twice->frame, number(person.name.id));
+    if (who == nullptr || found < first) who = &person, first = found;
+  }
+  if (who == nullptr) return;
+  const TrackName& name = who->name;
+  if (index_of_.empty()) throw Error("{}: person {} is twice in frame {}", name_, number(name.id), first.first);
+  throw Error("{}: someone (\"{}\", team \"{}\") is twice in frame {}", name_, name.label, name.team, first.first);
+}
+
+std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
+  std::vector<TrackId> order;
+  for (Person& person : people_) {
+    order.push_back(person.name.id);
+    if (!std::is_sorted(person.rows.begin(), person.rows.end(), by_frame))
+      std::stable_sort(person.rows.begin(), person.rows.end(), by_frame);
+  }
+  require_once();
+  std::vector<Recording::Moment> moments;
+  for (const auto& [id, index] : by_id_) add_moments(people_[static_cast<std::size_t>(index)].rows, moments);
+  for (const Recording::Moment& moment : moments) recording.add_moment(moment);
+  for (const auto& [id, index] : by_id_) {
+    Person& person = people_[static_cast<std::size_t>(index)];
+    recording.put(columns_of(person.name, person.rows, moments));
+    person.rows = {};
+  }
+  return order;
 }
 
 std::string label_of(const std::string& name, int number) {

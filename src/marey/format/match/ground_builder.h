@@ -1,29 +1,60 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 
 namespace marey::format::match {
 
-/// Gathers the people of a file that names them in its own way, and puts their places in order.
+/// Gathers the people of a file that names them in its own way, in whatever order its rows come, and makes a recording of them.
 class GroundBuilder {
  public:
+  /// Where someone was in one row of the file.
+  struct Row {
+    std::int32_t frame = 0;
+    bool observed = true;  ///< else it is where the person was expected
+    double time = 0;       ///< s
+    Vector<2> place = Vector<2>::Zero();
+    std::optional<Vector<2>> velocity = {};
+    CameraMask cameras = 0;
+  };
+
   explicit GroundBuilder(const std::string& name) : name_(name) {}
 
   /// The index of whom the file calls `key`; who is new gets this label and team, and the wanted id where it is positive and free,
   /// else the next one that is.
   std::int32_t person(const std::string& key, int wanted, const std::string& label, const std::string& team);
+  /// The index of the one with this id, which is positive; a label and a team that are still empty are filled in.
+  std::int32_t person(int id, const std::string& label, const std::string& team);
+
   /// x and y in m. Throws Error, which says `where`, for what is no place on the ground near a pitch.
   void add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where);
-  /// By frame and id. Throws Error where a person is twice in a frame.
-  GroundRecording finish();
+  void add(std::int32_t person, const Row& row) { people_[static_cast<std::size_t>(person)].rows.push_back(row); }
+
+  /// All that was added, for what is known of frames at the end only.
+  void for_each_row(const std::function<void(Row&)>& change);
+
+  /// Moves everything into `recording`, whose header is known: a frame is an instant, whose time is that of its first person. Gives
+  /// the people in the order in which they came. Throws Error where a person is twice in a frame.
+  std::vector<TrackId> finish(Recording& recording);
 
  private:
+  struct Person {
+    TrackName name;
+    std::deque<Row> rows;
+  };
+
+  void require_once() const;
+
   const std::string& name_;
-  GroundRecording recording_;
+  std::vector<Person> people_;  // in the order in which they came
   std::map<std::string, std::int32_t> index_of_;
   std::map<int, std::int32_t> by_id_;
 };

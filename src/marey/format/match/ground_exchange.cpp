@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/match/line_ups.h"
@@ -199,32 +200,62 @@ GroundMatch read_metrica(const std::string& path, const geometry::PitchSize& pit
                  : parse_metrica(theirs.text(), other, mine.text(), path, pitch);
 }
 
-/// The rate that frames and times have between them.
-double rate_of(const GroundRecording& recording) {
-  if (recording.samples.empty()) return 25;
-  const auto &first = recording.samples.front(), &last = recording.samples.back();
-  const double span = last.time - first.time;
-  return last.frame > first.frame && span > 0 ? std::round(1000 * (last.frame - first.frame) / span) / 1000 : 25;
-}
-
 GroundMatch read_csv(const std::string& path, const GroundReadOptions& options) {
+  GroundFile file = read_ground_in_order(path, options.rate_hz);
   GroundMatch match;
-  match.recording = read_ground(path, options.rate_hz);
-  match.rate_hz = rate_of(match.recording);
+  match.recording = std::move(file.recording);
+  match.order = std::move(file.order);
   match.pitch = options.pitch;
   return match;
 }
 
-void turn(GroundRecording& recording, const geometry::PitchSize& pitch, const GroundFrame& frame, bool to) {
+Recording turned(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame, bool to) {
+  require_ground(recording, "the pitch's corner");
   const Vector<2> middle(pitch.length / 2, pitch.width / 2);
-  for (auto& sample : recording.samples) {
-    if (to && frame.centred) sample.place += middle;
-    if (frame.y_down) sample.place.y() = pitch.width - sample.place.y(), sample.velocity.y() *= -1;
-    if (!to && frame.centred) sample.place -= middle;
+  const auto place = [&](Vector<2> at) {
+    if (to && frame.centred) at += middle;
+    if (frame.y_down) at.y() = pitch.width - at.y();
+    if (!to && frame.centred) at -= middle;
+    return at;
+  };
+  const Matrix<2> linear = Vector<2>(1, frame.y_down ? -1 : 1).asDiagonal();
+  return on_other_ground(std::move(recording), {FrameOfReference::Kind::user_ground, {}}, {place, linear});
+}
+
+GroundMatch read_of_format(const std::string& path, GroundFormat format, const GroundReadOptions& options) {
+  switch (format) {
+    case GroundFormat::csv:
+      return read_csv(path, options);
+    case GroundFormat::mot: {
+      GroundMatch match = parse_mot_world(read_file(path), path, options.rate_hz);
+      match.pitch = options.pitch;
+      return match;
+    }
+    case GroundFormat::metrica:
+      return read_metrica(path, options.pitch);
+    case GroundFormat::tracab:
+      return read_pair(pair_of(path, format, options, {".dat", ".txt"}, true), parse_tracab);
+    case GroundFormat::epts:
+      return read_pair(pair_of(path, format, options, {".txt", ".dat"}, true), parse_epts);
+    case GroundFormat::soccernet:
+      return parse_soccernet(read_file(path), path, options);
+    case GroundFormat::sportec:
+      return read_pair(pair_of(path, format, options, {".xml"}, false), parse_sportec);
+    case GroundFormat::statsperform:
+      return parse_statsperform(read_file(path), path, options.pitch);
   }
+  throw Error("{}: cannot be read", path);
 }
 
 }  // namespace
+
+RecordingHeader ground_header(const std::string& name) {
+  RecordingHeader header;
+  header.name = name;
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = 25;
+  return header;
+}
 
 std::string ground_format_names() {
   std::string names;
@@ -270,31 +301,13 @@ GroundMatch read_ground_any(const std::string& path, const GroundReadOptions& op
 }
 
 GroundMatch read_ground_as(const std::string& path, GroundFormat format, const GroundReadOptions& options) {
-  switch (format) {
-    case GroundFormat::csv:
-      return read_csv(path, options);
-    case GroundFormat::mot: {
-      GroundMatch match = parse_mot_world(read_file(path), path, options.rate_hz);
-      match.pitch = options.pitch;
-      return match;
-    }
-    case GroundFormat::metrica:
-      return read_metrica(path, options.pitch);
-    case GroundFormat::tracab:
-      return read_pair(pair_of(path, format, options, {".dat", ".txt"}, true), parse_tracab);
-    case GroundFormat::epts:
-      return read_pair(pair_of(path, format, options, {".txt", ".dat"}, true), parse_epts);
-    case GroundFormat::soccernet:
-      return parse_soccernet(read_file(path), path, options);
-    case GroundFormat::sportec:
-      return read_pair(pair_of(path, format, options, {".xml"}, false), parse_sportec);
-    case GroundFormat::statsperform:
-      return parse_statsperform(read_file(path), path, options.pitch);
-  }
-  throw Error("{}: cannot be read", path);
+  GroundMatch match = read_of_format(path, format, options);
+  match.recording.header.name = path == "-" ? "standard input" : path;
+  return match;
 }
 
 std::vector<std::string> write_ground_as(const GroundMatch& match, const std::string& path, GroundFormat format) {
+  require_ground(match.recording, ground_format_name(format));
   switch (format) {
     case GroundFormat::csv:
       write_ground(match.recording, path);
@@ -317,12 +330,12 @@ std::vector<std::string> write_ground_as(const GroundMatch& match, const std::st
   throw Error("{}: {} is read only; write ground, mot, metrica, tracab, epts or soccernet", path, ground_format_name(format));
 }
 
-void from_corner(GroundRecording& recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
-  turn(recording, pitch, frame, false);
+Recording from_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
+  return turned(std::move(recording), pitch, frame, false);
 }
 
-void to_corner(GroundRecording& recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
-  turn(recording, pitch, frame, true);
+Recording to_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
+  return turned(std::move(recording), pitch, frame, true);
 }
 
 }  // namespace marey::format::match

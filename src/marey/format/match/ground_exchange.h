@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::format::match {
@@ -28,14 +28,17 @@ struct GroundPeriod {
   std::int32_t first_frame = 0, last_frame = 0;
 };
 
+/// Of people on the ground as a file's user has it, 25 frames a second until that is known.
+RecordingHeader ground_header(const std::string& name);
+
 /// A recording, with what formats of matches tell beyond it.
 ///
 /// In csv and mot coordinates are as they stand. In all others they are metres from the corner of the pitch that is below on the
 /// left when it is seen from above with the home stand at the bottom: x to the right, y upwards. A recording's time is its frame
 /// over the rate.
 struct GroundMatch {
-  GroundRecording recording;
-  double rate_hz = 25;                ///< frames a second
+  Recording recording{ground_header({})};  ///< an instant a frame
+  std::vector<TrackId> order;         ///< in which the file names its people, and line-ups list them; who is in it not, by id behind
   geometry::PitchSize pitch;          ///< as the file says, or as was given to the reader
   std::vector<GroundPeriod> periods;  ///< in order; empty where the file does not know any
   std::string home, away;             ///< names of the teams; empty where the file does not know them
@@ -65,7 +68,8 @@ GroundMatch read_ground_any(const std::string& path, const GroundReadOptions& op
 GroundMatch read_ground_as(const std::string& path, GroundFormat format, const GroundReadOptions& options = {});
 
 /// Writes one, whole or not at all, with its second file beside it where the format has two. Returns what a user should know of
-/// what the format could not hold, one sentence each. Throws Error where it cannot hold the recording at all.
+/// what the format could not hold, one sentence each. Throws Error where it cannot hold the recording at all: none holds one that is
+/// not of the ground in m.
 std::vector<std::string> write_ground_as(const GroundMatch& match, const std::string& path, GroundFormat format);
 
 /// Turns coordinates between the corner below on the left with y upwards and another frame, either way: `y_down` has y grow
@@ -74,8 +78,8 @@ struct GroundFrame {
   bool y_down = false;
   bool centred = false;
 };
-void from_corner(GroundRecording& recording, const geometry::PitchSize& pitch, const GroundFrame& frame);
-void to_corner(GroundRecording& recording, const geometry::PitchSize& pitch, const GroundFrame& frame);
+Recording from_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame);
+Recording to_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame);
 
 // One file each. The texts' `name`s are what messages call them.
 GroundMatch parse_mot_world(std::string_view text, const std::string& name, double rate_hz);

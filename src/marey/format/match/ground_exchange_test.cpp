@@ -21,6 +21,13 @@ using test::read_file;
 using test::TemporaryFolder;
 using test::write_file;
 
+Sample sample_at(int id, double x, double y) {
+  Sample sample;
+  sample.track = TrackId{id};
+  sample.position = {x, y, 0};
+  return sample;
+}
+
 /// Two teams of three with numbered shirts and a referee, in two halves; not everyone is always there.
 GroundMatch made_up(unsigned seed) {
   std::mt19937 random(seed);
@@ -28,31 +35,44 @@ GroundMatch made_up(unsigned seed) {
   GroundMatch match;
   match.pitch = {100, 64};
   match.periods = {{1, 3, 30}, {2, 90, 99}};
-  for (int id = 1; id <= 7; ++id)
-    match.recording.people.push_back({id, id == 7 ? "" : std::to_string(id + 10), id == 7 ? "referee" : id <= 3 ? "red" : "green"});
   for (const GroundPeriod& period : match.periods) {
     for (std::int32_t frame = period.first_frame; frame <= period.last_frame; ++frame) {
-      for (std::int32_t person = 0; person < 7; ++person) {
-        if (person > 0 && random() % 5 == 0) continue;
-        GroundRecording::Sample sample;
-        sample.frame = frame, sample.person = person, sample.time = frame / 25.0;
-        sample.place = {uniform(-1, 101), uniform(-1, 65)};
-        match.recording.samples.push_back(sample);
+      Instant instant;
+      instant.index = frame;
+      instant.time = timestamp_from_seconds(frame / 25.0);
+      for (int id = 1; id <= 7; ++id) {
+        if (id > 1 && random() % 5 == 0) continue;
+        const double x = uniform(-1, 101), y = uniform(-1, 65);
+        instant.samples.push_back(sample_at(id, x, y));
       }
+      match.recording.add(instant);
     }
   }
+  for (int id = 1; id <= 7; ++id) {
+    match.recording.set_name(
+        {TrackId{id}, id == 7 ? "" : std::to_string(id + 10), id == 7 ? "referee" : id <= 3 ? "red" : "green"});
+  }
   return match;
+}
+
+template <typename Visit>
+void for_each_sample(const GroundMatch& match, Visit&& visit) {
+  for (const TrackColumns& track : match.recording.tracks()) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      const Recording::Moment& moment = match.recording.instants()[static_cast<std::size_t>(track.at()[row])];
+      visit(track.name, static_cast<std::int32_t>(moment.index), seconds(moment.time), track.place(row));
+    }
+  }
 }
 
 using Key = std::tuple<std::int32_t, std::string, std::string>;  // frame, team, label
 
 std::map<Key, Vector<2>> places_of(const GroundMatch& match) {
   std::map<Key, Vector<2>> places;
-  for (const auto& sample : match.recording.samples) {
-    const auto& person = match.recording.people[static_cast<std::size_t>(sample.person)];
-    EXPECT_NEAR(sample.time, sample.frame / match.rate_hz, 1e-4);
-    places[{sample.frame, person.team, person.label}] = sample.place;
-  }
+  for_each_sample(match, [&](const TrackName& person, std::int32_t frame, double time, const Vector<2>& place) {
+    EXPECT_NEAR(time, frame / match.recording.header.rate_hz, 1e-4);
+    places[{frame, person.team, person.label}] = place;
+  });
   return places;
 }
 
@@ -97,7 +117,7 @@ TEST(GroundExchange, MatchesComeBackFromEveryFormat) {
       expect_same(players_of(back), players_of(match), what);
       EXPECT_EQ(back.home, "red") << what;
       EXPECT_EQ(back.away, "green") << what;
-      EXPECT_DOUBLE_EQ(back.rate_hz, 25) << what;
+      EXPECT_DOUBLE_EQ(back.recording.header.rate_hz, 25) << what;
       EXPECT_DOUBLE_EQ(back.pitch.length, 100) << what;
       ASSERT_EQ(back.periods.size(), 2U) << what;
       EXPECT_EQ(back.periods[1].first_frame, 90) << what;
@@ -111,8 +131,9 @@ TEST(GroundExchange, SoccerNetAndMotKeepIds) {
   const GroundMatch match = made_up(3);
   const auto by_id = [](const GroundMatch& one) {
     std::map<std::pair<std::int32_t, int>, Vector<2>> places;
-    for (const auto& sample : one.recording.samples)
-      places[{sample.frame, one.recording.people[static_cast<std::size_t>(sample.person)].id}] = sample.place;
+    for_each_sample(one, [&](const TrackName& person, std::int32_t frame, double, const Vector<2>& place) {
+      places[{frame, number(person.id)}] = place;
+    });
     return places;
   };
   for (const auto& [name, format] :
@@ -141,8 +162,10 @@ TEST(GroundExchange, OneFormatAfterTheOtherChangesNothing) {
 TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
   const TemporaryFolder folder;
   GroundMatch match;
-  match.recording.people = {{1, "1", "red"}, {2, "2", "green"}};
-  match.recording.samples = {{0, 0, 0, {0, 0}, {0, 0}, 0, true}, {0, 1, 0, {105, 68}, {0, 0}, 0, true}};
+  Instant instant;
+  instant.named = {{TrackId{1}, "1", "red"}, {TrackId{2}, "2", "green"}};
+  instant.samples = {sample_at(1, 0, 0), sample_at(2, 105, 68)};
+  match.recording.add(instant);
   write_ground_as(match, folder / "m.dat", GroundFormat::tracab);
   EXPECT_EQ(read_file(folder / "m.dat"), "0:1,1,1,-5250,-3400,0.00;0,2,2,5250,3400,0.00;:0,0,0,0.00,H,Dead;:\n");
   write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
@@ -152,20 +175,21 @@ TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
   EXPECT_EQ(read_file(folder / "e.txt"), "0:0.00000,1.00000;1.00000,0.00000:NaN,NaN\n");
   write_ground_as(match, folder / "m.json", GroundFormat::soccernet);
   EXPECT_NE(read_file(folder / "m.json").find("\"x_bottom_middle\":-52.500,\"y_bottom_middle\":34.000"), std::string::npos);
-  to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
-  EXPECT_EQ(match.recording.samples[0].place.y(), 68);
-  from_corner(match.recording, match.pitch, {.y_down = true, .centred = true});
-  EXPECT_EQ(match.recording.samples[0].place, Vector<2>(-52.5, -34));
+  const Recording turned = to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
+  EXPECT_EQ(turned.tracks()[0].place(0).y(), 68);
+  EXPECT_EQ(match.recording.tracks()[0].place(0).y(), 0) << "a change of frame makes a new recording";
+  const Recording centred = from_corner(turned, match.pitch, {.y_down = true, .centred = true});
+  EXPECT_EQ(centred.tracks()[0].place(0), Vector<2>(-52.5, -34));
 }
 
 TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(2);
-  for (auto& person : match.recording.people) person.team.clear(), person.label.clear();
+  for (int id = 1; id <= 7; ++id) match.recording.set_name({TrackId{id}, "", ""});
   const auto warnings = write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
   ASSERT_EQ(warnings.size(), 1U);
   const GroundMatch back = read_ground_any(folder / "m_home.csv", {{}, match.pitch, 25});
-  EXPECT_EQ(back.recording.samples.size(), match.recording.samples.size());
+  EXPECT_EQ(back.recording.samples(), match.recording.samples());
   match.home = "white";
   EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
 }
@@ -173,14 +197,14 @@ TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
 TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(1);
-  match.rate_hz = 12.5;
+  match.recording.header.rate_hz = 12.5;
   EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
   EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::epts), Error);
   EXPECT_THROW(write_ground_as({}, folder / "m.dat", GroundFormat::tracab), Error);
   EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::sportec), Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "what failed left something behind";
   EXPECT_NO_THROW(write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica));
-  EXPECT_NEAR(read_ground_any(folder / "m_home.csv").rate_hz, 12.5, 1e-9);
+  EXPECT_NEAR(read_ground_any(folder / "m_home.csv").recording.header.rate_hz, 12.5, 1e-9);
 }
 
 /// Ends in a recording or in one Error of one line.
@@ -243,13 +267,49 @@ TEST(GroundExchange, BadFilesAreNamed) {
   EXPECT_THROW(read_ground_any(folder.path()), Error);
 }
 
+TEST(GroundExchange, PeopleAreListedAsTheFileNamesThem) {
+  const TemporaryFolder folder;
+  write_file(folder / "m.txt", "1,9,-1,-1,-1,-1,1,5,5,0\n1,2,-1,-1,-1,-1,1,6,6,0\n2,4,-1,-1,-1,-1,1,7,7,0\n");
+  const GroundMatch match = read_ground_any(folder / "m.txt");
+  EXPECT_EQ(match.order, (std::vector<TrackId>{TrackId{9}, TrackId{2}, TrackId{4}}));
+  write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  EXPECT_NE(read_file(folder / "m_home.csv").find("Player9,,Player2,,Player4"), std::string::npos);
+}
+
+TEST(GroundExchange, PixelsAreRefusedByEveryFormat) {
+  const TemporaryFolder folder;
+  GroundMatch match = made_up(1);
+  match.recording.header.name = "tracks.csv";
+  match.recording.header.frame.kind = FrameOfReference::Kind::image;
+  for (const GroundFormat format : {GroundFormat::csv, GroundFormat::mot, GroundFormat::metrica, GroundFormat::tracab,
+                                    GroundFormat::epts, GroundFormat::soccernet}) {
+    try {
+      write_ground_as(match, folder / "m_home.csv", format);
+      ADD_FAILURE() << ground_format_name(format);
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("tracks.csv"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("px"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_THROW(to_corner(match.recording, match.pitch, {}), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+/// Of the first person whom the file names, at the first instant.
+Vector<2> first_place(const GroundMatch& match) {
+  InstantRows rows(match.recording);
+  const InstantRows::Row row = rows.at(0).front();
+  return match.recording.tracks()[row.track].place(row.row);
+}
+
 TEST(GroundExchange, FilesOfVendors) {
   const std::string folder = test::data("football_files/");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
   struct Expected {
     const char* name;
     GroundFormat format;
-    std::size_t samples, people, periods;
+    std::int64_t samples;
+    std::size_t people, periods;
     Vector<2> first;
   };
   // By hand: of TRACAB the first target, -4.72 m of its second shirt; of the others the first line's first person.
@@ -261,18 +321,18 @@ TEST(GroundExchange, FilesOfVendors) {
         Expected{"statsperform_tracking_ma25.txt", GroundFormat::statsperform, 2025, 0, 2, {52.803, 68 - 23.617}}}) {
     ASSERT_EQ(ground_format_of_content(folder + one.name), one.format) << one.name;
     const GroundMatch match = read_ground_any(folder + one.name);
-    EXPECT_EQ(match.recording.samples.size(), one.samples) << one.name;
+    EXPECT_EQ(match.recording.samples(), one.samples) << one.name;
     if (one.people > 0) {
-      EXPECT_EQ(match.recording.people.size(), one.people) << one.name;
+      EXPECT_EQ(match.recording.tracks().size(), one.people) << one.name;
     }
     EXPECT_EQ(match.periods.size(), one.periods) << one.name;
     if (one.first != Vector<2>::Zero()) {
-      EXPECT_LT((match.recording.samples[0].place - one.first).norm(), 1e-6) << one.name;
+      EXPECT_LT((first_place(match) - one.first).norm(), 1e-6) << one.name;
     }
   }
   const GroundMatch pets = read_ground_any(test::data("pets2009/gt_001_300.txt"));
-  EXPECT_EQ(pets.recording.people.front().id, 9);
-  EXPECT_LT((pets.recording.samples.front().place - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
+  EXPECT_EQ(pets.order.front(), TrackId{9}) << "people are listed as the file names them";
+  EXPECT_LT((pets.recording.find(TrackId{9})->place(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
 }
 
 }  // namespace

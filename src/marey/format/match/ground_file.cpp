@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <map>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +14,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/mapped_file.h"
+#include "marey/format/match/ground_builder.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
@@ -26,19 +27,34 @@ constexpr std::array<std::string_view, columns> kNames = {"frame", "time", "id",
 constexpr std::array kNeeded = {id, x, y};
 constexpr double kFarthest = 1e5;  // m
 constexpr std::size_t kMostCameras = 64;
-constexpr std::size_t kShortestRow = 10;  // bytes, as 0,0,1,2,3
+constexpr std::array<std::string_view, 4> kBox = {"left", "top", "width", "height"};  // columns of tracks in a picture
+constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
+
+/// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 where there are none.
+double rate_of(std::span<const Recording::Moment> moments) {
+  const auto median = median_rate_hz(moments);
+  if (!median) return 25;
+  std::int64_t frames = 0;
+  Duration time{};
+  for (std::size_t i = 1; i < moments.size(); ++i) {
+    const std::int64_t count = moments[i].index - moments[i - 1].index;
+    const Duration step = moments[i].time - moments[i - 1].time;
+    if (std::abs(seconds(step) * *median - static_cast<double>(count)) > kUsual * static_cast<double>(count)) continue;
+    frames += count;
+    time += step;
+  }
+  return std::round(1000 * static_cast<double>(frames) / seconds(time)) / 1000;
+}
 
 class Reader {
  public:
-  Reader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz) {}
+  Reader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz), builder_(name) {}
 
-  GroundRecording read(std::string_view text) {
+  GroundFile read(std::string_view text) {
     TextLines lines(text);
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
     read_header(line);
-    const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-    recording_.samples.reserve(std::min(rows, text.size() / kShortestRow));
     while (lines.next(line)) {
       line_ = lines.number();
       if (line.empty()) continue;
@@ -46,8 +62,8 @@ class Reader {
       add();
     }
     if (!where_[frame]) number_frames();
-    sort();
-    return std::move(recording_);
+    if (!moves_) builder_.for_each_row([](GroundBuilder::Row& row) { row.velocity.reset(); });
+    return finish();
   }
 
  private:
@@ -64,6 +80,19 @@ class Reader {
       if (!where_[needed])
         throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kNames[needed], fmt::join(kNames, ","));
     }
+    has_boxes_ = std::all_of(kBox.begin(), kBox.end(),
+                             [&](std::string_view edge) { return std::find(fields_.begin(), fields_.end(), edge) != fields_.end(); });
+  }
+
+  GroundFile finish() {
+    GroundFile file;
+    file.recording.header.name = name_;
+    file.recording.header.frame.kind = has_boxes_ ? FrameOfReference::Kind::image : FrameOfReference::Kind::user_ground;
+    file.order = builder_.finish(file.recording);
+    file.recording.header.rate_hz = rate_of(file.recording.instants());
+    if (!cameras_.empty()) file.recording.header.rig.emplace();
+    for (std::string& camera : cameras_) file.recording.header.rig->cameras.emplace_back().name = std::move(camera);
+    return file;
   }
 
   /// The column's field; nothing where it is missing or empty.
@@ -87,24 +116,25 @@ class Reader {
   }
 
   void add() {
-    GroundRecording::Sample sample;
-    if (where_[frame]) sample.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
-    sample.time = where_[time_s] ? number(time_s, -1e7, 1e7) : sample.frame / rate_hz_;
-    sample.person = person(static_cast<int>(number(id, 1, 1e9)));
-    sample.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
-    if (field(vx) && field(vy)) sample.velocity = {number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest)};
+    GroundBuilder::Row row;
+    if (where_[frame]) row.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
+    row.time = where_[time_s] ? number(time_s, -1e7, 1e7) : row.frame / rate_hz_;
+    const std::int32_t person = builder_.person(static_cast<int>(number(id, 1, 1e9)), text(label), text(team));
+    row.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
+    if (field(vx) && field(vy)) row.velocity = Vector<2>(number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest));
+    moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
     const std::string how = text(state);
     if (!how.empty() && how != "observed" && how != "predicted")
       throw Error("{}:{}: state is {}; it must be observed or predicted", name_, line_, shown(how));
-    sample.observed = how != "predicted";
-    sample.cameras = cameras_of(text(cameras));
-    recording_.samples.push_back(sample);
+    row.observed = how != "predicted";
+    row.cameras = cameras_of(text(cameras));
+    builder_.add(person, row);
   }
 
   /// Frames from times alone: as many a second as there are instants, from time 0 or the first instant on, which is the earlier.
   void number_frames() {
     std::vector<double> times;
-    for (const auto& sample : recording_.samples) times.push_back(sample.time);
+    builder_.for_each_row([&](const GroundBuilder::Row& row) { times.push_back(row.time); });
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     std::vector<double> steps;
@@ -114,16 +144,8 @@ class Reader {
     std::nth_element(steps.begin(), middle, steps.end());
     const double start = std::min(0.0, times.front());
     if ((times.back() - start) / *middle > 1e9) throw Error("{}: its times are {:g} s apart, which makes no rate", name_, *middle);
-    for (auto& sample : recording_.samples) sample.frame = static_cast<std::int32_t>(std::lround((sample.time - start) / *middle));
-  }
-
-  std::int32_t person(int number) {
-    const auto [entry, is_new] = people_.try_emplace(number, static_cast<std::int32_t>(recording_.people.size()));
-    if (is_new) recording_.people.push_back({number, {}, {}});
-    GroundRecording::Person& one = recording_.people[static_cast<std::size_t>(entry->second)];
-    if (one.label.empty()) one.label = text(label);
-    if (one.team.empty()) one.team = text(team);
-    return entry->second;
+    builder_.for_each_row(
+        [&](GroundBuilder::Row& row) { row.frame = static_cast<std::int32_t>(std::lround((row.time - start) / *middle)); });
   }
 
   CameraMask cameras_of(const std::string& names) {
@@ -131,65 +153,69 @@ class Reader {
     split_fields(names, ' ', names_);
     for (const std::string_view one : names_) {
       if (one.empty()) continue;
-      auto known = std::find(recording_.cameras.begin(), recording_.cameras.end(), one);
-      if (known == recording_.cameras.end()) {
-        if (recording_.cameras.size() == kMostCameras) throw Error("{}:{}: more than {} cameras", name_, line_, kMostCameras);
-        known = recording_.cameras.insert(known, std::string(one));
+      auto known = std::find(cameras_.begin(), cameras_.end(), one);
+      if (known == cameras_.end()) {
+        if (cameras_.size() == kMostCameras) throw Error("{}:{}: more than {} cameras", name_, line_, kMostCameras);
+        known = cameras_.insert(known, std::string(one));
       }
-      mask |= std::uint64_t{1} << (known - recording_.cameras.begin());
+      mask |= std::uint64_t{1} << (known - cameras_.begin());
     }
     return mask;
-  }
-
-  void sort() {
-    auto& samples = recording_.samples;
-    const auto order = [&](const GroundRecording::Sample& one) {
-      return std::pair(one.frame, recording_.people[static_cast<std::size_t>(one.person)].id);
-    };
-    const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
-    if (!std::is_sorted(samples.begin(), samples.end(), before)) std::stable_sort(samples.begin(), samples.end(), before);
-    const auto twice =
-        std::adjacent_find(samples.begin(), samples.end(), [&](const auto& a, const auto& b) { return order(a) == order(b); });
-    if (twice != samples.end())
-      throw Error("{}: person {} is twice in frame {}", name_, recording_.people[static_cast<std::size_t>(twice->person)].id,
-                  twice->frame);
   }
 
   const std::string& name_;
   double rate_hz_;
   std::size_t line_ = 1;
-  GroundRecording recording_;
-  std::map<int, std::int32_t> people_;
+  GroundBuilder builder_;
+  std::vector<std::string> cameras_;
+  bool has_boxes_ = false;
+  bool moves_ = false;  // a velocity that is not 0 was read
   std::array<std::optional<std::size_t>, columns> where_;
   std::vector<std::string_view> fields_, names_;
 };
 
 }  // namespace
 
-GroundRecording parse_ground(std::string_view text, const std::string& name, double rate_hz) {
-  return Reader(name, rate_hz).read(text);
+Recording parse_ground(std::string_view text, const std::string& name, double rate_hz) {
+  return Reader(name, rate_hz).read(text).recording;
 }
 
-GroundRecording read_ground(const std::string& path, double rate_hz) {
+Recording read_ground(const std::string& path, double rate_hz) {
+  return read_ground_in_order(path, rate_hz).recording;
+}
+
+GroundFile read_ground_in_order(const std::string& path, double rate_hz) {
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return parse_ground(MappedFile(path).text(), path, rate_hz);
-  return parse_ground(read_file(path), path == "-" ? "standard input" : path, rate_hz);
+  if (std::filesystem::is_regular_file(path, error)) return Reader(path, rate_hz).read(MappedFile(path).text());
+  const std::string name = path == "-" ? "standard input" : path;
+  return Reader(name, rate_hz).read(read_file(path));
 }
 
-GroundWriter::GroundWriter(const std::string& path, std::vector<std::string> cameras) : file_(path), cameras_(std::move(cameras)) {
-  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
-}
-
-void GroundWriter::write(const GroundRecording::Sample& sample, const GroundRecording::Person& person) {
-  seen_by_.clear();
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    if ((sample.cameras >> i & 1) == 0) continue;
-    if (!seen_by_.empty()) seen_by_ += ' ';
-    seen_by_ += cameras_[i];
+Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
+  require_ground(header, "the CSV of people");
+  if (header.rig) {
+    for (const RigCamera& camera : header.rig->cameras) cameras_.push_back(camera.name);
   }
-  fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", sample.frame, sample.time,
-                 person.id, quoted_field(person.label), quoted_field(person.team), sample.place.x(), sample.place.y(),
-                 sample.velocity.x(), sample.velocity.y(), sample.observed ? "observed" : "predicted", quoted_field(seen_by_));
+  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
+  return {};
+}
+
+void GroundWriter::write(const Instant& instant) {
+  for (const TrackName& name : instant.named) fields_[name.id] = {quoted_field(name.label), quoted_field(name.team)};
+  const double time = seconds(instant.time);
+  for (const Sample& sample : instant.samples) {
+    seen_by_.clear();
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if ((sample.cameras >> i & 1) == 0) continue;
+      if (!seen_by_.empty()) seen_by_ += ' ';
+      seen_by_ += cameras_[i];
+    }
+    const Fields& fields = fields_[sample.track];
+    const Vector<3> velocity = sample.velocity.value_or(Vector<3>::Zero());
+    fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", instant.index, time,
+                   number(sample.track), fields.label, fields.team, sample.position.x(), sample.position.y(), velocity.x(),
+                   velocity.y(), sample.measured() ? "observed" : "predicted", quoted_field(seen_by_));
+  }
   if (text_.size() > (std::size_t{1} << 20)) {
     file_.write(text_);
     text_.clear();
@@ -202,11 +228,11 @@ void GroundWriter::finish() {
   file_.finish();
 }
 
-void write_ground(const GroundRecording& recording, const std::string& path) {
-  GroundWriter writer(path, recording.cameras);
-  for (const GroundRecording::Sample& sample : recording.samples) {
-    writer.write(sample, recording.people[static_cast<std::size_t>(sample.person)]);
-  }
+void write_ground(const Recording& recording, const std::string& path) {
+  GroundWriter writer(path);
+  writer.begin(recording.header);
+  InstantsOf instants(recording);
+  while (const auto instant = instants.next()) writer.write(*instant);
   writer.finish();
 }
 

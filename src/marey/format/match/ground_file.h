@@ -1,44 +1,62 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
+#include "marey/core/sink.h"
 #include "marey/core/whole_file.h"
 
 namespace marey::format::match {
 
 /// People on the ground as CSV: frame,time,id,label,team,x,y,vx,vy,state,cameras. Frames count from 0; s, m, m/s; one row a person
 /// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
-/// between.
+/// between. Where no velocity is known all are written as 0.
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
-/// missing are 0. Throws Error, with the line, where something is not as it should be.
-GroundRecording read_ground(const std::string& path, double rate_hz = 25);
+/// missing are not known, nor are any where all are 0. The recording's rate is that of most of its steps; its rig, where cameras
+/// are named, has their names alone. A file that has boxes too (left, top, width, height) is one of tracks in a picture: its frame
+/// of reference says that it is in px. Throws Error, with the line, where something is not as it should be.
+Recording read_ground(const std::string& path, double rate_hz = 25);
 
 /// The same from text; `name` is what messages call it.
-GroundRecording parse_ground(std::string_view text, const std::string& name, double rate_hz = 25);
+Recording parse_ground(std::string_view text, const std::string& name, double rate_hz = 25);
 
-/// Writes such a file as it comes, so that memory does not grow with its length. Throws Error where the place is full.
-class GroundWriter {
+/// The same, with the people in the order in which the file names them.
+struct GroundFile {
+  Recording recording;
+  std::vector<TrackId> order;
+};
+GroundFile read_ground_in_order(const std::string& path, double rate_hz);
+
+/// Writes such a file as it comes, so that memory does not grow with its length.
+class GroundWriter : public Sink {
  public:
-  GroundWriter(const std::string& path, std::vector<std::string> cameras);
+  /// Throws Error where nothing can be written there.
+  explicit GroundWriter(const std::string& path) : path_(path), file_(path) {}
 
-  /// `person` is who `sample` is of; its index there is passed over. Rows come by frame, then by id.
-  void write(const GroundRecording::Sample& sample, const GroundRecording::Person& person);
-
-  /// Without it nothing is left behind.
-  void finish();
+  std::string name() const override { return path_; }
+  /// Throws Error for a recording that is not of the ground in m. Cameras are the rig's.
+  Wants begin(const RecordingHeader& header) override;
+  void write(const Instant& instant) override;
+  void finish() override;
 
  private:
+  struct Fields {
+    std::string label, team;  // quoted where they must be
+  };
+
+  std::string path_;
   WholeFile file_;
   std::vector<std::string> cameras_;
+  std::map<TrackId, Fields> fields_;
   std::string text_, seen_by_;
 };
 
 /// Writes the file, whole or not at all. Throws Error where that cannot be.
-void write_ground(const GroundRecording& recording, const std::string& path);
+void write_ground(const Recording& recording, const std::string& path);
 
 }  // namespace marey::format::match

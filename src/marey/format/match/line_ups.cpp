@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -15,7 +16,7 @@
 namespace marey::format::match {
 namespace {
 
-bool is_referee(const GroundRecording::Person& person) {
+bool is_referee(const TrackName& person) {
   for (std::string text : {person.team, person.label}) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (text.find("referee") != std::string::npos || text == "ref" || text == "officials") return true;
@@ -24,30 +25,30 @@ bool is_referee(const GroundRecording::Person& person) {
 }
 
 /// Teams by how often their people are seen; then by their first person.
-std::vector<std::string> teams_by_size(const GroundRecording& recording) {
-  std::vector<std::int64_t> seen(recording.people.size(), 0);
-  for (const auto& sample : recording.samples) ++seen[static_cast<std::size_t>(sample.person)];
+std::vector<std::string> teams_by_size(const GroundMatch& match, const std::vector<std::size_t>& listed) {
   std::vector<std::string> names;
-  std::map<std::string, std::int64_t> sizes;
-  for (std::size_t i = 0; i < recording.people.size(); ++i) {
-    const GroundRecording::Person& person = recording.people[i];
-    if (person.team.empty() || is_referee(person)) continue;
-    if (!sizes.contains(person.team)) names.push_back(person.team);
-    sizes[person.team] += seen[i];
+  std::map<std::string, std::size_t> sizes;
+  for (const std::size_t i : listed) {
+    const TrackColumns& track = match.recording.tracks()[i];
+    const std::string& team = track.name.team;
+    if (team.empty() || is_referee(track.name)) continue;
+    if (!sizes.contains(team)) names.push_back(team);
+    sizes[team] += track.size();
   }
   std::stable_sort(names.begin(), names.end(), [&](const auto& a, const auto& b) { return sizes[a] > sizes[b]; });
   return names;
 }
 
-std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& squads) {
-  std::vector<std::string> teams = teams_by_size(match.recording);
+std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& line_ups) {
+  const auto& tracks = match.recording.tracks();
+  std::vector<std::string> teams = teams_by_size(match, line_ups.listed);
   for (const std::string& name : {match.home, match.away}) {
-    if (name.empty() || match.recording.people.empty() || std::find(teams.begin(), teams.end(), name) != teams.end()) continue;
+    if (name.empty() || tracks.empty() || std::find(teams.begin(), teams.end(), name) != teams.end()) continue;
     throw Error("nobody is of the team \"{}\"; there {}", name,
                 teams.empty() ? std::string("are no teams") : fmt::format("are: {}", fmt::join(teams, ", ")));
   }
   if (teams.size() > 2) {
-    squads.warnings.push_back(
+    line_ups.warnings.push_back(
         fmt::format("the format knows two teams, the recording {}: {}; --home and --away choose others than the "
                     "largest",
                     teams.size(), fmt::join(teams, ", ")));
@@ -66,8 +67,7 @@ std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& squads) 
   }
   // Of two that were found, the one whose people come first is at home.
   const auto first_of = [&](const std::string& team) {
-    const auto& people = match.recording.people;
-    return std::find_if(people.begin(), people.end(), [&](const auto& one) { return one.team == team; });
+    return std::find_if(line_ups.listed.begin(), line_ups.listed.end(), [&](std::size_t i) { return tracks[i].name.team == team; });
   };
   if (match.home.empty() && match.away.empty() && !pair[1].empty() && first_of(pair[1]) < first_of(pair[0]))
     std::swap(pair[0], pair[1]);
@@ -75,32 +75,44 @@ std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& squads) 
 }
 
 /// The label where it is a shirt's number and still free, else the id, else the next free one.
-int number_for(const GroundRecording::Person& person, std::set<int>& taken) {
+int number_for(const TrackName& person, std::set<int>& taken) {
   const auto label = whole_number_of(person.label);
-  int number = label && *label >= 0 && *label <= 999 ? static_cast<int>(*label) : person.id;
+  int number = label && *label >= 0 && *label <= 999 ? static_cast<int>(*label) : marey::number(person.id);
   while (!taken.insert(number).second) ++number;
   return number;
 }
 
 }  // namespace
 
-std::vector<std::int32_t> LineUps::of(Side side) const {
-  std::vector<std::int32_t> people;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    if (members[i].side == side) people.push_back(static_cast<std::int32_t>(i));
+std::vector<std::size_t> LineUps::of(Side side) const {
+  std::vector<std::size_t> tracks;
+  std::copy_if(listed.begin(), listed.end(), std::back_inserter(tracks), [&](std::size_t i) { return members[i].side == side; });
+  return tracks;
+}
+
+std::vector<std::size_t> listed_tracks(const GroundMatch& match) {
+  const std::vector<TrackColumns>& tracks = match.recording.tracks();
+  std::map<TrackId, std::size_t> left;
+  for (std::size_t i = 0; i < tracks.size(); ++i) left[tracks[i].id()] = i;
+  std::vector<std::size_t> listed;
+  for (const TrackId id : match.order) {
+    if (const auto track = left.extract(id)) listed.push_back(track.mapped());
   }
-  return people;
+  for (const auto& [id, track] : left) listed.push_back(track);
+  return listed;
 }
 
 LineUps line_ups_of(const GroundMatch& match) {
-  LineUps squads;
-  const std::array<std::string, 2> pair = two_teams(match, squads);
+  LineUps line_ups;
+  line_ups.listed = listed_tracks(match);
+  line_ups.members.resize(line_ups.listed.size());
+  const std::array<std::string, 2> pair = two_teams(match, line_ups);
   const bool no_teams = pair[0].empty() && pair[1].empty();
-  if (no_teams && !match.recording.people.empty())
-    squads.warnings.push_back("nobody has a team; all were written as the home team's");
+  if (no_teams && !line_ups.listed.empty()) line_ups.warnings.push_back("nobody has a team; all were written as the home team's");
   std::map<Side, std::set<int>> taken;
-  for (const GroundRecording::Person& person : match.recording.people) {
-    LineUps::Member& member = squads.members.emplace_back();
+  for (const std::size_t i : line_ups.listed) {
+    const TrackName& person = match.recording.tracks()[i].name;
+    LineUps::Member& member = line_ups.members[i];
     if (is_referee(person)) {
       member.side = Side::referee;
     } else if (no_teams || (!person.team.empty() && person.team == pair[0])) {
@@ -111,18 +123,14 @@ LineUps line_ups_of(const GroundMatch& match) {
     member.number = number_for(person, taken[member.side]);
     member.name = person.label.empty() || number_of(person.label) ? fmt::format("Player No.{}", member.number) : person.label;
   }
-  squads.teams = {pair[0].empty() ? "Home" : pair[0], pair[1].empty() ? "Away" : pair[1]};
-  return squads;
+  line_ups.teams = {pair[0].empty() ? "Home" : pair[0], pair[1].empty() ? "Away" : pair[1]};
+  return line_ups;
 }
 
 std::vector<GroundPeriod> periods_of(const GroundMatch& match) {
-  if (!match.periods.empty() || match.recording.samples.empty()) return match.periods;
-  return {{1, match.recording.samples.front().frame, match.recording.samples.back().frame}};
-}
-
-bool has_velocities(const GroundRecording& recording) {
-  return std::any_of(recording.samples.begin(), recording.samples.end(),
-                     [](const auto& sample) { return sample.velocity != Vector<2>::Zero(); });
+  const auto& instants = match.recording.instants();
+  if (!match.periods.empty() || instants.empty()) return match.periods;
+  return {{1, static_cast<std::int32_t>(instants.front().index), static_cast<std::int32_t>(instants.back().index)}};
 }
 
 int whole_rate(double rate_hz, std::string_view format) {

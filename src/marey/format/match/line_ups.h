@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,11 +20,15 @@ struct LineUps {
     std::string name;  ///< the label, or "Player No.7"; never a bare number, which some readers choke on
   };
   std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" where there are none
-  std::vector<Member> members;        ///< one a person, in the recording's order
+  std::vector<Member> members;        ///< one a track, in the recording's order
+  std::vector<std::size_t> listed;    ///< indices of the tracks in the match's order
   std::vector<std::string> warnings;  ///< one sentence each
 
-  std::vector<std::int32_t> of(Side side) const;  ///< indices of the people, in their order
+  std::vector<std::size_t> of(Side side) const;  ///< indices of its tracks, in the match's order
 };
+
+/// Indices of the recording's tracks in the match's order.
+std::vector<std::size_t> listed_tracks(const GroundMatch& match);
 
 /// Home and away are those that `match` names, else the two teams with the most places, in the order of their first people. Without
 /// any team everyone is at home. Throws Error where a named team has nobody.
@@ -33,19 +36,6 @@ LineUps line_ups_of(const GroundMatch& match);
 
 /// The match's periods; one from the first frame to the last where it has none.
 std::vector<GroundPeriod> periods_of(const GroundMatch& match);
-
-/// Whether velocities are known: they are all 0 where a file had none.
-bool has_velocities(const GroundRecording& recording);
-
-/// Calls `instant(frame, samples of it)` for each frame that has any, in order.
-template <typename Instant>
-void for_each_instant(const GroundRecording& recording, Instant&& instant) {
-  const auto& samples = recording.samples;
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    while (end < samples.size() && samples[end].frame == samples[begin].frame) ++end;
-    instant(samples[begin].frame, std::span(samples).subspan(begin, end - begin));
-  }
-}
 
 /// Frames a second as a whole number, which some formats ask for. Throws Error, with the format's name, where the rate is more than
 /// 0.5 % off.

@@ -59,7 +59,7 @@ class Reader {
   }
 
   GroundMatch finish() {
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -92,8 +92,9 @@ class Reader {
     for (const Column& column : columns) {
       const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
       if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
-      builder_.add(frame, frame / match_.rate_hz, column.person, match_.pitch.length * number(column.at, -1e3, 1e3),
-                   match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)), where());
+      builder_.add(frame, frame / match_.recording.header.rate_hz, column.person,
+                   match_.pitch.length * number(column.at, -1e3, 1e3), match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)),
+                   where());
     }
   }
 
@@ -107,7 +108,7 @@ class Reader {
     const double rate = std::round(1000 * *frame / *time) / 1000;
     if (!(*time > 0 && rate >= 0.1 && rate <= 10'000))
       throw Error("{}: its last frame is {:g} at {:g} s, which makes no rate; the match begins with frame 1", name_, *frame, *time);
-    match_.rate_hz = rate;
+    match_.recording.header.rate_hz = rate;
   }
 
   std::string name_;
@@ -127,32 +128,35 @@ std::string plain(const std::string& text) {
   return result;
 }
 
-std::string heads(const LineUps& squads, Side side, const std::vector<std::int32_t>& people) {
+std::string heads(const LineUps& line_ups, Side side, const std::vector<std::size_t>& people) {
   std::string teams = ",,", numbers = ",,", names = "Period,Frame,Time [s]";
-  for (const std::int32_t person : people) {
-    const int number = squads.members[static_cast<std::size_t>(person)].number;
-    teams += fmt::format(",{},", plain(squads.teams[side == Side::home ? 0 : 1]));
+  for (const std::size_t person : people) {
+    const int number = line_ups.members[person].number;
+    teams += fmt::format(",{},", plain(line_ups.teams[side == Side::home ? 0 : 1]));
     numbers += fmt::format(",{},", number);
     names += fmt::format(",Player{},", number);
   }
   return fmt::format("{},,\n{},,\n{},Ball,\n", teams, numbers, names);
 }
 
-void write_team(const GroundMatch& match, const LineUps& squads, Side side, const std::vector<GroundPeriod>& periods,
+void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, const std::vector<GroundPeriod>& periods,
                 WholeFile& file) {
-  const std::vector<std::int32_t> people = squads.of(side);
-  std::string text = heads(squads, side, people);
-  std::vector<std::optional<Vector<2>>> places(match.recording.people.size());
-  for_each_instant(match.recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample> samples) {
+  const std::vector<std::size_t> people = line_ups.of(side);
+  std::string text = heads(line_ups, side, people);
+  const Recording& recording = match.recording;
+  std::vector<std::optional<Vector<2>>> places(recording.tracks().size());
+  InstantRows rows(recording);
+  for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
+    const std::int64_t frame = recording.instants()[instant].index;
     const auto period = std::find_if(periods.begin(), periods.end(),
                                      [&](const auto& one) { return one.first_frame <= frame && frame <= one.last_frame; });
-    if (period == periods.end()) return;
+    if (period == periods.end()) continue;
     std::fill(places.begin(), places.end(), std::nullopt);
-    for (const auto& sample : samples) places[static_cast<std::size_t>(sample.person)] = sample.place;
-    fmt::format_to(std::back_inserter(text), "{},{},{:.5f}", period->number, frame + 1, (frame + 1) / match.rate_hz);
-    for (const std::int32_t person : people) {
-      const auto& place = places[static_cast<std::size_t>(person)];
-      if (place) {
+    for (const auto& [track, row] : rows.at(instant)) places[track] = recording.tracks()[track].place(row);
+    fmt::format_to(std::back_inserter(text), "{},{},{:.5f}", period->number, frame + 1,
+                   static_cast<double>(frame + 1) / recording.header.rate_hz);
+    for (const std::size_t person : people) {
+      if (const auto& place = places[person]) {
         fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", place->x() / match.pitch.length,
                        1 - place->y() / match.pitch.width);
       } else {
@@ -160,10 +164,10 @@ void write_team(const GroundMatch& match, const LineUps& squads, Side side, cons
       }
     }
     text += ",NaN,NaN\n";
-    if (text.size() < (std::size_t{1} << 20)) return;
+    if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
-  });
+  }
   file.write(text);
 }
 
@@ -181,21 +185,21 @@ GroundMatch parse_metrica(std::string_view home, const std::string& home_name, s
 }
 
 std::vector<std::string> write_metrica(const GroundMatch& match, const std::string& path) {
-  LineUps squads = line_ups_of(match);
+  LineUps line_ups = line_ups_of(match);
   const std::vector<GroundPeriod> periods = periods_of(match);
   std::string stem = with_ending(path, "");
   for (const std::string_view side : {"_home", "_away"}) {
     if (stem.ends_with(side)) stem.resize(stem.size() - side.size());
   }
   WholeFile home(stem + "_home.csv"), away(stem + "_away.csv");
-  write_team(match, squads, Side::home, periods, home);
-  write_team(match, squads, Side::away, periods, away);
+  write_team(match, line_ups, Side::home, periods, home);
+  write_team(match, line_ups, Side::away, periods, away);
   home.finish();
   away.finish();
-  const auto left_out = squads.of(Side::referee).size() + squads.of(Side::other).size();
+  const auto left_out = line_ups.of(Side::referee).size() + line_ups.of(Side::other).size();
   if (left_out > 0)
-    squads.warnings.push_back(fmt::format("{} people of neither team were left out: Metrica's files hold two teams", left_out));
-  return squads.warnings;
+    line_ups.warnings.push_back(fmt::format("{} people of neither team were left out: Metrica's files hold two teams", left_out));
+  return line_ups.warnings;
 }
 
 }  // namespace marey::format::match

@@ -18,7 +18,7 @@ GroundMatch parse_mot_world(std::string_view text, const std::string& name, doub
   constexpr std::array needed = {0, 1, 7, 8};  // frame, id, X, Y
   constexpr std::array<std::string_view, 4> names = {"frame", "id", "X", "Y"};
   GroundMatch match;
-  match.rate_hz = rate_hz;
+  match.recording.header.rate_hz = rate_hz;
   GroundBuilder builder(name);
   TextLines lines(text);
   std::string_view line;
@@ -45,16 +45,20 @@ GroundMatch parse_mot_world(std::string_view text, const std::string& name, doub
     const int id = static_cast<int>(values[1]);
     builder.add(frame, frame / rate_hz, builder.person(std::to_string(id), id, {}, {}), values[2], values[3], where);
   }
-  match.recording = builder.finish();
+  match.order = builder.finish(match.recording);
   return match;
 }
 
 void write_mot_world(const GroundMatch& match, const std::string& path) {
   WholeFile file(path);
   std::string text;
-  for (const auto& sample : match.recording.samples) {
-    fmt::format_to(std::back_inserter(text), "{},{},-1,-1,-1,-1,1,{:.3f},{:.3f},0\n", sample.frame + 1,
-                   match.recording.people[static_cast<std::size_t>(sample.person)].id, sample.place.x(), sample.place.y());
+  InstantRows rows(match.recording);
+  for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = match.recording.tracks()[index];
+      fmt::format_to(std::back_inserter(text), "{},{},-1,-1,-1,-1,1,{:.3f},{:.3f},0\n",
+                     match.recording.instants()[instant].index + 1, number(track.id()), track.x()[row], track.y()[row]);
+    }
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();

@@ -19,22 +19,26 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kImages = 1'000'000;              // image ids of one clip
+constexpr std::int64_t kImages = 1'000'000;  // image ids of one clip
+constexpr std::string_view kPerson =
+    "\n{{\"id\":\"{}\",\"image_id\":\"{}\",\"track_id\":{},\"supercategory\":\"object\",\"category_id\":{},"
+    "\"attributes\":{},\"bbox_pitch\":{{\"x_bottom_left\":{:.3f},\"y_bottom_left\":{:.3f},\"x_bottom_right\":{:.3f},"
+    "\"y_bottom_right\":{:.3f},\"x_bottom_middle\":{:.3f},\"y_bottom_middle\":{:.3f}}}}}";
 constexpr std::int64_t kFirstClip = 1000 * 1'000'000LL;  // what ours begin with
 
 class Reader {
  public:
   Reader(const std::string& name, const GroundReadOptions& options) : name_(name), builder_(name) {
     match_.pitch = options.pitch;
-    match_.rate_hz = options.rate_hz;
+    match_.recording.header.rate_hz = options.rate_hz;
   }
 
   GroundMatch read(std::string_view text) {
     const json root = json::parse(text);
     if (!root.is_object()) throw Error("{}: is no game state of SoccerNet: it must be an object", name_);
     if (const auto info = root.find("info"); info != root.end() && info->is_object()) {
-      const double rate = number_or(*info, "frame_rate", match_.rate_hz);
-      if (rate >= 0.1 && rate <= 10'000) match_.rate_hz = rate;
+      const double rate = number_or(*info, "frame_rate", match_.recording.header.rate_hz);
+      if (rate >= 0.1 && rate <= 10'000) match_.recording.header.rate_hz = rate;
     }
     const auto list = root.contains("predictions") ? root.find("predictions") : root.find("annotations");
     if (list == root.end() || !list->is_array())
@@ -44,7 +48,7 @@ class Reader {
       add((*list)[i]);
     }
     match_.home = "left", match_.away = "right";
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -83,7 +87,7 @@ class Reader {
     const std::string jersey = text_of(attributes, "jersey");
     const std::string label = jersey.empty() && role == "goalkeeper" ? "keeper" : jersey;
     const std::int32_t person = builder_.person(std::to_string(*track), static_cast<int>(*track), label, team);
-    builder_.add(frame, frame / match_.rate_hz, person, match_.pitch.length / 2 + place("x_bottom_middle"),
+    builder_.add(frame, frame / match_.recording.header.rate_hz, person, match_.pitch.length / 2 + place("x_bottom_middle"),
                  match_.pitch.width / 2 - place("y_bottom_middle"), where_);
   }
 
@@ -93,15 +97,15 @@ class Reader {
   std::string where_;
 };
 
-std::int64_t image_id(std::int32_t frame) {
+std::int64_t image_id(std::int64_t frame) {
   return kFirstClip + frame + 1;
 }
 
-bool is_keeper(const GroundRecording::Person& person) {
+bool is_keeper(const TrackName& person) {
   return person.label == "keeper" || person.label == "goalkeeper";
 }
 
-std::string attributes_of(const LineUps::Member& member, const GroundRecording::Person& person) {
+std::string attributes_of(const LineUps::Member& member, const TrackName& person) {
   const bool plays = member.side == Side::home || member.side == Side::away;
   const char* role = plays && is_keeper(person)     ? "goalkeeper"
                      : plays                        ? "player"
@@ -114,18 +118,18 @@ std::string attributes_of(const LineUps::Member& member, const GroundRecording::
                                                  : "\"right\"");
 }
 
-int category_of(Side side, const GroundRecording::Person& person) {
+int category_of(Side side, const TrackName& person) {
   return side == Side::referee ? 3 : side == Side::other ? 7 : is_keeper(person) ? 2 : 1;
 }
 
-std::string images_of(const GroundRecording& recording) {
+std::string images_of(const Recording& recording) {
   std::string text;
-  for_each_instant(recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample>) {
+  for (const auto& [frame, time] : recording.instants()) {
     fmt::format_to(std::back_inserter(text),
                    "{}\n{{\"is_labeled\":true,\"image_id\":\"{}\",\"file_name\":\"{:06}.jpg\",\"has_labeled_person\":true,"
                    "\"has_labeled_pitch\":true,\"has_labeled_camera\":true}}",
                    text.empty() ? "" : ",", image_id(frame), frame + 1);
-  });
+  }
   return text;
 }
 
@@ -142,10 +146,10 @@ GroundMatch parse_soccernet(std::string_view text, const std::string& name, cons
 }
 
 std::vector<std::string> write_soccernet(const GroundMatch& match, const std::string& path) {
-  const GroundRecording& recording = match.recording;
-  const std::int32_t last = recording.samples.empty() ? 0 : recording.samples.back().frame;
+  const Recording& recording = match.recording;
+  const std::int64_t last = recording.instants().empty() ? 0 : recording.instants().back().index;
   if (last + 1 >= kImages) throw Error("SoccerNet's image ids count to {}, and the recording has frame {}", kImages - 1, last);
-  const LineUps squads = line_ups_of(match);
+  const LineUps line_ups = line_ups_of(match);
   const bool labels = std::filesystem::path(path).filename().string().find("Labels") != std::string::npos;
   WholeFile file(path);
   file.write(
@@ -154,29 +158,28 @@ std::vector<std::string> write_soccernet(const GroundMatch& match, const std::st
                   "{{\"id\":2,\"name\":\"goalkeeper\",\"supercategory\":\"object\"}},"
                   "{{\"id\":3,\"name\":\"referee\",\"supercategory\":\"object\"}},"
                   "{{\"id\":7,\"name\":\"other\",\"supercategory\":\"object\"}}],\n\"images\":[",
-                  match.rate_hz, last + 1));
+                  match.recording.header.rate_hz, last + 1));
   file.write(images_of(recording));
   file.write(fmt::format("],\n\"{}\":[", labels ? "annotations" : "predictions"));
   std::string text;
-  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
-    const auto& sample = recording.samples[i];
-    const auto person = static_cast<std::size_t>(sample.person);
-    const LineUps::Member& member = squads.members[person];
-    const double x = sample.place.x() - match.pitch.length / 2, y = match.pitch.width / 2 - sample.place.y();
-    fmt::format_to(std::back_inserter(text),
-                   "{}\n{{\"id\":\"{}\",\"image_id\":\"{}\",\"track_id\":{},\"supercategory\":\"object\",\"category_id\":{},"
-                   "\"attributes\":{},\"bbox_pitch\":{{\"x_bottom_left\":{:.3f},\"y_bottom_left\":{:.3f},\"x_bottom_right\":{:.3f},"
-                   "\"y_bottom_right\":{:.3f},\"x_bottom_middle\":{:.3f},\"y_bottom_middle\":{:.3f}}}}}",
-                   i == 0 ? "" : ",", i + 1, image_id(sample.frame), recording.people[person].id,
-                   category_of(member.side, recording.people[person]), attributes_of(member, recording.people[person]), x, y, x, y,
-                   x, y);
+  InstantRows rows(recording);
+  std::int64_t count = 0;
+  for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = recording.tracks()[index];
+      const LineUps::Member& member = line_ups.members[index];
+      const double x = track.x()[row] - match.pitch.length / 2, y = match.pitch.width / 2 - track.y()[row];
+      text += count++ == 0 ? "" : ",";
+      fmt::format_to(std::back_inserter(text), kPerson, count, image_id(recording.instants()[instant].index), number(track.id()),
+                     category_of(member.side, track.name), attributes_of(member, track.name), x, y, x, y, x, y);
+    }
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
   }
   file.write(text + "]}\n");
   file.finish();
-  return squads.warnings;
+  return line_ups.warnings;
 }
 
 }  // namespace marey::format::match

@@ -51,7 +51,7 @@ class Reader {
     for (const pugi::xml_node set : positions.children("FrameSet")) learn_rate(set);
     for (const pugi::xml_node set : positions.children("FrameSet")) read_set(set);
     std::sort(match_.periods.begin(), match_.periods.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -81,7 +81,7 @@ class Reader {
     if (rate_known_ || !begin || !end || !(*end > *begin)) return;
     const double rate = (number(last, "N", 0, 1e9) - number(first, "N", 0, 1e9)) / (*end - *begin);
     if (rate < 0.1 || rate > 10'000) return;
-    match_.rate_hz = std::round(rate * 100) / 100;
+    match_.recording.header.rate_hz = std::round(rate * 100) / 100;
     rate_known_ = true;
   }
 
@@ -99,7 +99,7 @@ class Reader {
     for (const pugi::xml_node node : set.children("Frame")) {
       const auto frame = static_cast<std::int32_t>(number(node, "N", 0, 1e9));
       extend(period, frame);
-      builder_.add(frame, frame / match_.rate_hz, person, match_.pitch.length / 2 + number(node, "X", -1e5, 1e5),
+      builder_.add(frame, frame / match_.recording.header.rate_hz, person, match_.pitch.length / 2 + number(node, "X", -1e5, 1e5),
                    match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5), name_);
     }
   }

@@ -32,7 +32,7 @@ class Reader {
       where_ = std::move(where);
       read_line(line);
     });
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -57,7 +57,7 @@ class Reader {
     TextLines lines(text);
     std::string_view line;
     std::optional<double> first;
-    match_.rate_hz = 10;
+    match_.recording.header.rate_hz = 10;
     while (lines.next(line)) {
       if (line.empty()) continue;
       const Head head = head_of(line, fmt::format("{}:{}", name_, lines.number()));
@@ -68,14 +68,14 @@ class Reader {
       const double step = head.ms - *first;
       if (!(step >= 1 && step <= 10'000))
         throw Error("{}: its first two instants are {:g} ms apart, which makes no rate", name_, step);
-      match_.rate_hz = 1000 / step;
+      match_.recording.header.rate_hz = 1000 / step;
       return;
     }
   }
 
   void read_line(std::string_view line) {
     const Head head = head_of(line, where_);
-    const double number = std::round((head.ms - start_ms_) / 1000 * match_.rate_hz);
+    const double number = std::round((head.ms - start_ms_) / 1000 * match_.recording.header.rate_hz);
     if (!(number >= 0 && number <= 1e9)) throw Error("{}: its time lies before the first line's, or days behind it", where_);
     const auto frame = static_cast<std::int32_t>(number);
     extend(head.period, frame);
@@ -98,7 +98,7 @@ class Reader {
       throw Error("{}: {} is nobody; it must read side,person,shirt,x,y", where_, shown(text));
     const std::int32_t person =
         builder_.person(std::string(fields_[1]), 0, std::string(fields_[2]), kTeams[static_cast<std::size_t>(*side)]);
-    builder_.add(frame, frame / match_.rate_hz, person, *x, match_.pitch.width - *y, where_);
+    builder_.add(frame, frame / match_.recording.header.rate_hz, person, *x, match_.pitch.width - *y, where_);
   }
 
   void extend(int number, std::int32_t frame) {

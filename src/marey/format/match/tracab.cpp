@@ -40,7 +40,7 @@ class Reader {
       where_ = std::move(where);
       read_line(line);
     });
-    match_.recording = builder_.finish();
+    match_.order = builder_.finish(match_.recording);
     return std::move(match_);
   }
 
@@ -61,7 +61,7 @@ class Reader {
     const pugi::xml_document document = parse_xml(text, metadata_name_);
     const pugi::xml_node root = document.document_element();
     if (const pugi::xml_node head = root.child("match")) {
-      match_.rate_hz = metadata_number(head.attribute("iFrameRateFps").as_string(), "iFrameRateFps", 1, 1000);
+      match_.recording.header.rate_hz = metadata_number(head.attribute("iFrameRateFps").as_string(), "iFrameRateFps", 1, 1000);
       match_.pitch.length = metadata_number(head.attribute("fPitchXSizeMeters").as_string(), "fPitchXSizeMeters", 1, 1000);
       match_.pitch.width = metadata_number(head.attribute("fPitchYSizeMeters").as_string(), "fPitchYSizeMeters", 1, 1000);
       for (const pugi::xml_node period : head.children("period")) {
@@ -70,7 +70,7 @@ class Reader {
                    metadata_number(period.attribute("iEndFrame").as_string(), "iEndFrame", 0, kMostFrames));
       }
     } else if (root.child("FrameRate")) {
-      match_.rate_hz = metadata_number(root.child_value("FrameRate"), "FrameRate", 1, 1000);
+      match_.recording.header.rate_hz = metadata_number(root.child_value("FrameRate"), "FrameRate", 1, 1000);
       match_.pitch.length = metadata_number(root.child_value("PitchLongSide"), "PitchLongSide", 100, 1e5) / kMetre;
       match_.pitch.width = metadata_number(root.child_value("PitchShortSide"), "PitchShortSide", 100, 1e5) / kMetre;
       for (int phase = 1; phase <= 5; ++phase) {
@@ -124,7 +124,7 @@ class Reader {
     const auto named = names_.find({team, number});
     const std::string label = plays ? label_of(named == names_.end() ? std::string() : named->second, number) : std::string();
     const std::string whose = team == 1 ? match_.home : team == 0 ? match_.away : team == 3 ? "referee" : "";
-    builder_.add(frame, frame / match_.rate_hz, builder_.person(key, id, label, whose),
+    builder_.add(frame, frame / match_.recording.header.rate_hz, builder_.person(key, id, label, whose),
                  values[3] / kMetre + match_.pitch.length / 2, values[4] / kMetre + match_.pitch.width / 2, where_);
   }
 
@@ -137,23 +137,23 @@ class Reader {
   std::vector<std::string_view> targets_, fields_;
 };
 
-void add_team(pugi::xml_node& root, const char* element, int id, const LineUps& squads, Side side, const GroundRecording& recording,
+void add_team(pugi::xml_node& root, const char* element, int id, const LineUps& line_ups, Side side, const Recording& recording,
               const std::vector<GroundPeriod>& periods) {
   pugi::xml_node team = root.append_child(element);
-  const std::string& name = squads.teams[side == Side::home ? 0 : 1];
+  const std::string& name = line_ups.teams[side == Side::home ? 0 : 1];
   // Readers take a bare number for a number, and fail.
   const std::string shown_name = number_of(name) ? "Team " + name : name;
   add_text(team, "LongName", shown_name);
   add_text(team, "ShortName", shown_name);
   add_text(team, "TeamId", std::to_string(id));
   pugi::xml_node players = team.append_child("Players");
-  for (const std::int32_t person : squads.of(side)) {
-    const LineUps::Member& member = squads.members[static_cast<std::size_t>(person)];
+  for (const std::size_t person : line_ups.of(side)) {
+    const LineUps::Member& member = line_ups.members[person];
     pugi::xml_node player = players.append_child("Player");
     const std::size_t space = member.name.rfind(' ');
     const bool two =
         space != std::string::npos && !number_of(member.name.substr(space + 1)) && !number_of(member.name.substr(0, space));
-    add_text(player, "PlayerId", std::to_string(recording.people[static_cast<std::size_t>(person)].id));
+    add_text(player, "PlayerId", std::to_string(number(recording.tracks()[person].id())));
     add_text(player, "FirstName", two ? member.name.substr(0, space) : "");
     add_text(player, "LastName", two ? member.name.substr(space + 1) : member.name);
     add_text(player, "JerseyNo", std::to_string(member.number));
@@ -162,7 +162,7 @@ void add_team(pugi::xml_node& root, const char* element, int id, const LineUps& 
   }
 }
 
-void write_metadata(const GroundMatch& match, const LineUps& squads, const std::string& path) {
+void write_metadata(const GroundMatch& match, const LineUps& line_ups, const std::string& path) {
   const std::vector<GroundPeriod> periods = periods_of(match);
   pugi::xml_document document;
   pugi::xml_node root = document.append_child("TracabMetaData");
@@ -170,7 +170,7 @@ void write_metadata(const GroundMatch& match, const LineUps& squads, const std::
   pugi::xml_node head = root.append_child("match");
   head.append_attribute("iId") = "1";
   head.append_attribute("dtDate") = "1970-01-01 00:00:00";
-  head.append_attribute("iFrameRateFps") = whole_rate(match.rate_hz, "TRACAB");
+  head.append_attribute("iFrameRateFps") = whole_rate(match.recording.header.rate_hz, "TRACAB");
   head.append_attribute("fPitchXSizeMeters") = fmt::format("{:.2f}", match.pitch.length).c_str();
   head.append_attribute("fPitchYSizeMeters") = fmt::format("{:.2f}", match.pitch.width).c_str();
   head.append_attribute("fTrackingAreaXSizeMeters") = "unknown";
@@ -183,9 +183,9 @@ void write_metadata(const GroundMatch& match, const LineUps& squads, const std::
     node.append_attribute("iEndFrame") = period == periods.end() ? 0 : period->last_frame;
   }
   // Readers take teams without players for broken.
-  if (!squads.of(Side::home).empty() && !squads.of(Side::away).empty()) {
-    add_team(root, "HomeTeam", 1, squads, Side::home, match.recording, periods);
-    add_team(root, "AwayTeam", 2, squads, Side::away, match.recording, periods);
+  if (!line_ups.of(Side::home).empty() && !line_ups.of(Side::away).empty()) {
+    add_team(root, "HomeTeam", 1, line_ups, Side::home, match.recording, periods);
+    add_team(root, "AwayTeam", 2, line_ups, Side::away, match.recording, periods);
   }
   WholeFile file(path);
   file.write(to_text(document));
@@ -204,29 +204,31 @@ GroundMatch parse_tracab(std::string_view text, const std::string& name, std::st
 }
 
 std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {
-  if (match.recording.samples.empty()) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
-  const LineUps squads = line_ups_of(match);
+  if (match.recording.samples() == 0) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
+  const LineUps line_ups = line_ups_of(match);
   WholeFile file(path);
   std::string text;
-  for_each_instant(match.recording, [&](std::int32_t frame, std::span<const GroundRecording::Sample> samples) {
-    fmt::format_to(std::back_inserter(text), "{}:", frame);
-    for (const auto& sample : samples) {
-      const auto person = static_cast<std::size_t>(sample.person);
-      const LineUps::Member& member = squads.members[person];
-      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.2f};", code_of(member.side), match.recording.people[person].id,
+  InstantRows rows(match.recording);
+  for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
+    fmt::format_to(std::back_inserter(text), "{}:", match.recording.instants()[instant].index);
+    for (const auto& [index, row] : rows.at(instant)) {
+      const TrackColumns& track = match.recording.tracks()[index];
+      const LineUps::Member& member = line_ups.members[index];
+      const auto velocity = track.velocity(row);
+      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.2f};", code_of(member.side), number(track.id()),
                      member.side == Side::other ? -1 : member.number,
-                     std::lround(kMetre * (sample.place.x() - match.pitch.length / 2)),
-                     std::lround(kMetre * (sample.place.y() - match.pitch.width / 2)), sample.velocity.norm());
+                     std::lround(kMetre * (track.x()[row] - match.pitch.length / 2)),
+                     std::lround(kMetre * (track.y()[row] - match.pitch.width / 2)), velocity ? velocity->head<2>().norm() : 0);
     }
     text += ":0,0,0,0.00,H,Dead;:\n";
-    if (text.size() < (std::size_t{1} << 20)) return;
+    if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
-  });
+  }
   file.write(text);
-  write_metadata(match, squads, with_ending(path, ".xml"));
+  write_metadata(match, line_ups, with_ending(path, ".xml"));
   file.finish();
-  return squads.warnings;
+  return line_ups.warnings;
 }
 
 }  // namespace marey::format::match

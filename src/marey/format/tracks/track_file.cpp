@@ -21,8 +21,8 @@ struct NamedFormat {
 constexpr std::array kFormats{NamedFormat{TrackFormat::mot, "mot", ".txt"}, NamedFormat{TrackFormat::csv, "csv", ".csv"},
                               NamedFormat{TrackFormat::jsonl, "jsonl", ".jsonl"}};
 
-std::string_view name_of(Track<2>::State state) {
-  return state == Track<2>::State::observed ? "observed" : "predicted";
+std::string_view state_of(const Sample& sample) {
+  return sample.measured() ? "observed" : "predicted";
 }
 
 /// A CSV field as RFC 4180 quotes it.
@@ -36,42 +36,47 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-void append_mot(std::string& lines, std::int64_t frame, const Track<2>& track) {
-  if (!track.box) return;
-  const Box& box = *track.box;
-  fmt::format_to(std::back_inserter(lines), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4g},-1,-1,-1\n", frame + 1, number(track.id),
-                 box.left + 1, box.top + 1, box.width, box.height, track.score);
+void append_mot(std::string& lines, const Instant& instant, const Sample& sample) {
+  if (!sample.box) return;
+  const Box& box = *sample.box;
+  fmt::format_to(std::back_inserter(lines), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4g},-1,-1,-1\n", instant.index + 1,
+                 number(sample.track), box.left + 1, box.top + 1, box.width, box.height, sample.score.value_or(1));
 }
 
-void append_csv(std::string& lines, std::int64_t frame, Timestamp time, const Track<2>& track) {
+void append_csv(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
   auto out = std::back_inserter(lines);
-  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},{:.2f},{:.2f},", frame, seconds(time), number(track.id), quoted(track.label),
-                 track.position.x(), track.position.y(), track.velocity.x(), track.velocity.y());
-  if (track.box) {
-    fmt::format_to(out, "{:.2f},{:.2f},{:.2f},{:.2f},", track.box->left, track.box->top, track.box->width, track.box->height);
+  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},", instant.index, seconds(instant.time), number(sample.track), quoted(label),
+                 sample.position.x(), sample.position.y());
+  if (sample.velocity) {
+    fmt::format_to(out, "{:.2f},{:.2f},", sample.velocity->x(), sample.velocity->y());
+  } else {
+    lines += ",,";
+  }
+  if (sample.box) {
+    fmt::format_to(out, "{:.2f},{:.2f},{:.2f},{:.2f},", sample.box->left, sample.box->top, sample.box->width, sample.box->height);
   } else {
     lines += ",,,,";
   }
-  fmt::format_to(out, "{}\n", name_of(track.state));
+  fmt::format_to(out, "{}\n", state_of(sample));
 }
 
-void append_json(std::string& lines, std::int64_t frame, Timestamp time, const Track<2>& track) {
+void append_json(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
   auto out = std::back_inserter(lines);
-  fmt::format_to(out, R"({{"frame":{},"time":{:.6f},"id":{},)", frame, seconds(time), number(track.id));
-  if (!track.label.empty()) {
+  fmt::format_to(out, R"({{"frame":{},"time":{:.6f},"id":{},)", instant.index, seconds(instant.time), number(sample.track));
+  if (!label.empty()) {
     using nlohmann::json;
-    fmt::format_to(out, R"("label":{},)", json(track.label).dump(-1, ' ', false, json::error_handler_t::replace));
+    fmt::format_to(out, R"("label":{},)", json(label).dump(-1, ' ', false, json::error_handler_t::replace));
   }
-  fmt::format_to(out, R"("x":{:.3f},"y":{:.3f},"vx":{:.2f},"vy":{:.2f},)", track.position.x(), track.position.y(),
-                 track.velocity.x(), track.velocity.y());
-  if (track.box) {
-    fmt::format_to(out, R"("left":{:.2f},"top":{:.2f},"width":{:.2f},"height":{:.2f},)", track.box->left, track.box->top,
-                   track.box->width, track.box->height);
+  fmt::format_to(out, R"("x":{:.3f},"y":{:.3f},)", sample.position.x(), sample.position.y());
+  if (sample.velocity) fmt::format_to(out, R"("vx":{:.2f},"vy":{:.2f},)", sample.velocity->x(), sample.velocity->y());
+  if (sample.box) {
+    fmt::format_to(out, R"("left":{:.2f},"top":{:.2f},"width":{:.2f},"height":{:.2f},)", sample.box->left, sample.box->top,
+                   sample.box->width, sample.box->height);
   }
-  fmt::format_to(out, R"("state":"{}")", name_of(track.state));
-  if (track.outline) {
+  fmt::format_to(out, R"("state":"{}")", state_of(sample));
+  if (sample.outline) {
     lines += R"(,"outline":)";
-    tracks::append_json(lines, *track.outline);
+    tracks::append_json(lines, *sample.outline);
   }
   lines += "}\n";
 }
@@ -105,22 +110,29 @@ std::string_view ending_of(TrackFormat format) {
   return {};
 }
 
-TrackFile::TrackFile(const std::string& path, TrackFormat format) : file_(path), format_(format) {
-  if (format == TrackFormat::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
+TrackFile::TrackFile(const std::string& path, TrackFormat format) : path_(path), file_(path), format_(format) {}
+
+Sink::Wants TrackFile::begin(const RecordingHeader& header) {
+  if (header.frame.metric()) {
+    throw Error("{}: {} holds boxes in a picture, and these positions are {}", path_, track_format_names(), to_string(header.frame));
+  }
+  if (format_ == TrackFormat::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
+  return {};
 }
 
-void TrackFile::write(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks) {
+void TrackFile::write(const Instant& instant) {
+  names_.add(instant.named);
   lines_.clear();
-  for (const Track<2>& track : tracks) {
+  for (const Sample& sample : instant.samples) {
     switch (format_) {
       case TrackFormat::mot:
-        append_mot(lines_, frame, track);
+        append_mot(lines_, instant, sample);
         break;
       case TrackFormat::csv:
-        append_csv(lines_, frame, time, track);
+        append_csv(lines_, instant, sample, names_.label(sample.track));
         break;
       case TrackFormat::jsonl:
-        append_json(lines_, frame, time, track);
+        append_json(lines_, instant, sample, names_.label(sample.track));
         break;
     }
   }

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
-#include "marey/core/time.h"
-#include "marey/core/track.h"
+#include "marey/core/sink.h"
+#include "marey/core/track_names.h"
 #include "marey/core/whole_file.h"
 
 namespace marey::format::tracks {
@@ -29,19 +27,22 @@ std::optional<TrackFormat> track_format_of(std::string_view path);
 std::string_view ending_of(TrackFormat format);
 
 /// Writes tracks as they come; the file is there whole or not at all.
-class TrackFile {
+class TrackFile final : public Sink {
  public:
   /// Throws Error where nothing can be written there.
   TrackFile(const std::string& path, TrackFormat format);
 
-  /// `frame` counts from 0. Throws Error where the place is full.
-  void write(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks);
-  /// Throws Error where the place is full.
-  void finish() { file_.finish(); }
+  std::string name() const override { return path_; }
+  /// Throws Error for positions that are not of a picture.
+  Wants begin(const RecordingHeader& header) override;
+  void write(const Instant& instant) override;
+  void finish() override { file_.finish(); }
 
  private:
+  std::string path_;
   WholeFile file_;
   TrackFormat format_;
+  TrackNames names_;
   std::string lines_;
 };
 

@@ -14,23 +14,33 @@
 namespace marey::format::tracks {
 namespace {
 
-std::vector<Track<2>> two_tracks() {
-  Track<2> seen;
-  seen.id = TrackId{3};
-  seen.position = {12.5, 30};
-  seen.velocity = {-1.25, 0};
+RecordingHeader in_pictures() {
+  RecordingHeader header;
+  header.frame.kind = FrameOfReference::Kind::image;
+  return header;
+}
+
+Instant two_tracks() {
+  Sample seen;
+  seen.track = TrackId{3};
+  seen.position = {12.5, 30, 0};
+  seen.velocity = Vector<3>(-1.25, 0, 0);
   seen.box = Box{9, 20, 8, 21};
   seen.score = 0.75;
-  Track<2> guessed;
-  guessed.id = TrackId{4};
-  guessed.label = "the \"tall\", one";
-  guessed.position = {1, 2};
-  guessed.state = Track<2>::State::predicted;
-  return {seen, guessed};
+  Sample guessed;
+  guessed.track = TrackId{4};
+  guessed.position = {1, 2, 0};
+  guessed.provenance = Provenance::predicted;
+  Instant instant;
+  instant.index = 6;
+  instant.time = timestamp_from_seconds(0.24);
+  instant.samples = {seen, guessed};
+  instant.named = {{TrackId{4}, "the \"tall\", one", {}}};
+  return instant;
 }
 
 TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
-  Track<2> track = two_tracks()[0];
+  Instant instant = two_tracks();
   auto outline = std::make_shared<Outline>();
   outline->order = 3;
   outline->state = Outline::State::partly;
@@ -42,10 +52,12 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   outline->silhouette = Vector<2>(3.5, 4.25);
   outline->velocity_deviation = {1.5, 2};
   outline->scale_rate_deviation = 0.0625;
-  track.outline = outline;
+  instant.samples[0].outline = outline;
+  instant.samples.pop_back();
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", TrackFormat::jsonl);
-  file.write(6, Timestamp{}, std::vector{track});
+  file.begin(in_pictures());
+  file.write(instant);
   file.finish();
   const auto json = nlohmann::json::parse(test::read_file(folder / "tracks"))["outline"];
   EXPECT_EQ(json["state"], "partly");
@@ -64,8 +76,9 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
 std::string written(TrackFormat format) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", format);
-  file.write(0, Timestamp{}, {});
-  file.write(6, timestamp_from_seconds(0.24), two_tracks());
+  file.begin(in_pictures());
+  file.write({});
+  file.write(two_tracks());
   file.finish();
   return test::read_file(folder / "tracks");
 }
@@ -78,7 +91,15 @@ TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
   EXPECT_EQ(written(TrackFormat::csv),
             "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"
             "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
-            "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,0.00,0.00,,,,,predicted\n");
+            "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,,,,,,,predicted\n");
+}
+
+TEST(TrackFile, PositionsInMetresAreRefused) {
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "tracks", TrackFormat::csv);
+  RecordingHeader header = in_pictures();
+  header.frame.kind = FrameOfReference::Kind::ground;
+  EXPECT_THROW(file.begin(header), Error);
 }
 
 TEST(TrackFile, EveryJsonLineIsAnObject) {

@@ -58,10 +58,10 @@ std::vector<MatchClick> MatchCamera::clicks(double noise, int wrong) const {
 
 MatchTruth::MatchTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {
   for (const RigCamera& camera : scene.rig.cameras) cameras_.push_back(*camera.camera());
-  for (int i = 0; i < kMatchPeople; ++i) people_.push_back({i + 1, match_label(i), std::string(match_team(i))});
+  for (int i = 0; i < kMatchPeople; ++i) people_.push_back({TrackId{i + 1}, match_label(i), std::string(match_team(i))});
 }
 
-std::vector<GroundRecording::Sample> MatchTruth::next(std::span<const MatchCamera> cameras) {
+Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
   const double time = static_cast<double>(frame_) / scene_.options.rate_hz;
   motion_.advance(scene_.match_time(time));
   const auto stances = scene_.stances(motion_.people());
@@ -74,18 +74,20 @@ std::vector<GroundRecording::Sample> MatchTruth::next(std::span<const MatchCamer
       if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
     }
   }
-  std::vector<GroundRecording::Sample> samples;
+  Instant instant;
+  instant.index = frame_;
+  instant.time = timestamp_from_seconds(time);
+  if (frame_ == 0) instant.named = people_;
   for (std::size_t i = 0; i < people_.size(); ++i) {
     const MatchPerson& person = motion_.people()[i];
-    GroundRecording::Sample& sample = samples.emplace_back();
-    sample.frame = static_cast<std::int32_t>(frame_);
-    sample.time = time;
-    sample.place = person.place;
-    sample.velocity = person.velocity;
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = people_[i].id;
+    sample.position.head<2>() = person.place;
+    sample.velocity.emplace(Vector<3>::Zero()).head<2>() = person.velocity;
     sample.cameras = seen_by[i];
   }
   ++frame_;
-  return samples;
+  return instant;
 }
 
 }  // namespace marey::simulate::match

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/core/ground_recording.h"
+#include "marey/core/instant.h"
 #include "marey/core/picture.h"
 #include "marey/core/rig.h"
 #include "marey/simulate/match/match_cameras.h"
@@ -82,16 +82,16 @@ class MatchTruth {
   /// The scene must outlive it.
   explicit MatchTruth(const MatchScene& scene);
 
-  const std::vector<GroundRecording::Person>& people() const { return people_; }
-  /// The next frame's samples, in the pitch's own frame, in the order of `people`. `cameras`, all of the scene's, stand at the same
-  /// frame: those that were started with the first one need not look again.
-  std::vector<GroundRecording::Sample> next(std::span<const MatchCamera> cameras);
+  const std::vector<TrackName>& people() const { return people_; }
+  /// The next frame, in the pitch's own frame of reference, its samples in the order of `people`. `cameras`, all of the scene's,
+  /// stand at the same frame: those that were started with the first one need not look again.
+  Instant next(std::span<const MatchCamera> cameras);
 
  private:
   const MatchScene& scene_;
   MatchMotion motion_;
   std::vector<Camera> cameras_;
-  std::vector<GroundRecording::Person> people_;
+  std::vector<TrackName> people_;
   std::int64_t frame_ = 0;
 };
 

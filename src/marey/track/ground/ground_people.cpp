@@ -12,8 +12,8 @@ namespace {
 
 class Writer {
  public:
-  Writer(std::span<const std::int32_t> frames, std::span<const Timestamp> times, const GroundJoinOptions& options)
-      : frames_(frames), times_(times), options_(options), motion_(options.motion) {}
+  Writer(std::span<const Timestamp> times, const GroundJoinOptions& options)
+      : times_(times), options_(options), motion_(options.motion) {}
 
   /// Too brief, or seen too seldom, to be somebody.
   bool is_false_alarm(const std::vector<GroundTracklet>& tracklets, const std::vector<int>& chain) const {
@@ -34,34 +34,16 @@ class Writer {
            static_cast<double>(seen) < options_.rarest * static_cast<double>(told);
   }
 
-  /// Counts the rows of one person, so that all can be put in their places at once.
-  void count(const std::vector<GroundTracklet>& tracklets, const std::vector<int>& chain) {
-    rows_.resize(frames_.size() + 1, 0);
-    const GroundSample* last = nullptr;
-    for (const int member : chain) {
-      for (const GroundSample& sample : tracklets[member].samples) {
-        for (std::int32_t k = last != nullptr && fills(*last, sample) ? last->instant + 1 : sample.instant; k <= sample.instant;
-             ++k) {
-          ++rows_[static_cast<std::size_t>(k) + 1];
-        }
-        last = &sample;
-      }
-    }
-  }
-
-  void begin_rows(GroundRecording& recording) {
-    rows_.resize(frames_.size() + 1, 0);
-    for (std::size_t k = 1; k < rows_.size(); ++k) rows_[k] += rows_[k - 1];
-    recording.samples.resize(rows_.back());
-  }
-
-  /// Rows of one person, in the place that counting found; called in the order of people.
-  void write(const std::vector<GroundSample>& samples, std::int32_t person, GroundRecording& recording) {
+  /// One person's rows. Its gaps that are not too long are filled.
+  TrackColumns columns(const std::vector<GroundSample>& samples, TrackId person) const {
     const std::vector<GroundMoment> moments = smooth_ground(samples, times_, motion_);
+    TrackColumns track({person, {}, {}}, 2);
+    track.reserve(count(samples));
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (i > 0 && fills(samples[i - 1], samples[i])) fill(samples, moments, i, person, recording);
-      put(samples[i].instant, moments[i], person, samples[i].cameras, recording);
+      if (i > 0 && fills(samples[i - 1], samples[i])) fill(samples, moments, i, track);
+      add(samples[i].instant, moments[i], samples[i].cameras, track);
     }
+    return track;
   }
 
  private:
@@ -69,52 +51,64 @@ class Writer {
     return seconds(times_[after.instant] - times_[before.instant]) <= options_.longest_filled;
   }
 
+  std::size_t count(const std::vector<GroundSample>& samples) const {
+    std::size_t rows = samples.size();
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      if (fills(samples[i - 1], samples[i])) rows += static_cast<std::size_t>(samples[i].instant - samples[i - 1].instant - 1);
+    }
+    return rows;
+  }
+
   /// What lies between samples i − 1 and i.
-  void fill(const std::vector<GroundSample>& samples, const std::vector<GroundMoment>& moments, std::size_t i, std::int32_t person,
-            GroundRecording& recording) {
+  void fill(const std::vector<GroundSample>& samples, const std::vector<GroundMoment>& moments, std::size_t i,
+            TrackColumns& track) const {
     const Timestamp before = times_[samples[i - 1].instant];
     const Timestamp after = times_[samples[i].instant];
     for (std::int32_t k = samples[i - 1].instant + 1; k < samples[i].instant; ++k) {
-      const GroundMoment moment =
-          between(moments[i - 1], seconds(times_[k] - before), moments[i], seconds(after - times_[k]), motion_);
-      put(k, moment, person, 0, recording);
+      add(k, between(moments[i - 1], seconds(times_[k] - before), moments[i], seconds(after - times_[k]), motion_), 0, track);
     }
   }
 
-  void put(std::int32_t instant, const GroundMoment& moment, std::int32_t person, CameraMask cameras, GroundRecording& recording) {
-    GroundRecording::Sample& row = recording.samples[rows_[instant]++];
-    row.frame = frames_[instant];
-    row.person = person;
-    row.time = seconds(times_[instant]);
-    row.place = moment.place;
-    row.velocity = moment.velocity;
-    row.cameras = cameras;
-    row.observed = cameras != 0;
+  static void add(std::int32_t instant, const GroundMoment& moment, CameraMask cameras, TrackColumns& track) {
+    Sample sample;
+    sample.position.head<2>() = moment.place;
+    sample.velocity = Vector<3>(moment.velocity.x(), moment.velocity.y(), 0);
+    sample.provenance = cameras != 0 ? Provenance::measured : Provenance::filled;
+    sample.cameras = cameras;
+    track.add(instant, sample);
   }
 
-  std::span<const std::int32_t> frames_;
   std::span<const Timestamp> times_;
   const GroundJoinOptions& options_;
   GroundMotion motion_;
-  std::vector<std::size_t> rows_;  // first of each instant, once counted
 };
+
+RecordingHeader header_of(std::span<const Recording::Moment> moments) {
+  RecordingHeader header;
+  header.name = "people on the ground";
+  header.frame.kind = FrameOfReference::Kind::ground;
+  header.rate_hz = median_rate_hz(moments).value_or(0);
+  header.smoothed = true;
+  return header;
+}
 
 }  // namespace
 
 GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets, const std::vector<std::vector<int>>& chains,
                                           std::span<const std::int32_t> frames, std::span<const Timestamp> times,
                                           const GroundJoinOptions& options) {
+  std::vector<Recording::Moment> moments;
+  for (std::size_t i = 0; i < frames.size(); ++i) moments.push_back({frames[i], times[i]});
   GroundRecorder::Joined joined;
-  Writer writer(frames, times, options);
+  joined.recording.header = header_of(moments);
+  for (const Recording::Moment& moment : moments) joined.recording.add_moment(moment);
+  const Writer writer(times, options);
   std::vector<const std::vector<int>*> kept;
   for (const std::vector<int>& chain : chains) {
-    if (writer.is_false_alarm(tracklets, chain)) continue;
-    kept.push_back(&chain);
-    writer.count(tracklets, chain);
+    if (!writer.is_false_alarm(tracklets, chain)) kept.push_back(&chain);
   }
-  writer.begin_rows(joined.recording);
   for (const std::vector<int>* chain : kept) {
-    const auto person = static_cast<std::int32_t>(joined.recording.people.size());
+    const TrackId person{static_cast<int>(joined.recording.tracks().size()) + 1};
     std::vector<GroundSample> samples;
     for (const int member : *chain) {
       const GroundTracklet piece = std::move(tracklets[member]);
@@ -125,9 +119,8 @@ GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets,
       }
       samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
     }
-    joined.recording.people.push_back({.id = person + 1, .label = {}, .team = {}});
     joined.wears.push_back(appearance_of(samples));
-    writer.write(samples, person, joined.recording);
+    joined.recording.put(writer.columns(samples, person));
   }
   std::sort(joined.pieces.begin(), joined.pieces.end(), [](const GroundRecorder::Piece& a, const GroundRecorder::Piece& b) {
     return std::tie(a.track, a.first) < std::tie(b.track, b.first);

@@ -105,7 +105,7 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
   open_ = std::move(still_open);
 }
 
-std::optional<int> GroundRecorder::Joined::person_of(TrackId track, std::int32_t frame) const {
+std::optional<TrackId> GroundRecorder::Joined::person_of(TrackId track, std::int32_t frame) const {
   const auto next =
       std::upper_bound(pieces.begin(), pieces.end(), std::pair(track, frame),
                        [](const auto& sought, const Piece& piece) { return sought < std::pair(piece.track, piece.first); });

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
-#include "marey/core/ground_recording.h"
+#include "marey/core/recording.h"
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 #include "marey/track/ground/ground_join.h"
@@ -37,15 +37,15 @@ class GroundRecorder {
   struct Piece {
     TrackId track{};
     std::int32_t first = 0, last = 0;
-    std::int32_t person = 0;  ///< index into `recording.people`
+    TrackId person{};  ///< its track in the recording
   };
   struct Joined {
-    GroundRecording recording;                     ///< world's ground, m; teams, labels and names of cameras empty
-    std::vector<Piece> pieces;                     ///< by track, then by frame; what is in none was a false alarm
-    std::vector<std::optional<Appearance>> wears;  ///< of each person: the median over all that was seen of it
+    Recording recording;        ///< a track a person, smoothed, on the world's ground; every frame that was added is an instant
+    std::vector<Piece> pieces;  ///< by track, then by frame; what is in none was a false alarm
+    std::vector<std::optional<Appearance>> wears;  ///< of each of its tracks: the median over all that was seen of it
 
-    /// Who it was that the tracker called `track` in `frame`: index into `recording.people`.
-    std::optional<int> person_of(TrackId track, std::int32_t frame) const;
+    /// Who it was that the tracker called `track` in `frame`.
+    std::optional<TrackId> person_of(TrackId track, std::int32_t frame) const;
   };
 
   /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given anew

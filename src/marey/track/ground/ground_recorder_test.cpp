@@ -70,6 +70,24 @@ class Story {
   GroundRecorder recorder_;
 };
 
+struct Row {
+  std::int32_t frame = 0;
+  Sample sample;
+
+  Vector<2> place() const { return sample.position.head<2>(); }
+  std::size_t person() const { return static_cast<std::size_t>(number(sample.track)) - 1; }
+};
+
+/// By frame, then by person.
+std::vector<Row> rows_of(const Recording& recording) {
+  std::vector<Row> rows;
+  InstantsOf instants(recording);
+  while (const auto instant = instants.next()) {
+    for (const Sample& sample : instant->samples) rows.push_back({static_cast<std::int32_t>(instant->index), sample});
+  }
+  return rows;
+}
+
 TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
   Story story;
   for (int k = 0; k < 200; ++k) {
@@ -79,19 +97,22 @@ TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
     if (k >= 120) story.instant({{.track = 9, .x = place.x(), .y = place.y()}});
   }
   const auto joined = story.join();
-  ASSERT_EQ(joined.recording.people.size(), 1U);
-  EXPECT_EQ(joined.recording.people[0].id, 1);
-  ASSERT_EQ(joined.recording.samples.size(), 200U);
-  for (const GroundRecording::Sample& sample : joined.recording.samples) {
-    EXPECT_EQ(sample.observed, sample.frame < 80 || sample.frame >= 120);
-    EXPECT_EQ(sample.cameras, sample.observed ? 1U : 0U);
-    EXPECT_NEAR(sample.place.x(), 0.1 * sample.frame, 0.1);
-    EXPECT_NEAR(sample.velocity.x(), 2.5, 0.3);
+  ASSERT_EQ(joined.recording.tracks().size(), 1U);
+  EXPECT_EQ(joined.recording.tracks()[0].id(), TrackId{1});
+  ASSERT_EQ(joined.recording.samples(), 200);
+  for (const Row& row : rows_of(joined.recording)) {
+    EXPECT_EQ(row.sample.measured(), row.frame < 80 || row.frame >= 120);
+    EXPECT_EQ(row.sample.cameras, row.sample.measured() ? 1U : 0U);
+    EXPECT_NEAR(row.place().x(), 0.1 * row.frame, 0.1);
+    EXPECT_NEAR(row.sample.velocity->x(), 2.5, 0.3);
   }
-  EXPECT_EQ(joined.person_of(TrackId{4}, 79), 0);
-  EXPECT_EQ(joined.person_of(TrackId{9}, 120), 0);
+  EXPECT_EQ(joined.person_of(TrackId{4}, 79), TrackId{1});
+  EXPECT_EQ(joined.person_of(TrackId{9}, 120), TrackId{1});
   EXPECT_EQ(joined.person_of(TrackId{9}, 119), std::nullopt);
   EXPECT_EQ(joined.person_of(TrackId{5}, 79), std::nullopt);
+  EXPECT_TRUE(joined.recording.header.smoothed);
+  EXPECT_EQ(joined.recording.header.frame.kind, FrameOfReference::Kind::ground);
+  EXPECT_EQ(joined.recording.header.rate_hz, 25);
 }
 
 TEST(GroundRecorder, SeveralCamerasBecomeOnePlaceByWhatTheyKnow) {
@@ -101,16 +122,16 @@ TEST(GroundRecorder, SeveralCamerasBecomeOnePlaceByWhatTheyKnow) {
                    {.track = 1, .x = 11, .y = 0, .camera = CameraId{2}, .sigma = 0.3}});
   }
   const auto joined = story.join();
-  ASSERT_EQ(joined.recording.samples.size(), 50U);
-  EXPECT_EQ(joined.recording.samples[20].cameras, 0b101U);
-  EXPECT_NEAR(joined.recording.samples[20].place.x(), 10.1, 1e-3);
+  ASSERT_EQ(joined.recording.samples(), 50);
+  EXPECT_EQ(joined.recording.tracks()[0].cameras()[20], 0b101U);
+  EXPECT_NEAR(joined.recording.tracks()[0].x()[20], 10.1, 1e-3);
 }
 
 TEST(GroundRecorder, LateFramesAreBroughtToTheInstant) {
   Story story;
   for (int k = 0; k < 50; ++k) story.instant({{.track = 1, .x = 0.2 * k - 0.05, .y = 0}}, 0.01);  // at 5 m/s
   const auto joined = story.join();
-  EXPECT_NEAR(joined.recording.samples[25].place.x(), 5.0, 1e-2);
+  EXPECT_NEAR(joined.recording.tracks()[0].x()[25], 5.0, 1e-2);
 }
 
 TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
@@ -123,16 +144,16 @@ TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
     story.instant(seen);
   }
   const auto joined = story.join();
-  EXPECT_EQ(joined.recording.people.size(), 1U);
-  EXPECT_EQ(joined.recording.samples.size(), 250U);
+  EXPECT_EQ(joined.recording.tracks().size(), 1U);
+  EXPECT_EQ(joined.recording.samples(), 250);
 }
 
 TEST(GroundRecorder, AnEmptyOneIsAnEmptyRecording) {
   Story nothing;
-  EXPECT_TRUE(nothing.join().recording.samples.empty());
+  EXPECT_TRUE(nothing.join().recording.tracks().empty());
   Story nobody;
   for (int k = 0; k < 10; ++k) nobody.instant({});
-  EXPECT_TRUE(nobody.join().recording.people.empty());
+  EXPECT_TRUE(nobody.join().recording.tracks().empty());
 }
 
 TEST(GroundRecorder, ALongGapIsJoinedButNothingIsSaidOfIt) {
@@ -145,8 +166,8 @@ TEST(GroundRecorder, ALongGapIsJoinedButNothingIsSaidOfIt) {
     }
   }
   const auto joined = story.join();
-  EXPECT_EQ(joined.recording.people.size(), 1U);
-  EXPECT_EQ(joined.recording.samples.size(), 200U);
+  EXPECT_EQ(joined.recording.tracks().size(), 1U);
+  EXPECT_EQ(joined.recording.samples(), 200);
 }
 
 /// Two in other shirts run into each other; the tracker comes out with their names exchanged.
@@ -165,14 +186,14 @@ TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
                    {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .wears = swapped ? white : blue}});
   }
   const auto joined = story.join();
-  ASSERT_EQ(joined.recording.people.size(), 2U);
-  ASSERT_EQ(joined.recording.samples.size(), 500U);
-  for (const GroundRecording::Sample& sample : joined.recording.samples) {
-    const double t = 0.04 * sample.frame - 5;
+  ASSERT_EQ(joined.recording.tracks().size(), 2U);
+  ASSERT_EQ(joined.recording.samples(), 500);
+  for (const Row& row : rows_of(joined.recording)) {
+    const double t = 0.04 * row.frame - 5;
     if (std::abs(t) < 0.5) continue;
-    const bool first = joined.wears[sample.person]->lightness > 60;
+    const bool first = joined.wears[row.person()]->lightness > 60;
     const Vector<2> truth = first ? Vector<2>(20 + 2 * t, 10 + 0.3 * t * t) : Vector<2>(20 - 2 * t, 10.3 - 0.3 * t * t);
-    EXPECT_LT((sample.place - truth).norm(), 0.5) << "frame " << sample.frame;
+    EXPECT_LT((row.place() - truth).norm(), 0.5) << "frame " << row.frame;
   }
   EXPECT_NE(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{1}, 249));
 }
@@ -205,11 +226,11 @@ GroundRecorder::Joined two_pass(bool exchanged) {
 TEST(GroundRecorder, WhoRunsPastAnotherRunsOn) {
   for (const bool exchanged : {false, true}) {
     const auto joined = two_pass(exchanged);
-    ASSERT_EQ(joined.recording.people.size(), 2U);
-    for (const GroundRecording::Sample& sample : joined.recording.samples) {
-      const double t = 0.04 * sample.frame - 3;
-      const bool right = sample.person == *joined.person_of(TrackId{1}, 0);
-      EXPECT_LT((sample.place - (right ? runs_right(t) : runs_left(t))).norm(), 0.3) << "frame " << sample.frame;
+    ASSERT_EQ(joined.recording.tracks().size(), 2U);
+    for (const Row& row : rows_of(joined.recording)) {
+      const double t = 0.04 * row.frame - 3;
+      const bool right = row.sample.track == *joined.person_of(TrackId{1}, 0);
+      EXPECT_LT((row.place() - (right ? runs_right(t) : runs_left(t))).norm(), 0.3) << "frame " << row.frame;
     }
     EXPECT_EQ(joined.person_of(TrackId{1}, 0) == joined.person_of(TrackId{1}, 149), !exchanged);
   }
@@ -230,7 +251,7 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
     story.instant(seen);
   }
   const auto joined = story.join();
-  ASSERT_EQ(joined.recording.people.size(), 2U);
+  ASSERT_EQ(joined.recording.tracks().size(), 2U);
   EXPECT_EQ(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{3}, 149));
   EXPECT_EQ(joined.person_of(TrackId{2}, 0), joined.person_of(TrackId{1}, 149));
 }
@@ -270,18 +291,19 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
     story.instant(seen);
   }
   const auto joined = story.join();
-  ASSERT_EQ(joined.recording.people.size(), 20U);
+  ASSERT_EQ(joined.recording.tracks().size(), 20U);
   double place = 0, speed = 0;
   std::map<int, double> length;
   std::map<int, Vector<2>> last;
-  for (const GroundRecording::Sample& sample : joined.recording.samples) {
-    const Person& person = truth[sample.frame][*joined.person_of(TrackId{sample.person + 1}, sample.frame)];
-    place += (sample.place - person.place).squaredNorm();
-    speed += std::pow(sample.velocity.norm() - person.velocity.norm(), 2);
-    if (last.contains(sample.person)) length[sample.person] += (sample.place - last[sample.person]).norm();
-    last[sample.person] = sample.place;
+  for (const Row& row : rows_of(joined.recording)) {
+    const Person& person = truth[row.frame][number(*joined.person_of(row.sample.track, row.frame)) - 1];
+    place += (row.place() - person.place).squaredNorm();
+    speed += std::pow(row.sample.velocity->norm() - person.velocity.norm(), 2);
+    const int who = static_cast<int>(row.person());
+    if (last.contains(who)) length[who] += (row.place() - last[who]).norm();
+    last[who] = row.place();
   }
-  const auto n = static_cast<double>(joined.recording.samples.size());
+  const auto n = static_cast<double>(joined.recording.samples());
   EXPECT_LT(std::sqrt(place / n), 0.12);
   EXPECT_LT(std::sqrt(speed / n), 0.25);
   for (const auto& [person, way] : length) EXPECT_NEAR(way / truth.back()[person].length, 1, 0.03);

@@ -1,4 +1,4 @@
-#include "marey/pipeline/track_people.h"
+#include "marey/pipeline/people_in_picture.h"
 
 #include <filesystem>
 #include <fstream>
@@ -11,6 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/filter/filters.h"
+#include "marey/pipeline/track_in_picture.h"
 
 #include "support/files.h"
 
@@ -50,57 +51,71 @@ std::string walking_detections(int frames) {
   return out.str();
 }
 
-TEST(TrackPeople, DetectionsOfAnotherProgramAreFollowed) {
+RigCamera pictures(const std::string& path, std::optional<double> rate_hz = {}) {
+  RigCamera camera;
+  camera.source = path;
+  camera.rate_hz = rate_hz;
+  return camera;
+}
+
+RigCamera detections(const std::string& path, std::optional<double> rate_hz = {}) {
+  RigCamera camera;
+  camera.detections = path;
+  camera.rate_hz = rate_hz;
+  return camera;
+}
+
+TEST(PeopleInPicture, DetectionsOfAnotherProgramAreFollowed) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "det.txt", walking_detections(100));
-  const TrackSummary summary = track_people({.detections = folder / "det.txt", .rate_hz = 25}, {.tracks = folder / "out.txt"});
+  const Summary summary = track_people(detections(folder / "det.txt", 25), {.tracks = folder / "out.txt"});
   EXPECT_EQ(summary.frames, 100);
-  EXPECT_EQ(summary.people, 3);
+  EXPECT_EQ(summary.tracks, 3);
   EXPECT_NEAR(summary.seconds, 99 / 25.0, 1e-9);
-  EXPECT_GT(summary.too_brief, 0);
+  EXPECT_GT(summary.left_out.at("too_brief"), 0);
   EXPECT_TRUE(summary.warnings.empty());
   const auto tracks = frames_by_id(folder / "out.txt");
   ASSERT_EQ(tracks.size(), 3u);
   for (const auto& [id, frames] : tracks) EXPECT_GE(frames.size(), 98u) << id;
 }
 
-TEST(TrackPeople, ScoresOfAnyScaleAreRanked) {
+TEST(PeopleInPicture, ScoresOfAnyScaleAreRanked) {
   const test::TemporaryFolder folder;
   std::string text = walking_detections(100);
   for (std::size_t at = 0; (at = text.find(",0.9\n", at)) != std::string::npos;) text.replace(at, 5, ",87.5\n");
   test::write_file(folder / "det.txt", text);
-  const TrackSummary summary = track_people({.detections = folder / "det.txt", .rate_hz = 25}, {.tracks = folder / "out.txt"});
-  EXPECT_EQ(summary.people, 3);
+  const Summary summary = track_people(detections(folder / "det.txt", 25), {.tracks = folder / "out.txt"});
+  EXPECT_EQ(summary.tracks, 3);
   ASSERT_EQ(summary.warnings.size(), 1u);
   EXPECT_NE(summary.warnings[0].find("ranked"), std::string::npos);
 }
 
-TEST(TrackPeople, PeopleInAFilmAreFoundFollowedAndDrawn) {
+TEST(PeopleInPicture, PeopleInAFilmAreFoundFollowedAndDrawn) {
   const test::TemporaryFolder folder;
   film_two_walkers(folder / "film.avi");
-  const PeopleInput input{.pictures = folder / "film.avi"};
+  const RigCamera input = pictures(folder / "film.avi");
   const TrackOutput output{.tracks = folder / "out.txt", .overlay = folder / "out.mp4"};
   int tracked = 0, drawn = 0;
-  RunHooks hooks;
-  hooks.progress = [&](const TrackProgress& progress) {
-    ++(progress.step == TrackProgress::Step::tracking ? tracked : drawn);
+  Hooks hooks;
+  hooks.progress = [&](const Progress& progress) {
+    ++(progress.step == "tracking" ? tracked : drawn);
     EXPECT_EQ(progress.total, 80);
   };
-  const TrackSummary summary = track_people(input, output, {}, hooks);
+  const Summary summary = track_people(input, output, {}, hooks);
   EXPECT_EQ(summary.frames, 80);
   EXPECT_EQ(tracked, 80);
   EXPECT_EQ(drawn, 80);
-  EXPECT_EQ(summary.people, 2);
+  EXPECT_EQ(summary.tracks, 2);
   for (const auto& [id, frames] : frames_by_id(folder / "out.txt")) EXPECT_GT(frames.size(), 50u) << id;
   EXPECT_TRUE(std::filesystem::exists(folder / "out.mp4"));
 }
 
-TEST(TrackPeople, TheSameFilmGivesTheSameBytes) {
+TEST(PeopleInPicture, TheSameFilmGivesTheSameBytes) {
   const test::TemporaryFolder folder;
   film_two_walkers(folder / "film.avi");
-  const PeopleInput input{.pictures = folder / "film.avi", .rate_hz = 10};
+  const RigCamera input = pictures(folder / "film.avi", 10);
   for (const bool live : {false, true}) {
-    TrackPeopleOptions options;
+    PeopleInPictureOptions options;
     options.live = live;
     track_people(input, {.tracks = folder / "a.csv", .format = format::tracks::TrackFormat::csv}, options);
     track_people(input, {.tracks = folder / "b.csv", .format = format::tracks::TrackFormat::csv, .overlay = folder / "b.mp4"},
@@ -109,17 +124,17 @@ TEST(TrackPeople, TheSameFilmGivesTheSameBytes) {
   }
 }
 
-TEST(TrackPeople, StoppedHalfWayItWritesWhatItHas) {
+TEST(PeopleInPicture, StoppedHalfWayItWritesWhatItHas) {
   const test::TemporaryFolder folder;
   film_two_walkers(folder / "film.avi");
-  const PeopleInput input{.pictures = folder / "film.avi"};
+  const RigCamera input = pictures(folder / "film.avi");
   for (const bool live : {false, true}) {
     int frames = 0;
-    RunHooks hooks;
+    Hooks hooks;
     hooks.stop = [&] { return ++frames >= 40; };
-    TrackPeopleOptions options;
+    PeopleInPictureOptions options;
     options.live = live;
-    const TrackSummary summary = track_people(input, {.tracks = folder / "out.txt", .overlay = folder / "out.mp4"}, options, hooks);
+    const Summary summary = track_people(input, {.tracks = folder / "out.txt", .overlay = folder / "out.mp4"}, options, hooks);
     EXPECT_TRUE(summary.stopped);
     EXPECT_EQ(summary.frames, 40);
     const auto tracks = frames_by_id(folder / "out.txt");
@@ -129,15 +144,14 @@ TEST(TrackPeople, StoppedHalfWayItWritesWhatItHas) {
   }
 }
 
-TEST(TrackPeople, EveryBackgroundFindsBothWalkers) {
+TEST(PeopleInPicture, EveryBackgroundFindsBothWalkers) {
   const test::TemporaryFolder folder;
   film_two_walkers(folder / "film.avi");
-  const PeopleInput input{.pictures = folder / "film.avi"};
   std::set<std::string> outputs;
   for (const char* name : {"marey", "mog2", "knn"}) {
-    TrackPeopleOptions options;
+    PeopleInPictureOptions options;
     options.background = detect::background::parse_background(name);
-    track_people(input, {.tracks = folder / "out.txt"}, options);
+    track_people(pictures(folder / "film.avi"), {.tracks = folder / "out.txt"}, options);
     outputs.insert(test::read_file(folder / "out.txt"));
     int found = 0;
     for (const auto& [id, frames] : frames_by_id(folder / "out.txt")) found += frames.size() > 30;
@@ -146,15 +160,15 @@ TEST(TrackPeople, EveryBackgroundFindsBothWalkers) {
   EXPECT_EQ(outputs.size(), 3U) << "each was used: they do not agree to the hundredth of a pixel";
 }
 
-TEST(TrackPeople, EveryFilterFollowsThreeWalkers) {
+TEST(PeopleInPicture, EveryFilterFollowsThreeWalkers) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "det.txt", walking_detections(100));
   std::set<std::string> outputs;
   for (const filter::NamedFilter& filter : filter::named_filters()) {
-    TrackPeopleOptions options;
+    PeopleInPictureOptions options;
     options.tracker.filter = filter::scaled(filter.options, 0.01);  // parameters in px, people 100 px high
     options.live = true;                                            // what the filter says, not what is smoothed later
-    track_people({.detections = folder / "det.txt", .rate_hz = 25}, {.tracks = folder / "out.txt"}, options);
+    track_people(detections(folder / "det.txt", 25), {.tracks = folder / "out.txt"}, options);
     outputs.insert(test::read_file(folder / "out.txt"));
     int followed = 0;
     for (const auto& [id, frames] : frames_by_id(folder / "out.txt")) followed += frames.size() >= 90;
@@ -163,18 +177,20 @@ TEST(TrackPeople, EveryFilterFollowsThreeWalkers) {
   EXPECT_GE(outputs.size(), filter::named_filters().size() / 2) << "the filter that was asked for is not the one that ran";
 }
 
-TEST(TrackPeople, WhatCannotWorkIsSaidBeforeAnythingIsWritten) {
+TEST(PeopleInPicture, WhatCannotWorkIsSaidBeforeAnythingIsWritten) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "det.txt", walking_detections(10));
   test::write_file(folder / "bad.txt", "1,-1,10,10,nan,20,1\n");
   test::write_file(folder / "none.txt", "\n");
   const std::string out = folder / "out.txt";
+  RigCamera both = pictures("a");
+  both.detections = "b";
   EXPECT_THROW(track_people({}, {.tracks = out}), Error);
-  EXPECT_THROW(track_people({.pictures = "a", .detections = "b"}, {.tracks = out}), Error);
-  EXPECT_THROW(track_people({.detections = folder / "det.txt", .rate_hz = -1}, {.tracks = out}), Error);
-  EXPECT_THROW(track_people({.detections = folder / "det.txt"}, {.tracks = out, .overlay = folder / "x.mp4"}), Error);
-  EXPECT_THROW(track_people({.detections = folder / "bad.txt"}, {.tracks = out}), Error);
-  EXPECT_THROW(track_people({.detections = folder / "none.txt"}, {.tracks = out}), Error);
+  EXPECT_THROW(track_people(both, {.tracks = out}), Error);
+  EXPECT_THROW(track_people(detections(folder / "det.txt", -1), {.tracks = out}), Error);
+  EXPECT_THROW(track_people(detections(folder / "det.txt"), {.tracks = out, .overlay = folder / "x.mp4"}), Error);
+  EXPECT_THROW(track_people(detections(folder / "bad.txt"), {.tracks = out}), Error);
+  EXPECT_THROW(track_people(detections(folder / "none.txt"), {.tracks = out}), Error);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace marey::cli {
+
+/// A file that a run reads or writes, and the option that names it.
+struct NamedPath {
+  std::string option;
+  std::string path;
+  std::string may_replace;  ///< of an output: the input that it may be; empty where there is none
+};
+
+/// Throws WrongUsage where an output is an input, by device and inode, or two outputs are one file. An input that is a folder or
+/// a pattern of pictures stands for the pictures in it. What is no file, such as "-", a pipe or /dev/null, is passed over.
+void check_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs);
+
+/// Whether the path is "-", or leads to a pipe or a device.
+bool is_stream(const std::string& path);
+
+/// Makes the folder, and those above it, where they are missing. Throws Error.
+void make_folder(const std::string& path);
+
+}  // namespace marey::cli

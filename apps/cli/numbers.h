@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace marey::cli {
+
+/// The numbers that an option takes; both ends are finite, so that a number in it is.
+struct Interval {
+  double low, high;
+  bool open_low = false;  ///< `low` itself is not in it
+};
+
+constexpr Interval closed(double low, double high) {
+  return {low, high};
+}
+constexpr Interval above(double low, double high) {
+  return {low, high, true};
+}
+
+/// Frames a second of any recording.
+constexpr Interval kRates = closed(0.001, 1e6);
+
+bool contains(const Interval& interval, double value);
+
+/// "(0, 1e6]".
+std::string notation(const Interval& interval);
+/// "[1, 500]"; the largest number that there is reads 2^63 - 1.
+std::string notation(std::int64_t low, std::int64_t high);
+
+/// The whole of `text` as a number; nothing where it is none, is not finite, or is so small that its digits are lost (denormal).
+std::optional<double> number_of(std::string_view text);
+/// The whole of `text` as a whole number of 64 bits; nothing where it is none.
+std::optional<std::int64_t> whole_number_of(std::string_view text);
+
+/// A number with its unit. Throws WrongUsage, which says what `text` should have been.
+double number_in(std::string_view text, std::string_view unit, const Interval& interval);
+std::int64_t whole_number_in(std::string_view text, std::string_view unit, std::int64_t low, std::int64_t high);
+
+/// Numbers with `separator` between them, each in `interval`. Throws WrongUsage, which says `form`: what should have been written.
+std::vector<double> numbers_in(std::string_view text, char separator, const Interval& interval, std::string_view form);
+
+}  // namespace marey::cli

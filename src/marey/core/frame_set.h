@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "marey/core/detection.h"
+#include "marey/core/frame.h"
+
+namespace marey {
+
+/// What one camera gave to one moment.
+struct CameraFrame {
+  Frame frame;  ///< its time is by the run's clock; its picture is empty where detections come from another program
+  /// What was found in it, where the camera's feed knows that already: another program said so, or the feed looks for it itself.
+  std::optional<std::vector<Detection>> detections;
+  double decode_s = 0, detect_s = 0;  ///< what it took, s
+};
+
+/// What all cameras of a rig gave to one moment. A camera that had nothing is a gap.
+struct FrameSet {
+  std::int64_t index = 0;                           ///< counts the moments
+  Timestamp time{};                                 ///< by the run's clock
+  std::vector<std::optional<CameraFrame>> cameras;  ///< CameraId i is cameras[i]
+
+  bool complete() const {
+    for (const auto& camera : cameras) {
+      if (!camera) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace marey

@@ -1,0 +1,38 @@
+#include "marey/core/other_ground.h"
+
+#include <utility>
+
+namespace marey {
+namespace {
+
+TrackColumns changed(const TrackColumns& track, const GroundChange& change) {
+  TrackColumns result(track.name, 2);
+  result.reserve(track.size());
+  for (std::size_t row = 0; row < track.size(); ++row) {
+    Sample sample = track.sample(row);
+    sample.position.head<2>() = change.place(track.place(row));
+    if (sample.velocity) sample.velocity->head<2>() = change.linear * Vector<2>(sample.velocity->head<2>());
+    if (sample.covariance) {
+      const Matrix<2> covariance = sample.covariance->topLeftCorner<2, 2>();
+      sample.covariance->topLeftCorner<2, 2>() = change.linear * covariance * change.linear.transpose();
+    }
+    result.add(track.at()[row], sample);
+  }
+  return result;
+}
+
+}  // namespace
+
+Recording on_other_ground(Recording recording, const FrameOfReference& frame, const GroundChange& change) {
+  require_ground(recording, "another frame of reference");
+  std::vector<TrackColumns> tracks = recording.take_tracks();
+  Recording result = std::move(recording);
+  result.header.frame = frame;
+  for (TrackColumns& track : tracks) {
+    result.put(changed(track, change));
+    track = TrackColumns({}, 2);
+  }
+  return result;
+}
+
+}  // namespace marey

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/core/ids.h"
+#include "marey/core/sink.h"
+#include "marey/core/track_names.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/draw/overlay.h"
+
+namespace marey::draw {
+
+/// A film of one camera with its targets drawn into the pictures: positions in the picture themselves, others by their boxes in the
+/// camera's view.
+class OverlayFilm final : public Sink {
+ public:
+  struct View {
+    CameraId camera{};
+    cv::Size size;                  ///< px
+    std::optional<double> rate_hz;  ///< of its pictures
+    Duration offset{};              ///< between its own clock, by which the film runs, and the recording's
+  };
+
+  /// Throws Error where the file cannot be written.
+  OverlayFilm(const std::string& path, const View& view, const OverlayOptions& options = {});
+
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& header) override;
+  void write(const Instant& instant) override;
+  void finish() override { movie_.finish(); }
+
+ private:
+  std::vector<Sample> in_view(const Instant& instant) const;
+
+  std::string path_;
+  View view_;
+  bool by_boxes_ = false;
+  MovieWriter movie_;
+  Overlay overlay_;
+  TrackNames names_;
+};
+
+}  // namespace marey::draw

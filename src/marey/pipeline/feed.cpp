@@ -1,0 +1,304 @@
+#include "marey/pipeline/feed.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/format/observations.h"
+#include "marey/pipeline/detections_input.h"
+#include "marey/pipeline/read_ahead.h"
+#include "marey/pipeline/rig_sources.h"
+#include "marey/source/open_source.h"
+#include "marey/source/region_source.h"
+
+namespace marey::pipeline {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr double kObservationRate = 100;  // Hz; of observations of which nobody says it
+constexpr double kJitter = 0.25;          // of a frame, by which times of files are rounded
+
+double since(SteadyClock::time_point begin) {
+  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
+}
+
+cv::Rect within(const cv::Rect& region, cv::Size picture, const std::string& source) {
+  if ((region & cv::Rect({}, picture)) == region && region.area() > 0) return region;
+  throw Error("its region {}x{} at ({}, {}) is not within the pictures of {}x{} px of {}", region.width, region.height, region.x,
+              region.y, picture.width, picture.height, source);
+}
+
+}  // namespace
+
+std::string said_of(const RigCamera& camera, const std::string& sentence) {
+  return camera.name.empty() ? sentence : fmt::format("camera \"{}\": {}", camera.name, sentence);
+}
+
+class Feed::Input {
+ public:
+  virtual ~Input() = default;
+  virtual const SourceInfo& info() const = 0;
+  virtual std::optional<CameraFrame> next() = 0;
+  virtual std::vector<std::string> warnings() const { return {}; }
+};
+
+class Feed::Pictures final : public Input {
+ public:
+  Pictures(std::unique_ptr<Source> source, int ahead) : source_(std::move(source)), ahead_(ahead) {}
+
+  const SourceInfo& info() const override { return source_->info(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
+  std::optional<CameraFrame> next() override {
+    if (ahead_ > 0) source_ = read_ahead(std::move(source_), std::exchange(ahead_, 0));
+    auto frame = source_->next();
+    if (!frame) return std::nullopt;
+    return CameraFrame{.frame = std::move(*frame), .detections = {}};
+  }
+
+ private:
+  std::unique_ptr<Source> source_;
+  int ahead_;  // frames, once reading has begun; 0: done, or not wanted
+};
+
+class Feed::Nothing final : public Input {
+ public:
+  const SourceInfo& info() const override { return info_; }
+  std::optional<CameraFrame> next() override { return std::nullopt; }
+
+ private:
+  SourceInfo info_;
+};
+
+class Feed::Boxes final : public Input {
+ public:
+  explicit Boxes(DetectionsInput known) : known_(std::move(known)) {}
+
+  const SourceInfo& info() const override { return known_.source->info(); }
+  std::vector<std::string> warnings() const override { return known_.source->warnings(); }
+  std::optional<CameraFrame> next() override {
+    auto frame = known_.source->next();
+    if (!frame) return std::nullopt;
+    CameraFrame result{.frame = std::move(*frame), .detections = {}};
+    result.detections = known_.detector->detect(result.frame, {}).detections;
+    return result;
+  }
+
+ private:
+  DetectionsInput known_;
+};
+
+/// One file of observations, dealt out to the cameras' feeds.
+class ObservationDeal {
+ public:
+  ObservationDeal(const std::string& path, const Rig& rig) : reader_(path, rig), waiting_(rig.cameras.size()) {}
+
+  /// Cameras ask side by side, each for its own.
+  std::optional<format::SeenFrame> next(std::size_t camera) {
+    const std::lock_guard lock(dealing_);
+    while (waiting_[camera].empty()) {
+      const auto frame = reader_.next();
+      if (!frame) return std::nullopt;
+      for (std::size_t c = 0; c < waiting_.size(); ++c) {
+        const auto part = frame->of(CameraId{static_cast<int>(c)});
+        waiting_[c].push_back({frame->frame, {part.begin(), part.end()}});
+      }
+    }
+    format::SeenFrame first = std::move(waiting_[camera].front());
+    waiting_[camera].pop_front();
+    return first;
+  }
+
+ private:
+  std::mutex dealing_;
+  format::ObservationReader reader_;
+  std::vector<std::deque<format::SeenFrame>> waiting_;
+};
+
+class Feed::Observations final : public Input {
+ public:
+  Observations(std::shared_ptr<ObservationDeal> deal, std::size_t camera, const std::string& name, double rate_hz)
+      : deal_(std::move(deal)), camera_(camera), rate_hz_(rate_hz) {
+    info_.name = name;
+    info_.rate_hz = rate_hz;
+  }
+
+  const SourceInfo& info() const override { return info_; }
+  std::optional<CameraFrame> next() override {
+    const auto seen = deal_->next(camera_);
+    if (!seen) return std::nullopt;
+    CameraFrame result;
+    result.frame.index = seen->frame;
+    result.frame.time = timestamp_from_seconds(static_cast<double>(seen->frame) / rate_hz_);
+    auto& detections = result.detections.emplace();
+    for (const format::SeenPoint& point : seen->points) {
+      Detection blob;
+      blob.centre = point.pixel;
+      blob.covariance.setZero();
+      detections.push_back(std::move(blob));
+    }
+    return result;
+  }
+
+ private:
+  std::shared_ptr<ObservationDeal> deal_;
+  std::size_t camera_;
+  double rate_hz_;
+  SourceInfo info_;
+};
+
+namespace {
+
+std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions& options) {
+  auto source = source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : options.rate_hz);
+  if (!camera.region) return source;
+  const cv::Rect region = within(*camera.region, source->info().size, camera.source);
+  return source::crop(std::move(source), region);
+}
+
+}  // namespace
+
+Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : camera_(camera), id_(id), options_(options) {
+  if (camera.source.empty() && camera.detections.empty()) {
+    throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
+                camera.name);
+  }
+  try {
+    if (camera.source.empty()) {
+      input_ = std::make_unique<Boxes>(open_detections(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
+      return;
+    }
+    auto source = open_pictures(camera, options);
+    fit_to_size(camera_, source->info().size);
+    input_ = std::make_unique<Pictures>(std::move(source), options.ahead);
+  } catch (const Error& error) {
+    throw Error("{}", said_of(camera, error.what()));
+  }
+}
+
+Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input)
+    : camera_(camera), id_(id), options_(options), input_(std::move(input)) {}
+
+Feed::~Feed() = default;
+Feed::Feed(Feed&&) noexcept = default;
+Feed& Feed::operator=(Feed&&) noexcept = default;
+
+const SourceInfo& Feed::info() const {
+  return input_->info();
+}
+
+double Feed::rate_hz() const {
+  return info().rate_hz.value_or(kUsualRate);
+}
+
+bool Feed::has_pictures() const {
+  return !camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr;
+}
+
+Feed Feed::absent(const RigCamera& camera, CameraId id) {
+  return {camera, id, {}, std::make_unique<Nothing>()};
+}
+
+void Feed::find(std::unique_ptr<detect::Detector> detector) {
+  detector_ = std::move(detector);
+}
+
+std::optional<CameraFrame> Feed::next() {
+  const auto begin = SteadyClock::now();
+  auto result = input_->next();
+  if (!result) {
+    state_ = FeedState::ended;
+    return std::nullopt;
+  }
+  state_ = FeedState::live;
+  result->decode_s = since(begin);
+  Frame& frame = result->frame;
+  frame.camera = id_;
+  if (options_.steady_times) frame.time = timestamp_from_seconds(steady(seconds(frame.time)));
+  frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
+  if (detector_ == nullptr) return result;
+  const auto decoded = SteadyClock::now();
+  result->detections = detector_->detect(frame, {}).detections;
+  result->detect_s = since(decoded);
+  return result;
+}
+
+/// A file rounds its times, to milliseconds often: a camera that keeps its rate is believed more.
+double Feed::steady(double time) {
+  if (!first_s_) first_s_ = time;
+  const double frames = (time - *first_s_) * rate_hz();
+  return std::abs(frames - std::round(frames)) < kJitter ? *first_s_ + std::round(frames) / rate_hz() : time;
+}
+
+bool Feed::can_rewind() const {
+  const std::string& path = camera_.source.empty() ? camera_.detections : camera_.source;
+  std::error_code ignored;
+  // A pattern of names is no file of that name, and can be read again like a folder.
+  return std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored) ||
+         !std::filesystem::exists(path, ignored);
+}
+
+Feed Feed::again() const {
+  if (can_rewind()) return {camera_, id_, options_};
+  throw Error("{}", said_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
+}
+
+std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) const {
+  FeedOptions options = options_;
+  options.ahead = 0;
+  Feed feed(camera_, id_, options);
+  const double span = std::min<double>(seconds * feed.rate_hz(), most_frames);
+  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / count));
+  std::vector<Frame> samples;
+  while (std::ssize(samples) < count) {
+    auto next = feed.next();
+    if (!next) break;
+    if (next->frame.index % step == 0) samples.push_back(std::move(next->frame));
+  }
+  return samples;
+}
+
+std::vector<std::string> Feed::warnings() const {
+  std::vector<std::string> all;
+  for (const std::string& warning : input_->warnings()) all.push_back(said_of(camera_, warning));
+  if (detector_ == nullptr) return all;
+  for (const std::string& warning : detector_->warnings()) all.push_back(said_of(camera_, info().name + ": " + warning));
+  return all;
+}
+
+std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent) {
+  const auto gives = [](const RigCamera& camera) { return !camera.source.empty() || !camera.detections.empty(); };
+  if (allow_absent && std::none_of(rig.cameras.begin(), rig.cameras.end(), gives)) {
+    throw Error("{}", "no camera of the rig has a source; name them in the rig, or give CAMERA=VIDEO or --observations");
+  }
+  std::vector<std::optional<Feed>> opened(rig.cameras.size());
+  tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {
+    const RigCamera& camera = rig.cameras[i];
+    const CameraId id{static_cast<int>(i)};
+    opened[i] = allow_absent && !gives(camera) ? Feed::absent(camera, id) : Feed(camera, id, options);
+  });
+  std::vector<Feed> feeds;
+  for (auto& feed : opened) feeds.push_back(std::move(*feed));
+  return feeds;
+}
+
+std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz) {
+  const auto deal = std::make_shared<ObservationDeal>(path, rig);
+  std::vector<Feed> feeds;
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const RigCamera& camera = rig.cameras[c];
+    const double rate = camera.rate_hz ? *camera.rate_hz : rate_hz.value_or(kObservationRate);
+    feeds.push_back(Feed(camera, CameraId{static_cast<int>(c)}, {}, std::make_unique<Feed::Observations>(deal, c, path, rate)));
+  }
+  return feeds;
+}
+
+}  // namespace marey::pipeline

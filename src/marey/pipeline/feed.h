@@ -1,0 +1,98 @@
+// The one place that opens a camera. Whatever it is (a video file, a folder of pictures, another program's detections, a file of
+// observations that several cameras share), its region, rate, offset and size are honoured here, and nowhere else.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/frame_set.h"
+#include "marey/core/rig.h"
+#include "marey/core/source.h"
+#include "marey/detect/detector.h"
+
+namespace marey::pipeline {
+
+/// Of a camera that nobody knows the rate of, Hz.
+constexpr double kUsualRate = 25;
+
+enum class FeedState { connecting, live, stalled, lost, back, ended };
+
+struct FeedOptions {
+  std::optional<double> rate_hz = {};  ///< of a camera of which the rig does not say it
+  bool steady_times = false;           ///< the camera keeps its rate: times that its file has rounded are put right
+  int ahead = 8;                       ///< frames that are decoded ahead, on a thread of its own; 0: none
+};
+
+class Feed {
+ public:
+  /// Opens the camera's source, or its detections where it has no source. Throws Error, with the camera's name where it has one,
+  /// where it has neither, cannot be read, its region is not within its pictures, or its calibration is for pictures of another
+  /// shape.
+  Feed(const RigCamera& camera, CameraId id, const FeedOptions& options = {});
+  ~Feed();
+  Feed(Feed&&) noexcept;
+  Feed& operator=(Feed&&) noexcept;
+
+  /// The camera as its pictures are: with their size, and its calibration scaled to it.
+  const RigCamera& camera() const { return camera_; }
+  CameraId id() const { return id_; }
+  const SourceInfo& info() const;
+  double rate_hz() const;
+  bool has_pictures() const;
+  FeedState state() const { return state_; }
+
+  /// A camera that gives nothing.
+  static Feed absent(const RigCamera& camera, CameraId id);
+
+  /// The feed looks for things itself from now on, in the frames' order.
+  void find(std::unique_ptr<detect::Detector> detector);
+  /// Its own detector; nothing where it has none.
+  const detect::Detector* detector() const { return detector_.get(); }
+
+  /// The next frame; nothing at the end. Its time is by the rig's clock: the camera's with `offset_s` added.
+  std::optional<CameraFrame> next();
+
+  /// Whether `again` works: a file does, a pipe or a live camera does not.
+  bool can_rewind() const;
+  /// The same camera from its beginning, without a detector. Throws Error where it cannot be read twice.
+  Feed again() const;
+  /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is.
+  std::vector<Frame> sample(int count, double seconds, int most_frames) const;
+
+  /// What went wrong so far without stopping it, one sentence each, with the camera's name where it has one.
+  std::vector<std::string> warnings() const;
+
+ private:
+  class Input;
+  class Pictures;
+  class Boxes;
+  class Observations;
+  class Nothing;
+  friend std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
+
+  Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input);
+  double steady(double time);
+
+  RigCamera camera_;
+  CameraId id_;
+  FeedOptions options_;
+  std::unique_ptr<Input> input_;
+  std::unique_ptr<detect::Detector> detector_;
+  std::optional<double> first_s_;
+  FeedState state_ = FeedState::connecting;
+};
+
+/// Every camera of the rig, opened side by side. With `allow_absent`, cameras without source and detections give nothing, and only
+/// a rig without any other is refused.
+std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent = false);
+
+/// What another program saw of markers, from a file or folder that format/observations.h reads: a feed for each of the rig's
+/// cameras. `rate_hz` counts where the rig does not say; without either it is 100 Hz.
+std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
+
+/// The error or warning with the camera's name before it, where it has one.
+std::string said_of(const RigCamera& camera, const std::string& sentence);
+
+}  // namespace marey::pipeline

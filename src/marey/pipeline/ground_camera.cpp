@@ -1,0 +1,169 @@
+#include "marey/pipeline/ground_camera.h"
+
+#include <cmath>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/detect/appearance.h"
+#include "marey/detect/people/person_size_map.h"
+#include "marey/reconstruct/person_view.h"
+#include "marey/reconstruct/place_people.h"
+
+namespace marey::pipeline {
+namespace {
+
+constexpr double kSmallest = 12;   // px; a smaller body has no shape
+constexpr double kBeyondArea = 5;  // m; who stands so far outside is followed until it is plain whether they come in
+constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of the foot, others' boxes where they like
+
+// A detector learns the empty scene from this many pictures, spread over this long a beginning.
+constexpr int kSamples = 30;
+constexpr double kSampledSeconds = 30;
+constexpr int kMostFramesRead = 300;
+
+/// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
+detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
+  const GroundView view(camera);
+  return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
+            const auto place = view.place({x + part.x, y + part.y});
+            if (!place || !area.holds(place->ground, kBeyondArea)) return std::nullopt;
+            const auto box = reconstruct::person_box(camera, place->ground);
+            if (!box || box->height < kSmallest) return std::nullopt;
+            return detect::people::PersonSize{box->height, box->width};
+          }};
+}
+
+/// The part of the picture, even-sided, in which somebody who counts may be seen.
+cv::Rect part_with_people(const Camera& camera, const reconstruct::GroundArea& area) {
+  const cv::Size size = camera.size();
+  const cv::Rect whole({}, size);
+  if (!area.pitch()) return whole;
+  constexpr int step = 32;
+  const GroundView view(camera);
+  std::optional<Box> all;
+  // Feet may be below the picture while the head is in it.
+  for (int y = 0; y < 3 * size.height / 2; y += step) {
+    for (int x = -step; x <= size.width + step; x += step) {
+      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
+      if (!place || !area.holds(place->ground, kBeyondArea)) continue;
+      const auto box = reconstruct::person_box(camera, place->ground);
+      if (!box || box->height < kSmallest) continue;
+      all = all ? geometry::hull(*all, *box) : *box;
+    }
+  }
+  if (!all) return whole;
+  const auto down = [](double value) { return static_cast<int>(std::floor(value / step)) * step; };
+  const cv::Rect found(cv::Point(down(all->left), down(all->top)),
+                       cv::Point(down(all->right()) + step, down(all->bottom()) + step));
+  const cv::Rect part = found & whole;
+  return part.area() > 0 ? part : whole;
+}
+
+Box moved(const Box& box, const cv::Point& by) {
+  return {box.left + by.x, box.top + by.y, box.width, box.height};
+}
+
+GroundView view_of(const RigCamera& camera) {
+  if (!camera.camera_from_world && !camera.ground_from_image)
+    throw Error("camera \"{}\": how it sees the ground is not known; run marey calibrate pitch, or give its ground_from_image",
+                camera.name);
+  if (camera.source.empty() && !camera.size)
+    throw Error("camera \"{}\" brings detections: the size of its pictures must be told; add size = [width, height] to the rig",
+                camera.name);
+  if (const auto view = camera.ground_view()) return *view;
+  throw Error("camera \"{}\": its lens or the size of its pictures is not known; calibrate it", camera.name);
+}
+
+}  // namespace
+
+GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options)
+    : camera_(feed.camera()), id_(feed.id()), area_(area), view_(view_of(camera_)) {
+  if (!feed.has_pictures()) {
+    if (view_.camera() == nullptr) learned_.emplace();
+    return;
+  }
+  detect::people::PeopleOptions people = options.people;
+  if (const Camera* whole = view_.camera()) {
+    const cv::Rect part = part_with_people(*whole, area);
+    people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
+    if (part.size() != whole->size()) part_ = part;
+  }
+  detector_ = std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), people);
+  if (!options.prime) return;
+  std::vector<Frame> samples = feed.sample(kSamples, kSampledSeconds, kMostFramesRead);
+  for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
+  detector_->prime(samples);
+}
+
+GroundCamera::~GroundCamera() = default;
+GroundCamera::GroundCamera(GroundCamera&&) noexcept = default;
+
+std::optional<Box> GroundCamera::box_at(const Vector<2>& ground) const {
+  if (const Camera* camera = view_.camera()) return reconstruct::person_box(*camera, ground);
+  const auto foot = view_.pixel(ground);
+  if (!foot) return std::nullopt;
+  const auto size = detector_ ? detector_->size_at(foot->x(), foot->y()) : learned_->at(foot->x(), foot->y());
+  if (!size) return std::nullopt;
+  return size->box_at(foot->x(), foot->y());
+}
+
+track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
+  ++frames_;
+  detect::Detections found;
+  Frame frame = given.frame;
+  if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
+  if (detector_) {
+    expected_.clear();
+    const cv::Size size = frame.picture.size();
+    const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+    for (const Track<2>& track : expected) {
+      const auto box = box_at(track.position);
+      if (!box) continue;
+      const Box here = geometry::intersection(moved(*box, -corner()), picture);
+      if (!here.empty()) expected_.push_back({here});
+    }
+    found = detector_->detect(frame, expected_);
+  } else {
+    found.detections = *given.detections;
+    if (learned_) {
+      for (const Detection& detection : found.detections) learned_->see(detection.box, view_.size());
+      if (learned_->wants_fit()) learned_->fit();
+    }
+  }
+  place(frame.picture, found);
+  return {id_, given.frame.time, seen_};
+}
+
+void GroundCamera::place(const Picture& picture, detect::Detections& found) {
+  std::vector<std::optional<Appearance>> appearances;
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    appearances.push_back(detect::upper_body(picture, found.foreground, found.detections, i));
+  }
+  for (Detection& detection : found.detections) detection.box = moved(detection.box, corner());
+  reconstruct::PlacePeopleOptions placing;
+  if (detector_) placing.toe = kToe;
+  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_, id_, placing);
+  seen_.clear();
+  for (std::size_t i = 0; i < placed.seen.size(); ++i) {
+    if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
+    seen_.push_back(placed.seen[i]);
+    seen_.back().appearance = appearances[static_cast<std::size_t>(placed.detection[i])];
+  }
+  outside_ += std::ssize(found.detections) - std::ssize(seen_);
+  detections_ += std::ssize(seen_);
+}
+
+void GroundCamera::report(Summary& summary) const {
+  Summary::Camera& counts = summary.cameras.emplace_back();
+  counts.name = camera_.name;
+  counts.frames = frames_;
+  counts.missed = summary.frames - frames_;
+  counts.detections = detections_;
+  counts.outside = outside_;
+  summary.detections += detections_;
+  if (!detector_) return;
+  counts.noise = detector_->counts().noise;
+  counts.misfits = detector_->counts().misfits;
+}
+
+}  // namespace marey::pipeline

@@ -1,0 +1,63 @@
+// One camera of several that look at one ground: where people are expected in its picture, who is found there, where they stand.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/detect/background/background.h"
+#include "marey/detect/people/people.h"
+#include "marey/detect/people/people_size.h"
+#include "marey/pipeline/feed.h"
+#include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
+#include "marey/track/ground/ground_tracker.h"
+
+namespace marey::pipeline {
+
+struct GroundCameraOptions {
+  detect::background::BackgroundOptions background = {};
+  detect::people::PeopleOptions people = {};
+  bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
+};
+
+class GroundCamera {
+ public:
+  /// Has `feed`, which has given nothing yet, look at the part of its pictures alone in which people may be who count. Throws
+  /// Error, with the camera's name, where it does not know how it sees the ground.
+  GroundCamera(Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options);
+  ~GroundCamera();
+  GroundCamera(GroundCamera&&) noexcept;
+
+  const GroundView& view() const { return view_; }
+
+  /// Finds people where `expected` are (m, world), or takes what another program found, and places them. Valid until the next call.
+  track::ground::CameraObservations observe(const CameraFrame& given, std::span<const Track<2>> expected);
+
+  /// The box of a person at `ground` (m, world) in the camera's picture, px; nothing where that is not known.
+  std::optional<Box> box_at(const Vector<2>& ground) const;
+
+  /// Puts in what was looked at, found and left out.
+  void report(Summary& summary) const;
+  std::int64_t frames() const { return frames_; }
+
+ private:
+  cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
+  Picture looked_at(const Picture& picture) const { return part_ ? picture.part(*part_) : picture; }
+  void place(const Picture& picture, detect::Detections& found);
+
+  RigCamera camera_;
+  CameraId id_;
+  reconstruct::GroundArea area_;
+  GroundView view_;
+  std::optional<cv::Rect> part_;                              // px, that is looked at; nothing: the whole picture
+  std::unique_ptr<detect::people::PeopleDetector> detector_;  // none where another program's detections come
+  std::optional<detect::people::PersonSizeModel> learned_;    // where neither a camera nor a detector knows how tall people are
+  std::vector<Expected> expected_;
+  std::vector<Observation<2>> seen_;
+  std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;
+};
+
+}  // namespace marey::pipeline

@@ -1,0 +1,158 @@
+#include "marey/pipeline/markers_in_picture.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "marey/core/error.h"
+#include "marey/core/track_sample.h"
+#include "marey/filter/fit_noise.h"
+#include "marey/pipeline/rows_by_frame.h"
+#include "marey/pipeline/simulation_files.h"
+#include "marey/track/fill_gaps.h"
+#include "marey/track/recording.h"
+
+namespace marey::pipeline {
+namespace {
+
+constexpr double kFittedSeconds = 20;  // of the recording, from which noise is told
+
+using Markers = std::map<TrackId, std::string>;
+
+/// What a second look made of the recording, frame by frame.
+class FilledRows final : public InstantSource {
+ public:
+  FilledRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, Markers labels)
+      : rows_(std::move(rows)), moments_(std::move(moments)), labels_(std::move(labels)), by_frame_(rows_) {}
+
+  std::optional<Instant> next() override {
+    if (next_ == moments_.size()) return std::nullopt;
+    Instant instant;
+    instant.index = moments_[next_].index;
+    instant.time = moments_[next_].time;
+    if (next_++ == 0) {
+      for (const auto& [id, label] : labels_) instant.named.push_back({id, label, {}});
+    }
+    for (const Track<2>& track : by_frame_.at(instant.index)) instant.samples.push_back(sample_of(track));
+    for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
+    return instant;
+  }
+
+ private:
+  std::vector<track::TrackRow> rows_;
+  std::vector<Recording::Moment> moments_;
+  Markers labels_;
+  RowsByFrame by_frame_;
+  std::size_t next_ = 0;
+};
+
+class MarkersInPicture final : public Stage {
+ public:
+  MarkersInPicture(const Feed& feed, const MarkersInPictureOptions& options) : options_(options), detector_(options.markers) {
+    header_.name = feed.info().name;
+    header_.frame.kind = FrameOfReference::Kind::image;
+    header_.rate_hz = feed.rate_hz();
+    header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
+    if (options.fit_noise && !options.live) fit(feed.again());
+    tracker_ = track::make_roster_tracker<2>(options_.tracker);
+  }
+
+  RecordingHeader header() const override { return header_; }
+
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const Frame& frame = frames.cameras.front()->frame;
+    const auto seen = observe(detector_, frame, *tracker_);
+    detections_ += std::ssize(seen);
+    live_.index = frame.index;
+    live_.time = frame.time;
+    live_.samples.clear();
+    live_.named.clear();
+    confirmed_.clear();
+    for (const Track<2>& track : tracker_->step(frame.time, seen)) {
+      if (!track.label.empty() && std::exchange(labels_[track.id], track.label) != track.label)
+        live_.named.push_back({track.id, track.label, {}});
+      if (track.confirmed) confirmed_.push_back(track);
+    }
+    if (options_.live) {
+      for (const Track<2>& track : confirmed_) live_.samples.push_back(sample_of(track));
+      return {&live_, 1};
+    }
+    recording_.add(frame.index, frame.time, confirmed_);
+    moments_.push_back({frame.index, frame.time});
+    return {};
+  }
+
+  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+    if (options_.live) return nullptr;
+    return std::make_unique<FilledRows>(track::fill_gaps(recording_), std::move(moments_), std::move(labels_));
+  }
+
+  void report(Summary& summary) const override {
+    summary.detections = detections_;
+    if (noise_) {
+      summary.figures["measurement_px"] = noise_->measurement_sigma;
+      summary.figures["acceleration_px_s2"] = noise_->acceleration;
+    } else if (options_.fit_noise && !options_.live) {
+      summary.warnings.push_back(header_.name +
+                                 ": too little moves in its beginning to tell the noise from; the defaults were kept");
+    }
+    for (const std::string& warning : detector_.warnings()) summary.warnings.push_back(header_.name + ": " + warning);
+    if (detections_ > 0) return;
+    summary.warnings.push_back(header_.name +
+                               ": no marker was seen in any frame; are they bright on dark (else --dark or --colour), "
+                               "and brighter than --threshold?");
+  }
+
+ private:
+  /// A first look at the beginning of the recording, to learn how the markers move and how well they are seen.
+  void fit(Feed feed) {
+    detect::markers::MarkerDetector detector(options_.markers);
+    const auto tracker = track::make_roster_tracker<2>(options_.tracker);
+    std::map<TrackId, filter::MeasuredPath<2>> paths;
+    while (const auto given = feed.next()) {
+      if (seconds(given->frame.time) > kFittedSeconds) break;
+      const auto seen = observe(detector, given->frame, *tracker);
+      for (const Track<2>& track : tracker->step(given->frame.time, seen)) {
+        if (!track.observation || !track.confirmed) continue;
+        paths[track.id].times.push_back(seconds(given->frame.time));
+        paths[track.id].positions.push_back(seen[*track.observation].value);
+      }
+    }
+    std::vector<filter::MeasuredPath<2>> list;
+    for (auto& [id, path] : paths) list.push_back(std::move(path));
+    noise_ = filter::fit_noise<2>(list);
+    if (noise_) options_.tracker.filter = filter::with_noise(options_.tracker.filter, *noise_);
+  }
+
+  static std::vector<Observation<2>> observe(detect::markers::MarkerDetector& detector, const Frame& frame,
+                                             track::Tracker<2>& tracker) {
+    std::vector<Expected> expected;
+    for (const Track<2>& track : tracker.expected(frame.time)) {
+      if (track.box) expected.push_back({*track.box});
+    }
+    std::vector<Observation<2>> seen;
+    for (const Detection& detection : detector.detect(frame, expected).detections) seen.push_back(observation_of(detection));
+    return seen;
+  }
+
+  MarkersInPictureOptions options_;
+  RecordingHeader header_;
+  detect::markers::MarkerDetector detector_;
+  std::unique_ptr<track::Tracker<2>> tracker_;
+  std::optional<filter::NoiseFit> noise_;
+  track::Recording recording_;
+  std::vector<Recording::Moment> moments_;
+  std::vector<Track<2>> confirmed_;
+  Markers labels_;
+  Instant live_;
+  std::int64_t detections_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> markers_in_picture(const Feed& feed, const MarkersInPictureOptions& options) {
+  return std::make_unique<MarkersInPicture>(feed, options);
+}
+
+}  // namespace marey::pipeline

@@ -1,0 +1,25 @@
+// Bright, dark or coloured markers in the pictures of one camera, under the names that they have in the first frame.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/pipeline/run.h"
+#include "marey/track/roster_tracker.h"
+
+namespace marey::pipeline {
+
+struct MarkersInPictureOptions {
+  detect::markers::MarkerOptions markers;
+  track::RosterTrackerOptions tracker;
+  bool fit_noise = false;  ///< read the filter's noise off the beginning of the recording; not where `live`
+  /// Every frame's markers are told as they come, and nothing is improved by what came later.
+  bool live = false;
+};
+
+/// After the last frame (not where `live`) false points are dropped, what is known to be gone is cut, and gaps are filled from both
+/// ends. Memory grows with the rows, 64 bytes each.
+std::unique_ptr<Stage> markers_in_picture(const Feed& feed, const MarkersInPictureOptions& options);
+
+}  // namespace marey::pipeline

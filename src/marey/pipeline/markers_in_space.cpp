@@ -1,0 +1,229 @@
+#include "marey/pipeline/markers_in_space.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/pipeline/set_labels.h"
+#include "marey/pipeline/simulation_files.h"
+#include "marey/reconstruct/learned_noise.h"
+#include "marey/track/gap_filler.h"
+
+namespace marey::pipeline {
+namespace {
+
+constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
+constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
+
+using SteadyClock = std::chrono::steady_clock;
+
+double since(SteadyClock::time_point begin) {
+  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
+}
+
+/// What still waited for the end of gaps when the cameras had ended.
+class Waiting final : public InstantSource {
+ public:
+  explicit Waiting(track::GapFiller& filler) : filler_(filler) { filler_.finish(); }
+  std::optional<Instant> next() override { return filler_.next(); }
+
+ private:
+  track::GapFiller& filler_;
+};
+
+class MarkersInSpace final : public Stage {
+ public:
+  MarkersInSpace(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options)
+      : options_(options),
+        noise_(options.noise_px),
+        labels_(options.set),
+        filler_(frames_in(options.fill_s, rate_hz), frames_in(std::min(options.predict_s, options.fill_s), rate_hz)) {
+    header_.name = "the rig";
+    header_.frame.kind = FrameOfReference::Kind::space;
+    header_.rate_hz = rate_hz;
+    header_.rig = rig;
+    choose_cameras(rig);
+    track::RosterTrackerOptions tracker = options.tracker;
+    if (!options.set.has_places()) tracker.labels = options.set.labels;
+    tracker_ = track::make_roster_tracker<3>(tracker);
+  }
+
+  RecordingHeader header() const override { return header_; }
+
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const auto begin = SteadyClock::now();
+    see(frames);
+    const reconstruct::Correspondences& found = correspond(frames);
+    const auto matched = SteadyClock::now();
+    corresponding_.add(std::chrono::duration<double>(matched - begin).count());
+    points_.clear();
+    for (const reconstruct::Placed& placed : found.points) {
+      points_.push_back({.value = placed.point.position, .covariance = placed.point.covariance, .box = {}});
+    }
+    const auto tracks = tracker_->step(frames.time, points_);
+    labels_.give(tracks);
+    tracking_.add(since(matched));
+    filler_.add(instant_of(frames, found, tracks), tracks);
+    known_.clear();
+    while (auto instant = filler_.next()) known_.push_back(std::move(*instant));
+    ++frames_;
+    chain_.add(since(begin));
+    return known_;
+  }
+
+  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override { return std::make_unique<Waiting>(filler_); }
+
+  void report(Summary& summary) const override {
+    summary.figures["noise_px"] = noise_.px();
+    summary.figures["observations"] = static_cast<double>(observations_);
+    summary.figures["unexplained"] = static_cast<double>(unexplained_);
+    summary.left_out["points of two rays alone"] = by_two_rays_;
+    for (const auto& [reason, count] : missed_) summary.left_out[std::string(reconstruct::meaning(reason))] = count;
+    if (placed_ > 0) summary.figures["residual_px"] = std::sqrt(squares_ / static_cast<double>(placed_));
+    const auto report_step = [&](const char* step, const StageTimes& times) {
+      summary.steps.push_back({step, times.count(), times.quantile(0.5), times.quantile(0.99)});
+    };
+    report_step("correspond", corresponding_);
+    report_step("track", tracking_);
+    report_step("blobs to instants", chain_);
+    summary.warnings.insert(summary.warnings.begin(), warnings_.begin(), warnings_.end());
+    if (placed_ > 0) return;
+    summary.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and in step?");
+  }
+
+ private:
+  static int frames_in(double duration, double rate_hz) { return static_cast<int>(std::lround(duration * rate_hz)); }
+
+  void choose_cameras(const Rig& rig) {
+    std::vector<Camera> cameras;
+    std::vector<CameraId> ids;
+    for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+      const auto whole = rig.cameras[i].camera();
+      calibrated_.push_back(whole.has_value());
+      if (whole) {
+        ids.push_back(CameraId{static_cast<int>(i)});
+        cameras.push_back(*whole);
+      } else {
+        warnings_.push_back(fmt::format("camera \"{}\" has no calibration and is left out", rig.cameras[i].name));
+      }
+    }
+    reconstruct::CorrespondOptions correspond = options_.correspond;
+    correspond.noise_px = noise_.px();
+    if (cameras.size() == 2) correspond.fewest_rays = 2;
+    corresponder_.emplace(std::move(cameras), correspond, std::move(ids));
+  }
+
+  void see(const FrameSet& frames) {
+    seen_.clear();
+    for (std::size_t c = 0; c < frames.cameras.size(); ++c) {
+      if (!frames.cameras[c] || !calibrated_[c]) continue;
+      for (const Detection& detection : *frames.cameras[c]->detections) {
+        Observation<2> blob = observation_of(detection);
+        if (blob.covariance.trace() > 2 * kVaguest * kVaguest) continue;
+        blob.camera = CameraId{static_cast<int>(c)};
+        seen_.push_back(blob);
+      }
+    }
+  }
+
+  const reconstruct::Correspondences& correspond(const FrameSet& frames) {
+    expected_.clear();
+    for (const Track<3>& track : tracker_->expected(frames.time)) {
+      if (track.covariance.trace() < 3 * kSurePrediction * kSurePrediction) expected_.push_back(track);
+    }
+    const reconstruct::Correspondences* found = &corresponder_->match(seen_, expected_);
+    if (noise_.learn(*found)) {
+      corresponder_->set_noise(noise_.px());
+      if (frames_ == 0) found = &corresponder_->match(seen_, expected_);
+    }
+    observations_ += std::ssize(seen_);
+    unexplained_ += found->unexplained;
+    by_two_rays_ += std::ssize(found->by_two_rays);
+    for (const auto& reason : found->missed) {
+      if (reason) ++missed_[*reason];
+    }
+    return *found;
+  }
+
+  Instant instant_of(const FrameSet& frames, const reconstruct::Correspondences& found, std::span<const Track<3>> tracks) {
+    Instant instant;
+    instant.index = frames.index;
+    instant.time = frames.time;
+    for (const Observation<2>& blob : seen_) {
+      SeenPoint& seen = instant.seen.emplace_back();
+      seen.camera = blob.camera;
+      seen.pixel = blob.value;
+      if (blob.covariance.trace() > 0) seen.sigma = std::sqrt(blob.covariance.trace() / 2);
+      if (blob.box && blob.box->area() > 0) seen.area = blob.box->area();
+    }
+    for (const Track<3>& track : tracks) {
+      if (!track.confirmed) continue;
+      name(track, instant);
+      if (!track.observation) continue;
+      const reconstruct::Placed& placed = found.points[static_cast<std::size_t>(*track.observation)];
+      Sample& sample = instant.samples.emplace_back();
+      sample.track = track.id;
+      sample.position = placed.point.position;
+      sample.covariance = placed.point.covariance;
+      sample.residual_px = placed.point.residual_px;
+      for (const int i : placed.seen) {
+        SeenPoint& seen = instant.seen[static_cast<std::size_t>(i)];
+        seen.track = track.id;
+        sample.cameras |= mask_of(seen.camera);
+      }
+      squares_ += placed.point.residual_px * placed.point.residual_px;
+      ++placed_;
+    }
+    return instant;
+  }
+
+  void name(const Track<3>& track, Instant& instant) {
+    const std::string& label = track.label.empty() ? labels_.of(track.id) : track.label;
+    const auto [known, is_new] = names_.try_emplace(track.id);
+    if (!is_new && known->second == label) return;
+    known->second = label;
+    instant.named.push_back({track.id, label, {}});
+  }
+
+  MarkersInSpaceOptions options_;
+  RecordingHeader header_;
+  std::vector<bool> calibrated_;  // by camera of the rig
+  reconstruct::LearnedNoise noise_;
+  SetLabels labels_;
+  track::GapFiller filler_;
+  std::optional<reconstruct::Corresponder> corresponder_;
+  std::unique_ptr<track::Tracker<3>> tracker_;
+  std::map<TrackId, std::string> names_;
+  StageTimes corresponding_, tracking_, chain_;
+  std::vector<std::string> warnings_;
+  std::map<reconstruct::NoPoint, std::int64_t> missed_;
+  std::int64_t frames_ = 0, observations_ = 0, unexplained_ = 0, by_two_rays_ = 0, placed_ = 0;
+  double squares_ = 0;
+  std::vector<Observation<2>> seen_;
+  std::vector<Track<3>> expected_;
+  std::vector<Observation<3>> points_;
+  std::vector<Instant> known_;
+};
+
+}  // namespace
+
+track::RosterTrackerOptions space_tracker_options() {
+  return {.filter = filter::KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4},
+          .labels = {},
+          .max_speed = 15,
+          .marker_width = 0.02,
+          .place_noise = 1e-4,
+          .companions = true};
+}
+
+std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {
+  return std::make_unique<MarkersInSpace>(rig, rate_hz, options);
+}
+
+}  // namespace marey::pipeline

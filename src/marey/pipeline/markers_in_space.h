@@ -1,0 +1,35 @@
+// Markers in space, from what the cameras of a calibrated rig saw of them: match blobs to predictions and to each other, place
+// them, follow them, give them names, fill their gaps.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "marey/core/rig.h"
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/run.h"
+#include "marey/reconstruct/correspond.h"
+#include "marey/track/roster_tracker.h"
+
+namespace marey::pipeline {
+
+/// What fits markers in space: m.
+track::RosterTrackerOptions space_tracker_options();
+
+struct MarkersInSpaceOptions {
+  detect::markers::MarkerOptions markers;
+  reconstruct::CorrespondOptions correspond = {};
+  std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
+  track::RosterTrackerOptions tracker = space_tracker_options();
+  MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
+  std::optional<double> rate_hz;  ///< of sources and observations of which nobody says it
+  double fill_s = 0.5;            ///< longest gap that is filled
+  double predict_s = 0;           ///< of a longer gap, this much is reported as it was expected; ≤ fill_s
+};
+
+/// `rig` as its feeds are. Instants wait for as long as the longest gap that is filled; memory does not grow with the recording.
+/// Cameras without a calibration are left out, with a warning.
+std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options);
+
+}  // namespace marey::pipeline

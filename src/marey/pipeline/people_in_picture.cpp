@@ -1,0 +1,169 @@
+#include "marey/pipeline/people_in_picture.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/core/track_sample.h"
+#include "marey/pipeline/rows_by_frame.h"
+#include "marey/track/outline_recording.h"
+#include "marey/track/recording.h"
+
+namespace marey::pipeline {
+namespace {
+
+// A detector learns the empty scene from this many pictures, spread over this long a beginning.
+constexpr int kSamples = 30;
+constexpr double kSampledSeconds = 30;
+constexpr int kMostFramesRead = 300;
+
+std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
+  std::vector<Expected> result;
+  for (const Track<2>& track : tracks) {
+    if (track.box) result.push_back({*track.box});
+  }
+  return result;
+}
+
+std::vector<Observation<2>> observations_of(const std::vector<Detection>& detections, CameraId camera) {
+  std::vector<Observation<2>> result;
+  result.reserve(detections.size());
+  for (const Detection& detection : detections) {
+    result.push_back({.value = detection.box.centre(),
+                      .covariance = detection.covariance,
+                      .camera = camera,
+                      .score = detection.score,
+                      .box = detection.box,
+                      .shared = detection.group.has_value()});
+  }
+  return result;
+}
+
+/// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
+track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOptions& options) {
+  track::TrackerOptions tracker = options.tracker;
+  tracker.steady_camera = feed.has_pictures();
+  tracker.reclaim = tracker.steady_camera && options.live;
+  return tracker;
+}
+
+/// What the second pass made of the recording, frame by frame.
+class JoinedRows final : public InstantSource {
+ public:
+  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Timestamp> times, track::OutlineRecording* outlines)
+      : rows_(std::move(rows)), times_(std::move(times)), by_frame_(rows_, {}, outlines) {}
+
+  std::optional<Instant> next() override {
+    if (next_ == times_.size()) return std::nullopt;
+    Instant instant;
+    instant.index = static_cast<std::int64_t>(next_);
+    instant.time = times_[next_++];
+    for (const Track<2>& track : by_frame_.at(instant.index)) instant.samples.push_back(sample_of(track));
+    for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
+    return instant;
+  }
+
+ private:
+  std::vector<track::TrackRow> rows_;
+  std::vector<Timestamp> times_;
+  RowsByFrame by_frame_;
+  std::size_t next_ = 0;
+};
+
+class PeopleInPicture final : public Stage {
+ public:
+  PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
+      : options_(options), tracker_(track::make_tracker<2>(tracker_options(feed, options))) {
+    header_.name = feed.info().name;
+    header_.frame.kind = FrameOfReference::Kind::image;
+    header_.rate_hz = feed.rate_hz();
+    header_.smoothed = !options.live;
+    header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
+    if (feed.has_pictures()) {
+      people_ =
+          std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
+      if (!options.live) people_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
+    }
+    if (!options.outlines) return;
+    if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
+    follower_.emplace(*options.outlines);
+    if (!options.live) outlines_.emplace(options.beside, options.with_lines);
+  }
+
+  RecordingHeader header() const override { return header_; }
+
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const CameraFrame& given = *frames.cameras.front();
+    const detect::Detections seen = detect(given);
+    const auto tracks = follow(given.frame, seen);
+    for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
+    detections_ += std::ssize(seen.detections);
+    if (options_.live) return told(given.frame, tracks);
+    recording_.add(given.frame.index, given.frame.time, tracks);
+    times_.push_back(given.frame.time);
+    if (outlines_) outlines_->add(given.frame.index, tracks);
+    return {};
+  }
+
+  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+    if (options_.live) return nullptr;
+    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(times_),
+                                        outlines_ ? &*outlines_ : nullptr);
+  }
+
+  void report(Summary& summary) const override {
+    summary.detections = detections_;
+    std::int64_t too_brief = 0;
+    for (const TrackId id : begun_) too_brief += !believed_.contains(id);
+    summary.left_out["too_brief"] = too_brief;
+    if (people_ == nullptr) return;
+    summary.left_out["noise"] = people_->counts().noise;
+    summary.left_out["misfits"] = people_->counts().misfits;
+  }
+
+ private:
+  detect::Detections detect(const CameraFrame& given) {
+    if (given.detections) return {.detections = *given.detections, .foreground = {}};
+    return people_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+  }
+
+  /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
+  std::span<const Track<2>> follow(const Frame& frame, const detect::Detections& seen) {
+    std::vector<Observation<2>> observations = observations_of(seen.detections, frame.camera);
+    if (!follower_) return tracker_->step(frame.time, observations);
+    const auto hints = follower_->look(frame, seen.foreground, seen.detections);
+    observations.insert(observations.end(), hints.begin(), hints.end());
+    return follower_->attach(tracker_->step(frame.time, observations), seen.detections);
+  }
+
+  std::span<const Instant> told(const Frame& frame, std::span<const Track<2>> tracks) {
+    live_.index = frame.index;
+    live_.time = frame.time;
+    live_.samples.clear();
+    for (const Track<2>& track : tracks) {
+      if (track.confirmed) live_.samples.push_back(sample_of(track));
+    }
+    return {&live_, 1};
+  }
+
+  PeopleInPictureOptions options_;
+  RecordingHeader header_;
+  std::unique_ptr<detect::people::PeopleDetector> people_;  // none where the feed brings detections
+  std::unique_ptr<track::Tracker<2>> tracker_;
+  std::optional<track::contour::OutlineFollower> follower_;
+  std::optional<track::OutlineRecording> outlines_;
+  track::Recording recording_;
+  std::vector<Timestamp> times_;
+  Instant live_;
+  std::set<TrackId> begun_, believed_;
+  std::int64_t detections_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options) {
+  return std::make_unique<PeopleInPicture>(feed, options);
+}
+
+}  // namespace marey::pipeline

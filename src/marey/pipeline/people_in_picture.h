@@ -1,0 +1,36 @@
+// People in the pictures of one fixed camera: detect what does not belong to the scene where people are expected, follow it, and,
+// once the whole recording is known, join, fill and smooth what was followed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/detect/background/background.h"
+#include "marey/detect/people/people.h"
+#include "marey/pipeline/run.h"
+#include "marey/track/contour/outline_follower.h"
+#include "marey/track/join.h"
+#include "marey/track/tracker.h"
+
+namespace marey::pipeline {
+
+struct PeopleInPictureOptions {
+  detect::background::BackgroundOptions background;
+  detect::people::PeopleOptions people;
+  track::TrackerOptions tracker;
+  track::JoinOptions join;
+  std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it
+  /// Every frame's tracks are told as they come: nothing is read ahead and nothing improved by what came later.
+  bool live = false;
+  std::string beside;       ///< outlines that wait for the second pass lie in a nameless file beside this path
+  bool with_lines = false;  ///< keep their measurement lines too, for an overlay
+};
+
+/// Detections are the feed's where it brings some, else of background subtraction, which learns the empty scene from the feed first
+/// unless `live`. Memory grows with the rows, 64 bytes each, and with nothing else; not even with those where `live`. Throws Error
+/// where outlines are asked for of a feed without pictures.
+std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options);
+
+}  // namespace marey::pipeline

@@ -1,0 +1,327 @@
+#include "marey/pipeline/people_on_ground.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/draw/canvas.h"
+#include "marey/pipeline/ground_offsets.h"
+#include "marey/pipeline/view_log.h"
+
+namespace marey::pipeline {
+namespace {
+
+using track::ground::CameraObservations;
+using track::ground::ObservationMatch;
+
+constexpr std::size_t kMostCameras = 64;
+
+/// What the cameras saw at a moment, kept until the tracker is sure of it.
+struct KeptObservations {
+  KeptObservations(std::int64_t at, std::span<const CameraObservations> all) : index(at), cameras(all.begin(), all.end()) {
+    seen.reserve(cameras.size());
+    for (CameraObservations& camera : cameras) camera.seen = seen.emplace_back(camera.seen.begin(), camera.seen.end());
+  }
+
+  std::int64_t index;
+  std::vector<CameraObservations> cameras;
+  std::vector<std::vector<Observation<2>>> seen;
+};
+
+std::vector<double> offsets_of(const Rig& rig) {
+  std::vector<double> offsets;
+  for (const RigCamera& camera : rig.cameras) offsets.push_back(camera.offset_s.value_or(0));
+  return offsets;
+}
+
+Rig as_fed(const Rig& rig, const std::vector<Feed>& feeds) {
+  Rig fed = rig;
+  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
+  return fed;
+}
+
+/// The same, its times by the clock of the first camera, which was started `offset` s after the rig's.
+Recording by_first_camera(Recording recording, double offset) {
+  Recording result(recording.header);
+  for (const Recording::Moment& moment : recording.instants())
+    result.add_moment({moment.index, moment.time - duration_from_seconds(offset)});
+  for (TrackColumns& track : recording.take_tracks()) result.put(std::move(track));
+  return result;
+}
+
+std::array<std::uint8_t, 3> bytes_of(const draw::Colour& colour) {
+  return {static_cast<std::uint8_t>(colour.red), static_cast<std::uint8_t>(colour.green), static_cast<std::uint8_t>(colour.blue)};
+}
+
+class GroundStage final : public PeopleOnGround {
+ public:
+  GroundStage(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)
+      : options_(options),
+        rig_(as_fed(rig, feeds)),
+        area_(rig.ground_from_world, options.pitch, options.margin),
+        paths_(offsets_of(rig)),
+        logs_(feeds.size()),
+        observations_(feeds.size()) {
+    open_cameras(feeds);
+    std::vector<GroundView> views;
+    for (const GroundCamera& camera : cameras_) views.push_back(camera.view());
+    tracker_ = track::ground::make_ground_tracker(options.tracker, std::move(views));
+    header_.name = "people on the ground";
+    header_.frame.kind = FrameOfReference::Kind::user_ground;
+    header_.rate_hz = feeds.front().rate_hz();
+    header_.rig = rig_;
+    header_.smoothed = !options.live;
+  }
+
+  RecordingHeader header() const override { return header_; }
+  void want_boxes() override { wants_boxes_ = true; }
+  const std::vector<analyse::Teams::Team>& teams() const override { return teams_.teams; }
+
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const auto seen = observe(frames, tracker_->expected(frames.time));
+    const auto tracks = tracker_->step(frames.time, seen);
+    paths_.add(seen, tracker_->claims());
+    for (std::size_t i = 0; i < logs_.size() && wants_boxes_; ++i) {
+      if (frames.cameras[i])
+        logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
+    }
+    moments_.push_back({frames.index, frames.time - first_offset()});
+    if (options_.live) {
+      live_ = live(frames, tracks, seen);
+      return {&live_, 1};
+    }
+    waiting_.emplace_back(frames.index, seen);
+    record(tracker_->decided());
+    return {};
+  }
+
+  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+    if (options_.live) return nullptr;
+    record(tracker_->decide_all());
+    const auto begin = std::chrono::steady_clock::now();
+    join();
+    joining_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::make_unique<Joined>(*this);
+  }
+
+  void report(Summary& summary) const override {
+    if (!options_.live) summary.left_out["off_pitch"] = off_pitch_;
+    if (!options_.live) summary.figures["joining_s"] = joining_s_;
+    for (const GroundCamera& camera : cameras_) camera.report(summary);
+    for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
+    for (const Summary::Camera& camera : summary.cameras) {
+      if (camera.frames > 0) continue;
+      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame within the time of camera \"{}\"; is its offset_s right?",
+                                             camera.name, rig_.cameras.front().name));
+    }
+  }
+
+ private:
+  /// The joined recording, instant by instant, with the boxes in the cameras' views where they are wanted.
+  class Joined final : public InstantSource {
+   public:
+    explicit Joined(const GroundStage& stage) : stage_(stage), instants_(stage.recording_) {}
+
+    std::optional<Instant> next() override {
+      if (next_ == stage_.moments_.size()) return std::nullopt;
+      const Recording::Moment& moment = stage_.moments_[next_++];
+      if (!ahead_) ahead_ = instants_.next();
+      Instant instant;
+      if (ahead_ && ahead_->index == moment.index) instant = std::move(*std::exchange(ahead_, std::nullopt));
+      instant.index = moment.index;
+      instant.time = moment.time;
+      for (TrackName& name : instant.named) name.colour = stage_.colour_of(name.id);
+      name_unnamed(instant);
+      if (stage_.wants_boxes_) stage_.add_boxes(instant);
+      return instant;
+    }
+
+   private:
+    /// Who has neither label nor team still has a colour.
+    void name_unnamed(Instant& instant) {
+      for (const TrackName& name : instant.named) named_.insert(name.id);
+      for (const Sample& sample : instant.samples) {
+        if (!named_.insert(sample.track).second) continue;
+        instant.named.push_back({sample.track, {}, {}, stage_.colour_of(sample.track)});
+      }
+    }
+
+    const GroundStage& stage_;
+    InstantsOf instants_;
+    std::optional<Instant> ahead_;
+    std::set<TrackId> named_;
+    std::size_t next_ = 0;
+  };
+
+  void open_cameras(const std::vector<Feed>& feeds) {
+    if (feeds.empty()) throw Error("{}", "the rig has no camera");
+    if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
+    const GroundCameraOptions how{.background = options_.background, .people = {}, .prime = !options_.live};
+    std::vector<std::optional<GroundCamera>> opened(feeds.size());
+    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], area_, how); });
+    for (auto& camera : opened) cameras_.push_back(std::move(*camera));
+  }
+
+  Duration first_offset() const { return duration_from_seconds(rig_.cameras.front().offset_s.value_or(0)); }
+
+  /// What each camera that has a frame sees of the ground, side by side.
+  std::span<const CameraObservations> observe(const FrameSet& frames, std::span<const Track<2>> expected) {
+    tbb::parallel_for(std::size_t{0}, cameras_.size(), [&](std::size_t i) {
+      if (frames.cameras[i]) observations_[i] = cameras_[i].observe(*frames.cameras[i], expected);
+    });
+    seen_.clear();
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if (frames.cameras[i]) seen_.push_back(observations_[i]);
+    }
+    return seen_;
+  }
+
+  /// What the tracker is sure of, of moments that waited for it.
+  void record(std::span<const track::ground::GroundDecision> decisions) {
+    for (const track::ground::GroundDecision& decision : decisions) {
+      const KeptObservations& kept = waiting_.front();
+      recorder_.add(static_cast<std::int32_t>(kept.index), decision.now, decision.tracks, kept.cameras, decision.claims);
+      if (wants_boxes_) log_boxes(kept, decision.claims);
+      waiting_.pop_front();
+    }
+  }
+
+  void log_boxes(const KeptObservations& kept, std::span<const ObservationMatch> matches) {
+    for (const ObservationMatch& match : matches) {
+      const CameraObservations& camera = kept.cameras[static_cast<std::size_t>(match.look)];
+      const Observation<2>& seen = camera.seen[static_cast<std::size_t>(match.observation)];
+      if (!seen.box || seen.shared) continue;
+      logs_[static_cast<std::size_t>(number(camera.camera))].add_box(static_cast<std::int32_t>(kept.index), match.track, *seen.box);
+    }
+  }
+
+  Instant live(const FrameSet& frames, std::span<const Track<2>> tracks, std::span<const CameraObservations> seen) {
+    Instant instant;
+    instant.index = frames.index;
+    instant.time = moments_.back().time;
+    moments_.clear();
+    for (const Track<2>& track : tracks) {
+      if (!track.confirmed || !area_.holds(track.position)) continue;
+      Sample& sample = instant.samples.emplace_back();
+      sample.track = track.id;
+      sample.position.head<2>() = area_.ground(track.position);
+      sample.velocity.emplace(Vector<3>::Zero()).head<2>() = area_.ground_velocity(track.velocity);
+      sample.provenance = track.state == Track<2>::State::observed ? Provenance::measured : Provenance::predicted;
+      sample.cameras = track.cameras;
+    }
+    if (!wants_boxes_) return instant;
+    logs_ = std::vector<ViewLog>(cameras_.size());
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      if (frames.cameras[i])
+        logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
+    }
+    log_boxes(KeptObservations(frames.index, seen), tracker_->claims());
+    for (ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
+    add_boxes(instant);
+    return instant;
+  }
+
+  /// The second pass: the tracks of the whole recording, in the user's coordinates, without those who never were in the area.
+  void join() {
+    auto joined = std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
+    const std::size_t all = joined.recording.tracks().size();
+    reconstruct::KeptPeople people =
+        reconstruct::people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
+    recording_ = std::move(people.recording);
+    recording_.header = header_;
+    off_pitch_ = static_cast<std::int64_t>(all - people.now.size());
+    std::vector<std::optional<Appearance>> appearances(people.now.size());
+    for (const auto& [before, now] : people.now)
+      appearances[static_cast<std::size_t>(number(now)) - 1] = joined.wears[static_cast<std::size_t>(number(before)) - 1];
+    analyse::TeamOptions teams = options_.teams;
+    teams.pitch = area_.pitch();
+    teams_ = analyse::find_teams(recording_, appearances, teams);
+    analyse::note_teams(teams_, recording_);
+    for (ViewLog& log : logs_) {
+      log.name([&](TrackId track, std::int32_t instant) -> std::optional<TrackId> {
+        const auto person = joined.person_of(track, instant);
+        const auto now = person ? people.now.find(*person) : people.now.end();
+        if (now == people.now.end()) return std::nullopt;
+        return now->second;
+      });
+    }
+  }
+
+  bool in_sight(const Vector<2>& place) const {
+    if (!area_.holds(place)) return false;
+    return std::any_of(cameras_.begin(), cameras_.end(), [&](const GroundCamera& camera) {
+      const auto pixel = camera.view().pixel(place);
+      return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(camera.view().size())).contains({pixel->x(), pixel->y()});
+    });
+  }
+
+  /// A player's is the team's, anybody else's is left to the number.
+  std::optional<std::array<std::uint8_t, 3>> colour_of(TrackId track) const {
+    const auto i = static_cast<std::size_t>(number(track)) - 1;
+    if (i >= teams_.members.size() || !teams_.members[i].team || teams_.members[i].role != analyse::Teams::Role::player)
+      return std::nullopt;
+    return bytes_of(draw::colour_of(teams_.teams[static_cast<std::size_t>(*teams_.members[i].team)].colour));
+  }
+
+  /// Where everybody is in each camera's picture: as it saw them, else as somebody who stands there would be seen.
+  void add_boxes(Instant& instant) const {
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      const auto own = logs_[i].frame_at(instant.index);
+      if (!own) continue;
+      const GroundView& view = cameras_[i].view();
+      const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
+      for (const Sample& sample : instant.samples) {
+        const Vector<2> place = area_.world(sample.position.head<2>());
+        std::optional<Box> box = logs_[i].box(instant.index, sample.track);
+        if (!box) {
+          const auto whole = cameras_[i].box_at(place);
+          if (!whole) continue;
+          box = geometry::intersection(*whole, picture);
+          if (box->empty()) continue;
+        }
+        const CameraId camera{static_cast<int>(i)};
+        instant.boxes.push_back({.camera = camera,
+                                 .frame = *own,
+                                 .track = sample.track,
+                                 .box = *box,
+                                 .foot = view.pixel(place),
+                                 .seen = (sample.cameras & mask_of(camera)) != 0});
+      }
+    }
+  }
+
+  PeopleOnGroundOptions options_;
+  Rig rig_;
+  reconstruct::GroundArea area_;
+  RecordingHeader header_;
+  std::vector<GroundCamera> cameras_;
+  std::unique_ptr<track::ground::GroundTracker> tracker_;
+  GroundPathLog paths_;
+  std::vector<ViewLog> logs_;  // of each camera, where boxes are wanted
+  bool wants_boxes_ = false;
+  std::vector<CameraObservations> observations_, seen_;
+  std::deque<KeptObservations> waiting_;
+  track::ground::GroundRecorder recorder_;
+  std::vector<Recording::Moment> moments_;  // by the first camera's clock; where `live`, of this step alone
+  Recording recording_;
+  analyse::Teams teams_;
+  std::int64_t off_pitch_ = 0;
+  double joining_s_ = 0;
+  Instant live_;
+};
+
+}  // namespace
+
+std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig,
+                                                 const PeopleOnGroundOptions& options) {
+  return std::make_unique<GroundStage>(feeds, rig, options);
+}
+
+}  // namespace marey::pipeline

@@ -1,0 +1,43 @@
+// Everybody on the ground that a rig's cameras look at, under one identity across all of them: each camera's people are placed on
+// the ground, one tracker makes identities of all of them, in metres, and what it has decided is joined, smoothed and told apart by
+// teams once the whole recording is known. Everything before the last step is in the rig's right-handed world.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/analyse/teams.h"
+#include "marey/core/rig.h"
+#include "marey/geometry/pitch.h"
+#include "marey/pipeline/ground_camera.h"
+#include "marey/pipeline/run.h"
+#include "marey/track/ground/ground_recorder.h"
+#include "marey/track/ground/ground_tracker.h"
+
+namespace marey::pipeline {
+
+struct PeopleOnGroundOptions {
+  detect::background::BackgroundOptions background;
+  track::ground::GroundTrackerOptions tracker;
+  track::ground::GroundJoinOptions join;
+  analyse::TeamOptions teams;                ///< `pitch` is taken from below
+  std::optional<double> rate_hz;             ///< of cameras of which the rig does not say it
+  std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
+  double margin = 2;                         ///< m round the pitch where people still count
+  /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
+  bool live = false;
+};
+
+/// What the second pass found out of the teams; none where `live`.
+class PeopleOnGround : public Stage {
+ public:
+  virtual const std::vector<analyse::Teams::Team>& teams() const = 0;
+};
+
+/// `feeds` are the rig's cameras; instants are those of a clock over them. The results are in the
+/// user's coordinates (`ground_from_world`), their times by the first camera's own clock. Memory grows with the rows, not where
+/// `live`. Throws Error where a camera is not calibrated or brings nothing.
+std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options);
+
+}  // namespace marey::pipeline

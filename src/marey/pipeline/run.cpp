@@ -1,0 +1,136 @@
+#include "marey/pipeline/run.h"
+
+#include <chrono>
+#include <set>
+#include <utility>
+
+#include "marey/core/error.h"
+
+namespace marey::pipeline {
+namespace {
+
+/// Counts what goes to the sinks.
+class Counter {
+ public:
+  explicit Counter(Summary& summary) : summary_(summary) {}
+
+  void add(const Instant& instant) {
+    for (const TrackName& name : instant.named) {
+      if (name.label.empty()) {
+        labelled_.erase(name.id);
+      } else {
+        labelled_.insert(name.id);
+      }
+    }
+    for (const Sample& sample : instant.samples) {
+      tracks_.insert(sample.track);
+      ++summary_.samples;
+      ++of(sample.provenance);
+      if (sample.outline == nullptr) continue;
+      ++summary_.outlines;
+      summary_.held_outlines += sample.outline->state == Outline::State::held;
+    }
+  }
+
+  void finish() {
+    summary_.tracks = std::ssize(tracks_);
+    for (const TrackId id : labelled_) summary_.labelled += tracks_.contains(id);
+  }
+
+ private:
+  std::int64_t& of(Provenance provenance) {
+    switch (provenance) {
+      case Provenance::measured:
+        return summary_.measured;
+      case Provenance::filled:
+        return summary_.filled;
+      case Provenance::predicted:
+        return summary_.predicted;
+      case Provenance::solved:
+        break;
+    }
+    return summary_.solved;
+  }
+
+  Summary& summary_;
+  std::set<TrackId> tracks_, labelled_;
+};
+
+void attach(std::vector<Frame>& frames, const FrameSet& set) {
+  for (const auto& camera : set.cameras) {
+    if (camera && !camera->frame.picture.empty()) frames.push_back(camera->frame);
+  }
+}
+
+/// The pictures of moments that are past, asked of the feeds once more.
+class Pictures {
+ public:
+  explicit Pictures(const Clock& clock) : clock_(clock.again()) {}
+
+  /// Of the moment of this index, which grows from call to call; false where there are none any more.
+  bool attach_to(Instant& instant) {
+    while (!now_ || now_->index < instant.index) {
+      now_ = clock_.next();
+      if (!now_) return false;
+    }
+    if (now_->index == instant.index) attach(instant.frames, *now_);
+    return true;
+  }
+
+ private:
+  Clock clock_;
+  std::optional<FrameSet> now_;
+};
+
+/// What a second pass tells of the whole recording, to the sinks.
+void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& counter, const Hooks& hooks, Summary& summary) {
+  std::optional<Pictures> pictures;
+  if (sinks.want_pictures()) pictures.emplace(clock);
+  const bool stopped_before = summary.stopped;  // then a film shows all that was tracked until then
+  std::int64_t done = 0;
+  while (auto instant = rest.next()) {
+    if (pictures && !pictures->attach_to(*instant)) pictures.reset();
+    counter.add(*instant);
+    if (!sinks.write(std::move(*instant))) break;
+    if (!sinks.want_pictures()) continue;
+    if (hooks.report({"drawing", ++done, summary.frames}) == Continue::yes || stopped_before) continue;
+    summary.stopped = true;
+    break;
+  }
+}
+
+}  // namespace
+
+Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
+  Summary summary;
+  Counter counter(summary);
+  const auto begin = std::chrono::steady_clock::now();
+  sinks.begin(stage.header());
+  if (sinks.want_boxes()) stage.want_boxes();
+  std::optional<Timestamp> first;
+  while (const std::optional<FrameSet> frames = clock.next()) {
+    for (const Instant& known : stage.step(*frames)) {
+      Instant instant = known;
+      if (instant.index == frames->index) attach(instant.frames, *frames);
+      counter.add(instant);
+      if (!sinks.write(std::move(instant))) summary.stopped = true;
+    }
+    if (!first) first = frames->time;
+    ++summary.frames;
+    summary.seconds = seconds(frames->time - *first);
+    if (summary.stopped) break;
+    summary.stopped = hooks.report({"tracking", summary.frames, clock.count()}) == Continue::no;
+    if (summary.stopped) break;
+  }
+  summary.first_pass_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (summary.frames == 0) throw Error("{}: not one frame could be read", stage.header().name);
+  if (const auto rest = stage.finish(hooks)) replay(*rest, clock, sinks, counter, hooks, summary);
+  sinks.finish();
+  counter.finish();
+  summary.rate_hz = clock.rate_hz();
+  for (std::string& warning : clock.warnings()) summary.warnings.push_back(std::move(warning));
+  stage.report(summary);
+  return summary;
+}
+
+}  // namespace marey::pipeline

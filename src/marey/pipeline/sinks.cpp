@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <tbb/concurrent_queue.h>
+
+#include "marey/core/error.h"
+#include "marey/pipeline/run.h"
+
+namespace marey::pipeline {
+namespace {
+
+constexpr int kWaiting = 8;  // instants, with their pictures
+
+}  // namespace
+
+/// A sink, written on a thread of its own.
+class Sinks::Lane {
+ public:
+  explicit Lane(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) { queue_.set_capacity(kWaiting); }
+
+  ~Lane() {
+    if (!writer_.joinable()) return;
+    given_up_ = true;
+    queue_.push(nullptr);
+    writer_.join();
+  }
+
+  Sink::Wants begin(const RecordingHeader& header) {
+    wants_ = sink_->begin(header);
+    writer_ = std::thread([this] { write_all(); });
+    return wants_;
+  }
+
+  const Sink::Wants& wants() const { return wants_; }
+  bool failed() const { return failed_; }
+  void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
+
+  /// Waits until all that was given is written.
+  void drain() {
+    queue_.push(nullptr);
+    writer_.join();
+    if (!failed_) commit();
+  }
+
+  /// Throws what the sink threw.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void write_all() {
+    for (;;) {
+      std::shared_ptr<const Instant> instant;
+      queue_.pop(instant);
+      if (instant == nullptr) return;
+      if (!failed_ && !given_up_) attempt([&] { sink_->write(*instant); });
+    }
+  }
+
+  void commit() {
+    attempt([&] { sink_->finish(); });
+  }
+
+  /// A sink that fails is closed at once: nothing half-written stays.
+  template <typename Do>
+  void attempt(const Do& what) {
+    try {
+      what();
+    } catch (...) {
+      failure_ = std::current_exception();
+      failed_ = true;
+      sink_.reset();
+    }
+  }
+
+  std::unique_ptr<Sink> sink_;
+  Sink::Wants wants_;
+  tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
+  std::atomic<bool> failed_ = false, given_up_ = false;
+  std::exception_ptr failure_;
+  std::thread writer_;
+};
+
+Sinks::Sinks() = default;
+Sinks::~Sinks() = default;
+Sinks::Sinks(Sinks&&) noexcept = default;
+Sinks& Sinks::operator=(Sinks&&) noexcept = default;
+
+void Sinks::add(std::unique_ptr<Sink> sink) {
+  lanes_.push_back(std::make_unique<Lane>(std::move(sink)));
+}
+
+void Sinks::begin(const RecordingHeader& header) {
+  for (const auto& lane : lanes_) lane->begin(header);
+}
+
+bool Sinks::want_pictures() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().pictures && !lane->failed(); });
+}
+
+bool Sinks::want_boxes() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
+}
+
+bool Sinks::write(Instant instant) {
+  const auto shared = std::make_shared<const Instant>(std::move(instant));
+  bool all = true;
+  for (const auto& lane : lanes_) {
+    lane->give(shared);
+    all = all && !lane->failed();
+  }
+  return all;
+}
+
+void Sinks::finish() {
+  for (const auto& lane : lanes_) lane->drain();
+  for (const auto& lane : lanes_) lane->rethrow();
+}
+
+}  // namespace marey::pipeline

@@ -1,0 +1,90 @@
+#include "marey/pipeline/track_in_picture.h"
+
+#include <fstream>
+#include <set>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+#include "marey/draw/overlay_film.h"
+#include "marey/pipeline/plot_file.h"
+#include "marey/source/open_source.h"
+
+namespace marey::pipeline {
+namespace {
+
+Feed open(const RigCamera& camera) {
+  if (camera.source.empty() == camera.detections.empty()) throw Error("{}", "give either pictures or detections to track");
+  if (camera.rate_hz && !(*camera.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
+  return Feed(camera, CameraId{});
+}
+
+Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayOptions& drawn) {
+  Sinks sinks;
+  sinks.add(std::make_unique<format::tracks::TrackFile>(output.tracks, output.format));
+  if (!output.plot.empty()) sinks.add(std::make_unique<PlotFile>(output.plot));
+  if (output.overlay.empty()) return sinks;
+  if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
+  const draw::OverlayFilm::View view{.camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz};
+  sinks.add(std::make_unique<draw::OverlayFilm>(output.overlay, view, drawn));
+  return sinks;
+}
+
+Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
+  std::vector<Feed> feeds;
+  feeds.push_back(std::move(feed));
+  Clock clock(std::move(feeds));
+  return run(stage, clock, sinks, hooks);
+}
+
+}  // namespace
+
+Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
+                     const Hooks& hooks) {
+  Feed feed = open(camera);
+  Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
+  PeopleInPictureOptions own = options;
+  own.beside = output.tracks;
+  own.with_lines = !output.overlay.empty();
+  const auto stage = people_in_picture(feed, own);
+  return run_alone(std::move(feed), *stage, sinks, hooks);
+}
+
+Summary track_markers(const RigCamera& camera, const TrackOutput& output, const MarkersInPictureOptions& options,
+                      const Hooks& hooks) {
+  Feed feed = open(camera);
+  Sinks sinks = sinks_of(output, feed, {});
+  const auto stage = markers_in_picture(feed, options);
+  return run_alone(std::move(feed), *stage, sinks, hooks);
+}
+
+std::vector<std::string> read_labels(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error("{}: cannot be read; give a text file with one name a line", path);
+  std::vector<std::string> labels;
+  std::set<std::string> seen;
+  int line_number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++line_number;
+    const auto first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+    if (!seen.insert(line).second)
+      throw Error("{}:{}: the name \"{}\" occurs twice; every marker needs its own", path, line_number, line);
+    labels.push_back(line);
+  }
+  if (labels.empty()) throw Error("{}: holds no name; write one a line", path);
+  return labels;
+}
+
+cv::Mat read_mask(const std::string& path) {
+  constexpr double kBlack = 8;  // what a lossy picture may make of 0
+  const auto frame = source::open_source(path)->next();
+  if (!frame) throw Error("{}: cannot be read as a picture; give a PNG in which what is to be left out is white", path);
+  cv::Mat grey;
+  cv::cvtColor(frame->picture.bgr(), grey, cv::COLOR_BGR2GRAY);
+  return grey > kBlack;
+}
+
+}  // namespace marey::pipeline
