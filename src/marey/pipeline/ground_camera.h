@@ -25,9 +25,9 @@ struct GroundCameraOptions {
 
 class GroundCamera {
  public:
-  /// Has `feed`, which has given nothing yet, look at the part of its pictures alone in which people may be who count. Throws
-  /// Error, with the camera's name, where it does not know how it sees the ground.
-  GroundCamera(Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options);
+  /// Of the feed's pictures only the part is looked at in which people may be who count. Throws Error, with the camera's name,
+  /// where it does not know how it sees the ground.
+  GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options);
   ~GroundCamera();
   GroundCamera(GroundCamera&&) noexcept;
 
