@@ -85,7 +85,7 @@ struct SeenMarkers {
 SeenMarkers see_markers(const std::string& path) {
   SeenMarkers seen;
   const std::unique_ptr<Source> source = source::open_video(path);
-  detect::markers::MarkerDetector detector({});
+  detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
   while (const auto frame = source->next()) {
     seen.times.push_back(frame->time);
     auto& observations = seen.frames.emplace_back();
