@@ -8,9 +8,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/coverage_plot.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/whole_file.h"
 
 #include "board_option.h"
 #include "command_line.h"
@@ -100,7 +100,7 @@ void draw(const CalibrateLens& command, const calibrate::LensCalibration& found)
     for (std::size_t i = 0; i < view.pixels.size(); ++i)
       plot.marks.push_back({view.pixels[i], i < view.errors.size() ? view.errors[i] : Vector<2>::Zero(), view.refused.empty()});
   }
-  format::WholeFile file(command.picture);
+  WholeFile file(command.picture);
   file.write(draw::to_svg(plot));
   file.finish();
 }

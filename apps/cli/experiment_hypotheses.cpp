@@ -4,10 +4,9 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/hypotheses_experiment.h"
-
 #include "command_line.h"
 #include "commands.h"
+#include "experiments/hypotheses.h"
 #include "json_value.h"
 #include "progress_bar.h"
 
@@ -15,12 +14,12 @@ namespace marey::cli {
 namespace {
 
 struct ExperimentHypotheses {
-  pipeline::HypothesesExperimentOptions options;
+  experiments::HypothesesExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const pipeline::HypothesesExperiment& experiment) {
+Json as_json(const experiments::HypothesesExperiment& experiment) {
   Json list = Json::array();
   for (std::size_t kind = 0; kind < experiment.kinds.size(); ++kind) {
     Json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
@@ -38,17 +37,17 @@ Json as_json(const pipeline::HypothesesExperiment& experiment) {
 }
 
 void run(const ExperimentHypotheses& command) {
-  pipeline::HypothesesExperimentOptions options = command.options;
-  pipeline::HypothesesExperiment experiment;
+  experiments::HypothesesExperimentOptions options = command.options;
+  experiments::HypothesesExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("scenes", done, all); };
-    experiment = pipeline::run_hypotheses_experiment(options);
+    experiment = experiments::run_hypotheses_experiment(options);
   }
   if (command.json) {
     print(as_json(experiment));
   } else if (!command.quiet) {
-    fmt::print("{}", pipeline::to_text(experiment));
+    fmt::print("{}", experiments::to_text(experiment));
   }
 }
 

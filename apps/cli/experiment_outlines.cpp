@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/outline_experiment.h"
 
 #include "command_line.h"
 #include "commands.h"
+#include "experiments/outlines.h"
 #include "json_value.h"
 #include "progress_bar.h"
 
@@ -16,19 +16,19 @@ namespace marey::cli {
 namespace {
 
 struct ExperimentOutlines {
-  pipeline::OutlineExperimentOptions options;
+  experiments::OutlineExperimentOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const pipeline::OutlineExperiment& experiment) {
+Json as_json(const experiments::OutlineExperiment& experiment) {
   Json list = Json::array();
   for (std::size_t c = 0; c < experiment.cases.size(); ++c) {
-    const pipeline::OutlineCase& what = experiment.cases[c];
+    const experiments::OutlineCase& what = experiment.cases[c];
     Json entry = {{"case", what.name}, {"height_px", what.height_px}, {"films", what.videos}, {"people", what.people}};
     if (what.true_jitter) entry["true_jitter_px"] = *what.true_jitter;
     for (const auto& row : experiment.rows) {
-      const pipeline::OutlineScore& score = row.scores[c];
+      const experiments::OutlineScore& score = row.scores[c];
       Json& method = entry["methods"][row.method];
       method = {{"iou", score.iou}, {"lost", score.lost}, {"followed", score.followed}, {"frames", score.frames}};
       if (score.centre_error) method["centre_error_px"] = *score.centre_error;
@@ -41,18 +41,18 @@ Json as_json(const pipeline::OutlineExperiment& experiment) {
 }
 
 void run(const ExperimentOutlines& command) {
-  pipeline::OutlineExperimentOptions options = command.options;
-  pipeline::OutlineExperiment experiment;
+  experiments::OutlineExperimentOptions options = command.options;
+  experiments::OutlineExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("films", done, all); };
-    experiment = pipeline::run_outline_experiment(options);
+    experiment = experiments::run_outline_experiment(options);
   }
   if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", options.only);
   if (command.json) {
     print(as_json(experiment));
   } else if (!command.quiet) {
-    fmt::print("{}", pipeline::to_text(experiment));
+    fmt::print("{}", experiments::to_text(experiment));
   }
 }
 

@@ -4,10 +4,9 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/tracker_experiment.h"
-
 #include "command_line.h"
 #include "commands.h"
+#include "experiments/trackers.h"
 #include "json_value.h"
 #include "progress_bar.h"
 
@@ -15,16 +14,17 @@ namespace marey::cli {
 namespace {
 
 struct ExperimentTrackers {
-  pipeline::TrackerExperimentOptions options;
+  experiments::TrackerExperimentOptions options;
   std::string out;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const std::vector<pipeline::TrackerRow>& rows) {
-  constexpr std::array<const char*, pipeline::TrackerRow::kSituations> kNames{"slow", "rapid", "acceleration", "occlusion", "swap"};
+Json as_json(const std::vector<experiments::TrackerRow>& rows) {
+  constexpr std::array<const char*, experiments::TrackerRow::kSituations> kNames{"slow", "rapid", "acceleration", "occlusion",
+                                                                                 "swap"};
   Json list = Json::array();
-  for (const pipeline::TrackerRow& row : rows) {
+  for (const experiments::TrackerRow& row : rows) {
     Json entry = {{"method", row.method}};
     for (std::size_t s = 0; s < row.losses.size(); ++s) {
       if (row.losses[s]) entry["losses"][kNames[s]] = *row.losses[s];
@@ -36,7 +36,7 @@ Json as_json(const std::vector<pipeline::TrackerRow>& rows) {
                                        {"mean", row.errors[s]->mean},
                                        {"high", row.errors[s]->high}};
     }
-    for (const pipeline::StepTime& time : row.times) {
+    for (const experiments::StepTime& time : row.times) {
       entry["times_ms"].push_back({{"markers", time.markers},
                                    {"p5", time.percentile_5},
                                    {"median", time.median},
@@ -49,12 +49,12 @@ Json as_json(const std::vector<pipeline::TrackerRow>& rows) {
 }
 
 void run(const ExperimentTrackers& command) {
-  pipeline::TrackerExperimentOptions options = command.options;
-  pipeline::TrackerExperiment experiment;
+  experiments::TrackerExperimentOptions options = command.options;
+  experiments::TrackerExperiment experiment;
   {
     ProgressBar bar(command.quiet);
     options.progress = [&](int done, int all) { bar.show("videos", done, all); };
-    experiment = pipeline::run_tracker_experiment(options);
+    experiment = experiments::run_tracker_experiment(options);
   }
   if (command.json) {
     print({{"videos", experiment.videos},
@@ -62,10 +62,10 @@ void run(const ExperimentTrackers& command) {
            {"paper", as_json(experiment.paper)},
            {"ours", as_json(experiment.ours)}});
   } else if (!command.quiet) {
-    fmt::print("{}", pipeline::to_text(experiment));
+    fmt::print("{}", experiments::to_text(experiment));
   }
   if (command.out.empty()) return;
-  for (const std::string& name : pipeline::draw_experiment(experiment, command.out)) {
+  for (const std::string& name : experiments::draw_experiment(experiment, command.out)) {
     if (!command.quiet) fmt::print(stderr, "drawn: {}\n", name);
   }
 }

@@ -1,7 +1,12 @@
+extern "C" {
+#include <libavutil/log.h>
+}
+
 #include "command_line.h"
 #include "commands.h"
 
 int main(int argc, char** argv) {
+  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
   using namespace marey::cli;
   Program program("marey", "Marey turns what cameras see into motion you can measure.");
   Command root = program.root();

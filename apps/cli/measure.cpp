@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/match/ground_exchange.h"
-#include "marey/format/whole_file.h"
 #include "marey/pipeline/measure_match.h"
 
 #include "command_line.h"
@@ -81,7 +81,7 @@ void run(const MeasureCommand& command) {
   const analyse::Measurement measured = analyse::measure(
       format::match::read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", command.tracks);
-  format::WholeFile file(command.out);
+  WholeFile file(command.out);
   file.write(pipeline::measurement_csv(measured, options));
   if (!command.report.empty())
     pipeline::write_report(measured, options, std::filesystem::path(command.tracks).stem().string(), command.report);

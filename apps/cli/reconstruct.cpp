@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/format/motion/marker_set.h"
 
 #include "blob_options.h"
 #include "command_line.h"

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/marker_video.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
 
 #include "command_line.h"

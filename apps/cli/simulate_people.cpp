@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/people_video.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/source/open_source.h"
 
 #include "command_line.h"

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/room_files.h"
+#include "marey/pipeline/simulation_files.h"
 
 #include "command_line.h"
 #include "commands.h"

@@ -5,7 +5,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_sources.h"
+#include "marey/pipeline/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
@@ -51,7 +51,7 @@ track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
 
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
-                                        const Rig& rig) {
+                                           const Rig& rig) {
   pipeline::PeopleOnGroundOptions options;
   options.background = detect::background::parse_background(people.background);
   options.rate_hz = command.rate_hz;
@@ -111,7 +111,7 @@ std::vector<std::string> ground_files(const GroundCommand& command, const Ground
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
   if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
-  format::rig::set_sources(rig, flags.sources);
+  pipeline::set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
   const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(

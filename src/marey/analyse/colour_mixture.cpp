@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "marey/core/perceived.h"
+#include "marey/core/colour.h"
 
 namespace marey::analyse {
 namespace {

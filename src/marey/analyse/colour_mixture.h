@@ -1,7 +1,7 @@
 // How many colours there are among many that were measured, which, and whose is which.
 //
-// Each person's colour is one of few (a shirt's) plus what light and measuring change, or none of them (a keeper alone in his
-// colour; somebody measured badly): a mixture of round Gaussians of one common width and a thin even background over all colours,
+// Each person's colour is one of few (a shirt's) plus what light and measuring change, or none of them (a keeper alone in its
+// colour; a person measured badly): a mixture of round Gaussians of one common width and a thin even background over all colours,
 // fitted by expectation and maximisation (Dempster, Laird & Rubin 1977) from several deterministic beginnings, for one colour, two,
 // three …; how many there are is decided by Schwarz's criterion (1978). People count by how long they were seen.
 // Cost: beginnings · colours · people for each iteration; a millisecond for a match.

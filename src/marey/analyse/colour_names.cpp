@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/colour.h"
 #include "marey/core/error.h"
-#include "marey/core/perceived.h"
 
 namespace marey::analyse {
 namespace {

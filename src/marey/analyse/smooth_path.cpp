@@ -53,7 +53,8 @@ std::vector<Vector<2>> slope(const std::vector<Vector<2>>& values, double step) 
   return result;
 }
 
-// --- Butterworth, both ways ---------------------------------------------------------------------------------------------------
+// --- Butterworth, forwards and backwards
+// ---------------------------------------------------------------------------------------------------
 
 struct Butterworth {
   double b0, b1, b2, a1, a2;

@@ -1,7 +1,7 @@
 // A person's path over the ground, made smooth, and the velocity along it.
 //
 // Positions from video jump about by decimetres from frame to frame; differences of them as they are add up to a distance that can
-// be 40 % too long and to speeds nobody runs. People change their velocity slowly: what is faster than about 1 Hz is noise.
+// be 40 % too long and to impossible speeds. People change their velocity slowly: what is faster than about 1 Hz is noise.
 //   lowpass  Butterworth, order 2, forwards and backwards, so that nothing lags; its cut-off is that of both passes together
 //   savgol   a parabola through the second round each instant (Savitzky & Golay 1964)
 //   kalman   constant velocity with noise in the acceleration, smoothed from both ends (Rauch, Tung & Striebel 1965)

@@ -67,7 +67,7 @@ std::optional<SpacePoint> gather(const std::vector<View>& views, Vector<3> place
       point.seen.insert({view.index, best});
       point.off = std::max(point.off, nearest);
     }
-    const auto met = meeting_point(lines);
+    const auto met = intersection_point(lines);
     if (!met) return std::nullopt;
     place = *met;
   }
@@ -82,7 +82,7 @@ std::vector<SpacePoint> points_in_space(const std::vector<View>& views) {
       for (const auto& from_a : views[a].lines) {
         for (const auto& from_b : views[b].lines) {
           if (!from_a || !from_b) continue;
-          const auto place = meeting_point(std::array{*from_a, *from_b});
+          const auto place = intersection_point(std::array{*from_a, *from_b});
           if (!place || angle_off(*from_a, *place) > kMeet || angle_off(*from_b, *place) > kMeet) continue;
           if (auto point = gather(views, *place)) all.push_back(std::move(*point));
         }

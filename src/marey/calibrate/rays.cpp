@@ -14,7 +14,7 @@ double angle_off(const SightLine& line, const Vector<3>& point) {
   return std::atan2(line.ray.direction.cross(to).norm(), line.ray.direction.dot(to)) / line.sigma;
 }
 
-std::optional<Vector<3>> meeting_point(std::span<const SightLine> lines) {
+std::optional<Vector<3>> intersection_point(std::span<const SightLine> lines) {
   if (lines.size() < 2) return std::nullopt;
   std::optional<Vector<3>> point;
   for (int pass = 0; pass < 2; ++pass) {  // the second time distances weigh as the angles they are
@@ -43,12 +43,12 @@ std::optional<Vector<3>> agreed_point(std::span<const SightLine> lines, double g
                  [&](const SightLine& line) { return angle_off(line, point) <= gate; });
     return near;
   };
-  const auto all = meeting_point(lines);
+  const auto all = intersection_point(lines);
   if (all && agreeing(*all).size() == lines.size()) return all;
   std::vector<SightLine> best;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (std::size_t j = i + 1; j < lines.size(); ++j) {
-      const auto point = meeting_point(std::array{lines[i], lines[j]});
+      const auto point = intersection_point(std::array{lines[i], lines[j]});
       if (!point) continue;
       auto near = agreeing(*point);
       if (near.size() > best.size()) best = std::move(near);
@@ -56,7 +56,7 @@ std::optional<Vector<3>> agreed_point(std::span<const SightLine> lines, double g
   }
   // Two rays of many that happen to meet are no agreement.
   if (best.size() < 2 || 2 * best.size() < lines.size()) return std::nullopt;
-  return meeting_point(best);
+  return intersection_point(best);
 }
 
 }  // namespace marey::calibrate

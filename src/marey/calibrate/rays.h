@@ -16,7 +16,7 @@ struct SightLine {
 
 /// The point nearest to all lines by the squares of their angles; nothing where fewer than two lines are given, they are parallel,
 /// or the point lies behind one of them.
-std::optional<Vector<3>> meeting_point(std::span<const SightLine> lines);
+std::optional<Vector<3>> intersection_point(std::span<const SightLine> lines);
 
 /// Angle between a line and the direction from its origin to `point`, in its sigmas.
 double angle_off(const SightLine& line, const Vector<3>& point);

@@ -24,7 +24,7 @@ struct CameraReport {
   bundle::CameraDeviation deviation = {};
 };
 
-/// How sure a marker's place is, by one look of all cameras that see it: a grid over where the wand was.
+/// How sure a marker's place is, by one view of all cameras that see it: a grid over where the wand was.
 struct VolumeReport {
   Vector<3> low = Vector<3>::Zero(), high = Vector<3>::Zero();  ///< m: the box, nine tenths of what the wand covered on each axis
   double median_mm = 0, worst_tenth_mm = 0;                     ///< standard deviation of the place, all axes together

@@ -184,8 +184,8 @@ std::optional<Matrix<3>> Relation::search() const {
     best = E, best_cost = cost_here;
     const double good =
         static_cast<double>(inliers(E, sample, kGate).size()) / static_cast<double>(sample.size() * options_.markers);
-    const double ways = options_.reversible ? std::pow(0.5, static_cast<double>(wands) - 1) : 1;
-    const double hit = std::pow(good, static_cast<double>(wands)) * ways;
+    const double orientations = options_.reversible ? std::pow(0.5, static_cast<double>(wands) - 1) : 1;
+    const double hit = std::pow(good, static_cast<double>(wands)) * orientations;
     if (hit > 0) needed = std::max(60, static_cast<int>(std::log(1e-4) / std::log1p(-std::min(hit, 0.999999))));
   }
   return best;

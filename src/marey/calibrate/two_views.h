@@ -1,7 +1,7 @@
 // How two cameras stand to each other, from things that both saw at the same time.
 //
 // The essential matrix by the linear eight-point method on whitened bearings (so that any lens will do), inside RANSAC that draws
-// whole wands rather than points, and draws both ways round where a wand's ends cannot be told; its four poses are told apart by
+// whole wands rather than points, and draws both ways round where a wand's ends are not known; its four poses are tried against
 // what lies before both cameras. Whether a single homography, or a bare rotation, explains the same is found too: then the scene is
 // a plane or the cameras stand in one place, and no essential matrix means anything.
 // References: Hartley, "In defense of the eight-point algorithm", 1997; Torr & Zisserman, "MLESAC", 2000; Hartley & Zisserman,
@@ -44,7 +44,7 @@ struct TwoViews {
 };
 
 /// Nothing where too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them. Of a plane,
-/// where no essential matrix is determined, `plane` and `share` alone are told.
+/// where no essential matrix is determined, `plane` and `share` alone are set.
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options);
 
 }  // namespace marey::calibrate

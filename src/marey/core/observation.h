@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "marey/core/appearance.h"
+#include "marey/core/detection.h"
 #include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 
@@ -19,5 +20,15 @@ struct Observation {
   bool shared = false;     ///< part of a region that several targets share: its place is believed, its size is not
   std::optional<Appearance> appearance = {};  ///< what a person wears, where pictures tell
 };
+
+/// What a detection of a small thing, a marker, is to a tracker: its centre.
+inline Observation<2> observation_of(const Detection& detection) {
+  Observation<2> observation;
+  observation.value = detection.centre;
+  observation.covariance = detection.covariance;
+  observation.score = detection.score;
+  observation.box = detection.box;
+  return observation;
+}
 
 }  // namespace marey

@@ -57,4 +57,14 @@ struct Rig {
   std::vector<RigCamera> cameras;
 };
 
+/// The names of all cameras, for messages: "left, right".
+std::string camera_names(const Rig& rig);
+
+/// The camera of that name. Throws Error, with the names that there are, where there is none.
+RigCamera& camera_named(Rig& rig, const std::string& name);
+
+/// Makes a camera's calibration hold for pictures of `found` px: it is scaled where the shapes agree within a pixel. A camera
+/// without a size gets this one. Throws Error where the shapes differ: then the camera has to be calibrated at that size.
+void fit_to_size(RigCamera& camera, cv::Size found);
+
 }  // namespace marey

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "marey/core/lab.h"
+#include "marey/core/colour.h"
 
 namespace marey::detect {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "marey/core/lab.h"
+#include "marey/core/colour.h"
 
 namespace marey::draw {
 namespace {
@@ -55,8 +55,8 @@ Colour colour_of(int number) {
   return {channel(5), channel(3), channel(1)};
 }
 
-Colour colour_of(const Appearance& wears) {
-  const auto rgb = srgb_from_lab(wears.lightness, wears.a, wears.b);
+Colour colour_of(const Appearance& appearance) {
+  const auto rgb = srgb_from_lab(appearance.lightness, appearance.a, appearance.b);
   const auto channel = [](float value) { return static_cast<unsigned char>(std::lround(value)); };
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }

@@ -16,8 +16,8 @@ struct Colour {
 
 /// A colour that belongs to this number: neighbours differ, and it is the same in every run.
 Colour colour_of(int number);
-/// As somebody is dressed.
-Colour colour_of(const Appearance& wears);
+/// The colour of an appearance.
+Colour colour_of(const Appearance& appearance);
 
 /// A picture of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
 /// are pixels; what lies outside is cut off. Full-range pictures are brought to video's range on the way in.

@@ -14,8 +14,8 @@
 namespace marey::draw {
 namespace {
 
-constexpr double kMargin = 3;         // m round the pitch
-constexpr double kLongestWay = 2000;  // points drawn of a way: more is not seen
+constexpr double kMargin = 3;          // m round the pitch
+constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
 
 const char* const kStyle = R"(
 body { font: 15px/1.4 system-ui, sans-serif; margin: 2em auto; max-width: 70em; color: #222; padding: 0 1em }
@@ -41,7 +41,7 @@ class Page {
     add("<h2>Where everybody went</h2>");
     open_pitch();
     const double opacity = opacity_of(report_.people, 0.25);
-    for (const MatchReport::Person& person : report_.people) draw_ways(person, 0.25, opacity);
+    for (const MatchReport::Person& person : report_.people) draw_paths(person, 0.25, opacity);
     close_pitch();
     add("<h2>One by one</h2>");
     for (const MatchReport::Person& person : report_.people) write_person(person);
@@ -103,35 +103,35 @@ class Page {
   }
 
   std::string colour(const MatchReport::Person& person) const {
-    const Colour c = person.wears ? colour_of(*person.wears) : colour_of(teams_.at(person.team));
+    const Colour c = person.appearance ? colour_of(*person.appearance) : colour_of(teams_.at(person.team));
     return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
   }
 
   static std::size_t step_of(std::size_t points) {
-    return static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(points) / kLongestWay)));
+    return static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(points) / kLongestPath)));
   }
 
-  /// Ways that cover the pitch many times over are drawn fainter, so that one still sees where they lie closest.
+  /// Paths that cover the pitch many times over are drawn fainter, so that one still sees where they lie closest.
   double opacity_of(std::span<const MatchReport::Person> people, double width) const {
     double length = 0;
     for (const MatchReport::Person& person : people) {
-      for (const auto& way : person.ways) {
-        const std::size_t step = step_of(way.size());
-        for (std::size_t i = step; i < way.size(); i += step) length += (way[i] - way[i - step]).norm();
+      for (const auto& path : person.paths) {
+        const std::size_t step = step_of(path.size());
+        for (std::size_t i = step; i < path.size(); i += step) length += (path[i] - path[i - step]).norm();
       }
     }
     const double covered = length * width / (report_.pitch.length * report_.pitch.width);
     return 0.8 / (1 + 8 * covered);
   }
 
-  void draw_ways(const MatchReport::Person& person, double width, double opacity) {
-    for (const auto& way : person.ways) {
-      const std::size_t step = step_of(way.size());
+  void draw_paths(const MatchReport::Person& person, double width, double opacity) {
+    for (const auto& path : person.paths) {
+      const std::size_t step = step_of(path.size());
       fmt::format_to(std::back_inserter(text_),
                      R"(<polyline fill="none" stroke="{}" stroke-width="{}" stroke-opacity="{:.3f}" points=")", colour(person),
                      width, opacity);
-      for (std::size_t i = 0; i < way.size(); i += step)
-        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", way[i].x(), way[i].y());
+      for (std::size_t i = 0; i < path.size(); i += step)
+        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", path[i].x(), path[i].y());
       text_ += "\"/>\n";
     }
   }
@@ -152,8 +152,8 @@ class Page {
   void draw_speeds(const MatchReport::Person& person) {
     constexpr double width = 105, height = 68, left = 8, bottom = 8;
     double begin = 1e300, end = -1e300, fastest = 8;
-    for (const auto& way : person.speeds) {
-      for (const auto& [time, speed] : way)
+    for (const auto& path : person.speeds) {
+      for (const auto& [time, speed] : path)
         begin = std::min(begin, time), end = std::max(end, time), fastest = std::max(fastest, speed);
     }
     if (!(end > begin)) return;
@@ -165,11 +165,11 @@ class Page {
       add(R"(<text x="{}" y="{:.2f}" text-anchor="end">{:g}</text>)", left - 1, y(speed) + 1, speed);
     }
     add(R"(<text x="{}" y="{}">m/s over {:.0f} s</text>)", left, height - 1, end - begin);
-    for (const auto& way : person.speeds) {
-      const std::size_t step = step_of(way.size());
+    for (const auto& path : person.speeds) {
+      const std::size_t step = step_of(path.size());
       fmt::format_to(std::back_inserter(text_), R"(<polyline fill="none" stroke="#222" stroke-width="0.4" points=")");
-      for (std::size_t i = 0; i < way.size(); i += step)
-        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(way[i].first), y(way[i].second));
+      for (std::size_t i = 0; i < path.size(); i += step)
+        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(path[i].first), y(path[i].second));
       text_ += "\"/>\n";
     }
     add("</svg>");
@@ -179,7 +179,7 @@ class Page {
     add("<details><summary>{} {}</summary><div class=\"two\"><div>", escaped(person.name), escaped(person.team));
     open_pitch();
     draw_heat(person);
-    draw_ways(person, 0.3, opacity_of({&person, 1}, 0.3));
+    draw_paths(person, 0.3, opacity_of({&person, 1}, 0.3));
     close_pitch();
     add("</div><div>");
     draw_speeds(person);

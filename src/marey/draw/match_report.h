@@ -11,15 +11,15 @@
 
 namespace marey::draw {
 
-/// One page that a browser shows without anything else: who ran how far and how fast, where everybody was. Steps do not know each
-/// other, so that the caller says what stands in the table, and how the ways went.
+/// One page that a browser shows without anything else: who ran how far and how fast, where each person was. Steps do not know each
+/// other, so that the caller says what stands in the table, and how the paths ran.
 struct MatchReport {
   struct Person {
     std::string name, team;
-    std::optional<Appearance> wears = {};                        ///< what the team is drawn in; else it is given a colour
+    std::optional<Appearance> appearance = {};                   ///< what the team is drawn in; else it is given a colour
     std::vector<std::string> cells;                              ///< of its row, after name and team
-    std::vector<std::vector<Vector<2>>> ways;                    ///< m on the pitch
-    std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a way
+    std::vector<std::vector<Vector<2>>> paths;                   ///< m on the pitch
+    std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a path
     int heat_columns = 0, heat_rows = 0;                         ///< cells along x and y
     double heat_cell_m = 2;
     std::vector<double> heat;  ///< seconds in each, by rows
@@ -32,7 +32,7 @@ struct MatchReport {
 
   std::string title;
   geometry::PitchSize pitch;
-  Vector<2> corner = Vector<2>::Zero();  ///< m: the pitch's, in the frame of the ways
+  Vector<2> corner = Vector<2>::Zero();  ///< m: the pitch's, in the frame of the paths
   std::vector<std::string> columns;      ///< of the table of people, after name and team
   std::vector<Person> people;
   std::vector<Table> tables;  ///< others, such as of teams

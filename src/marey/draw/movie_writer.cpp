@@ -8,7 +8,7 @@
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/temporary_name.h"
+#include "marey/core/whole_file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -33,6 +33,7 @@ struct CloseFormat {
 
 constexpr AVRational kTick{1, 90'000};
 constexpr double kUsualRate = 25;
+constexpr int kSilent = AV_LOG_TRACE;        // the host program's log gets nothing of ours
 constexpr int kSecondsBetweenKeyFrames = 2;  // a player seeks to these
 
 std::string reason(int code) {
@@ -45,14 +46,13 @@ std::string reason(int code) {
 
 struct MovieWriter::Parts {
   std::string path;
-  std::string part;  // beside `path`, until the film is whole
+  std::optional<UnfinishedFile> file;
   std::unique_ptr<AVFormatContext, CloseFormat> format;
   CodecPtr codec;
   AVStream* stream = nullptr;
   PacketPtr packet{av_packet_alloc()};
   std::int64_t last_tick = -1;
   std::int64_t ticks_a_frame = 0;
-  bool finished = false;
 
   void open_codec(cv::Size size, double rate, Quality quality);
   void open_file();
@@ -67,6 +67,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
   if (encoder == nullptr) throw Error("{}: no H.264 encoder is installed; install FFmpeg's libraries built with x264", path);
   codec.reset(avcodec_alloc_context3(encoder));
+  codec->log_level_offset = kSilent;
   codec->width = (size.width + 1) & ~1;  // 4:2:0 wants even sides
   codec->height = (size.height + 1) & ~1;
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
@@ -87,7 +88,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
 
 void MovieWriter::Parts::open_file() {
   AVFormatContext* opened = nullptr;
-  check(avformat_alloc_output_context2(&opened, nullptr, "mp4", ("file:" + part).c_str()));
+  check(avformat_alloc_output_context2(&opened, nullptr, "mp4", ("file:" + file->temporary_path()).c_str()));
   format.reset(opened);
   stream = avformat_new_stream(opened, nullptr);
   check(avcodec_parameters_from_context(stream->codecpar, codec.get()));
@@ -115,28 +116,17 @@ void MovieWriter::Parts::encode(const AVFrame* frame) {
 
 MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality)
     : parts_(std::make_unique<Parts>()) {
-  av_log_set_level(AV_LOG_QUIET);
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
   parts_->path = path;
-  parts_->part = temporary_name(path);
+  parts_->file.emplace(path);
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
-  try {
-    parts_->open_codec(size, rate, quality);
-    parts_->open_file();
-  } catch (...) {
-    fs::remove(parts_->part, error);
-    throw;
-  }
+  parts_->open_codec(size, rate, quality);
+  parts_->open_file();
 }
 
-MovieWriter::~MovieWriter() {
-  if (parts_->finished) return;
-  parts_->format.reset();
-  std::error_code ignored;
-  fs::remove(parts_->part, ignored);
-}
+MovieWriter::~MovieWriter() = default;
 
 void MovieWriter::write(const Picture& picture, Timestamp time) {
   Parts& p = *parts_;
@@ -166,10 +156,7 @@ void MovieWriter::finish() {
   p.check(p.format->pb->error);
   p.check(avio_closep(&p.format->pb));
   p.format.reset();
-  std::error_code error;
-  fs::rename(p.part, p.path, error);
-  if (error) throw Error("{}: cannot be written ({})", p.path, error.message());
-  p.finished = true;
+  p.file->finish();
 }
 
 }  // namespace marey::draw

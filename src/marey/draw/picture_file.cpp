@@ -1,14 +1,13 @@
 #include "marey/draw/picture_file.h"
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/temporary_name.h"
+#include "marey/core/whole_file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -51,6 +50,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
   if (encoder == nullptr) throw Error("{}: FFmpeg was built without an encoder for {}", path, jpeg ? "JPEG" : "PNG");
   const CodecPtr codec(avcodec_alloc_context3(encoder));
+  codec->log_level_offset = AV_LOG_TRACE;  // the host program's log gets nothing of ours
   codec->width = picture.size().width;
   codec->height = picture.size().height;
   codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_RGB24;
@@ -73,16 +73,9 @@ void write_picture(const std::string& path, const Picture& picture) {
   if (avcodec_open2(codec.get(), encoder, nullptr) < 0 || avcodec_send_frame(codec.get(), frame.get()) < 0 ||
       avcodec_send_frame(codec.get(), nullptr) < 0 || avcodec_receive_packet(codec.get(), packet.get()) < 0)
     throw Error("{}: a picture of {} x {} pixels cannot be encoded", path, codec->width, codec->height);
-  const std::string part = temporary_name(path);
-  std::ofstream out(part, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(packet->data), packet->size);
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(part, path, error);
-  if (!out || error) {
-    fs::remove(part, error);
-    throw Error("{}: cannot be written; is there such a folder, and room in it?", path);
-  }
+  WholeFile file(path);
+  file.write({reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)});
+  file.finish();
 }
 
 }  // namespace marey::draw

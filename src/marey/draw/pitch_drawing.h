@@ -20,7 +20,7 @@ struct DrawnClick {
 };
 
 /// The pitch's lines (`lines` in the world, m) as the camera sees them laid over its picture, the paint that was found, and the
-/// clicks: those that do not fit with their names. For a look whether a calibration is right.
+/// clicks: those that do not fit with their names. To check by eye whether a calibration is right.
 Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks);
 

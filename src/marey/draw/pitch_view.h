@@ -22,7 +22,7 @@ struct PitchViewOptions {
   Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
 };
 
-/// The ground from above, as a radar shows it: the pitch's lines, a disc with a number for each person, hollow where nobody sees
+/// The ground from above, as a radar shows it: the pitch's lines, a disc with a number for each person, hollow where no camera sees
 /// the person, and a trail of where each was that fades with age. Who is hidden by the picture's border is not drawn.
 class PitchView {
  public:

@@ -41,7 +41,7 @@ struct HotaScores {
   double localisation = 1;  ///< LocA; 1 where nothing matches, as trackeval has it
 };
 
-/// Everything `marey evaluate` tells.
+/// Everything `marey evaluate` reports.
 struct Evaluation {
   std::int64_t frames = 0;  ///< in which there is truth or track
   std::int64_t common_frames = 0;

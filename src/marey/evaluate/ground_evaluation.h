@@ -34,7 +34,7 @@ struct ErrorSpread {
   double rms = 0, median = 0, p95 = 0;
 };
 
-/// Everything that `marey evaluate --distance` tells of places.
+/// Everything that `marey evaluate --distance` reports of places.
 struct GroundEvaluation {
   Evaluation scores;  ///< as of boxes, with places for boxes; MOTP is a mean distance, m
   std::vector<PersonFate> people;

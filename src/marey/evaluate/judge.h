@@ -25,7 +25,7 @@ void count_found(const FramePairs& frame, double most_distance, PairTable& pairs
 /// Fills in the identity scores: one track for each object for good, so that the most things agree. `judged.scores` has its sizes.
 void judge_identities(const PairTable& pairs, Judged& judged);
 
-/// Every score of tracks against truth, whatever is compared: `close` tells how alike two things are, and those up to
+/// Every score of tracks against truth, whatever is compared: `close` says how alike two things are, and those up to
 /// `most_distance` apart may match. `matched(walk, clear)` sees each frame once its matches are known.
 template <Labelled Item, typename Close, typename Matched>
 Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double most_distance, Close close, Matched matched) {

@@ -11,7 +11,7 @@
 #include "marey/core/geometry.h"
 #include "marey/core/ids.h"
 #include "marey/core/rig.h"
-#include "marey/format/whole_file.h"
+#include "marey/core/whole_file.h"
 
 namespace marey::format {
 

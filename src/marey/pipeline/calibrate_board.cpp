@@ -10,9 +10,9 @@
 #include "marey/calibrate/board/choose_views.h"
 #include "marey/calibrate/lens_calibration.h"
 #include "marey/core/error.h"
-#include "marey/format/rig/rig_sources.h"
-#include "marey/pipeline/find_boards.h"
+#include "marey/core/rig.h"
 #include "marey/pipeline/feed.h"
+#include "marey/pipeline/find_boards.h"
 #include "marey/source/picture_files.h"
 
 namespace marey::pipeline {
@@ -68,7 +68,7 @@ calibrate::board::BoardRigCamera look(RigCamera& camera, const calibrate::board:
     throw Error("camera \"{}\": the board {} is in none of its {} pictures; are its kind, its numbers and its colours as given?",
                 camera.name, calibrate::board::to_string(detector.board()), seen.frames);
   }
-  format::rig::fit_to_size(camera, seen.size);
+  fit_to_size(camera, seen.size);
   if (!camera.lens) camera.lens = lens_by_board(camera, detector.board(), seen);
   calibrate::board::BoardRigCamera input{camera.name, seen.size, *camera.lens, camera.offset_s.value_or(0), {}};
   for (const BoardSighting& sighting : seen.sightings)

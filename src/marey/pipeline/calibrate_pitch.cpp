@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
-#include "marey/format/rig/rig_sources.h"
-#include "marey/format/whole_file.h"
 #include "marey/pipeline/feed.h"
+#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {
@@ -135,7 +135,7 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
                           draw::draw_pitch(Picture(view.empty_ground), found.camera, lines, paint, clicks));
     }
     const GroundView ground(found.camera);
-    format::WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
+    WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
     map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
                                   [&](const Vector<2>& pitch) -> std::optional<double> {
                                     const auto pixel = ground.pixel(to_world(pitch));
@@ -156,7 +156,8 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options) {
   if (!lacks_offsets(run.rig)) return;
   // A pitch whose corner is elsewhere has no name in the rig yet: then everybody counts.
   const bool at_origin = run.calibration.corner.norm() < 0.01;
-  const GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt, kMargin);
+  const reconstruct::GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt,
+                                     kMargin);
   Hooks hooks;
   hooks.progress = [&](const Progress& now) {
     options.progress("comparing clocks", static_cast<int>(now.done), static_cast<int>(now.total.value_or(0)));
@@ -177,7 +178,7 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
   PitchRun run;
   run.rig = rig;
   if (clicks.empty()) throw Error("give the clicked points of at least one camera: --points CAM=FILE");
-  for (const auto& [name, path] : clicks) format::rig::camera_named(run.rig, name);
+  for (const auto& [name, path] : clicks) camera_named(run.rig, name);
   for (RigCamera& camera : run.rig.cameras) {
     const auto given = clicks.find(camera.name);
     if (given == clicks.end()) continue;
@@ -190,7 +191,7 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
-    RigCamera& camera = format::rig::camera_named(run.rig, run.cameras[i]);
+    RigCamera& camera = camera_named(run.rig, run.cameras[i]);
     compare_lens(camera, found.camera, run.warnings);
     camera.size = found.camera.size();
     camera.lens = found.camera.lens();

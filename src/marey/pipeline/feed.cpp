@@ -13,9 +13,9 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/detections_input.h"
 #include "marey/pipeline/read_ahead.h"
+#include "marey/pipeline/rig_sources.h"
 #include "marey/source/open_source.h"
 #include "marey/source/region_source.h"
 
@@ -177,7 +177,7 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
       return;
     }
     auto source = open_pictures(camera, options);
-    format::rig::fit_to_size(camera_, source->info().size);
+    fit_to_size(camera_, source->info().size);
     input_ = std::make_unique<Pictures>(std::move(source), options.ahead);
   } catch (const Error& error) {
     throw Error("{}", said_of(camera, error.what()));

@@ -22,7 +22,7 @@ constexpr double kSampledSeconds = 30;
 constexpr int kMostFramesRead = 300;
 
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
-detect::people::PersonSizeMap sizes_over(const Camera& camera, const GroundArea& area, const cv::Rect& part) {
+detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
   const GroundView view(camera);
   return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
             const auto place = view.place({x + part.x, y + part.y});
@@ -34,7 +34,7 @@ detect::people::PersonSizeMap sizes_over(const Camera& camera, const GroundArea&
 }
 
 /// The part of the picture, even-sided, in which somebody who counts may be seen.
-cv::Rect part_with_people(const Camera& camera, const GroundArea& area) {
+cv::Rect part_with_people(const Camera& camera, const reconstruct::GroundArea& area) {
   const cv::Size size = camera.size();
   const cv::Rect whole({}, size);
   if (!area.pitch()) return whole;
@@ -76,7 +76,7 @@ GroundView view_of(const RigCamera& camera) {
 
 }  // namespace
 
-GroundCamera::GroundCamera(const Feed& feed, const GroundArea& area, const GroundCameraOptions& options)
+GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options)
     : camera_(feed.camera()), id_(feed.id()), area_(area), view_(view_of(camera_)) {
   if (!feed.has_pictures()) {
     if (view_.camera() == nullptr) learned_.emplace();

@@ -11,8 +11,8 @@
 #include "marey/detect/people/people.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {
@@ -25,9 +25,9 @@ struct GroundCameraOptions {
 
 class GroundCamera {
  public:
-  /// Of the feed's pictures only the part is looked at in which people may be who count. Throws Error, with the camera's name, where it
-  /// does not know how it sees the ground.
-  GroundCamera(const Feed& feed, const GroundArea& area, const GroundCameraOptions& options);
+  /// Of the feed's pictures only the part is looked at in which people may be who count. Throws Error, with the camera's name,
+  /// where it does not know how it sees the ground.
+  GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options);
   ~GroundCamera();
   GroundCamera(GroundCamera&&) noexcept;
 
@@ -50,7 +50,7 @@ class GroundCamera {
 
   RigCamera camera_;
   CameraId id_;
-  GroundArea area_;
+  reconstruct::GroundArea area_;
   GroundView view_;
   std::optional<cv::Rect> part_;                              // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::people::PeopleDetector> detector_;  // none where another program's detections come

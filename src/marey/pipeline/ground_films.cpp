@@ -28,7 +28,7 @@ void ViewBoxFile::write(const Instant& instant) {
   file_.write(text);
 }
 
-PitchViewFilm::PitchViewFilm(const std::string& path, const GroundArea& area, std::optional<double> rate_hz)
+PitchViewFilm::PitchViewFilm(const std::string& path, const reconstruct::GroundArea& area, std::optional<double> rate_hz)
     : path_(path), area_(area), rate_hz_(rate_hz) {
   if (!area.pitch()) return;
   const double round = std::clamp(area.margin(), 0.0, 10.0) + kRound;

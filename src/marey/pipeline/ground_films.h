@@ -7,10 +7,10 @@
 
 #include "marey/core/sink.h"
 #include "marey/core/track_names.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/pitch_view.h"
-#include "marey/format/whole_file.h"
-#include "marey/pipeline/ground_area.h"
+#include "marey/reconstruct/ground_area.h"
 
 namespace marey::pipeline {
 
@@ -28,7 +28,7 @@ class ViewBoxFile final : public Sink {
  private:
   std::string path_;
   CameraId camera_;
-  format::WholeFile file_;
+  WholeFile file_;
 };
 
 /// A film of the ground from above, a picture for each instant. Over a pitch it grows with the run; of a ground without one it is
@@ -36,7 +36,7 @@ class ViewBoxFile final : public Sink {
 class PitchViewFilm final : public Sink {
  public:
   /// Throws Error where it cannot be written.
-  PitchViewFilm(const std::string& path, const GroundArea& area, std::optional<double> rate_hz);
+  PitchViewFilm(const std::string& path, const reconstruct::GroundArea& area, std::optional<double> rate_hz);
 
   std::string name() const override { return path_; }
   Wants begin(const RecordingHeader& header) override;
@@ -53,7 +53,7 @@ class PitchViewFilm final : public Sink {
   void draw(const Moment& moment);
 
   std::string path_;
-  GroundArea area_;
+  reconstruct::GroundArea area_;
   std::optional<double> rate_hz_;
   TrackNames names_;
   std::optional<draw::PitchView> view_;

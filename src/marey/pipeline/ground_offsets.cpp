@@ -21,7 +21,7 @@ bool looks_at_ground(const RigCamera& camera) {
 /// Follows people in one camera alone, by its own clock.
 class SingleCamera {
  public:
-  SingleCamera(const RigCamera& camera, const GroundArea& area, const RigOffsetsOptions& options)
+  SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
       : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
         camera_(feed_, area, {.background = options.background}),
         tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view()})),
@@ -61,8 +61,8 @@ class SingleCamera {
 
 /// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
-                                                                    const GroundArea& area, const RigOffsetsOptions& options,
-                                                                    const Hooks& hooks) {
+                                                                    const reconstruct::GroundArea& area,
+                                                                    const RigOffsetsOptions& options, const Hooks& hooks) {
   std::vector<std::unique_ptr<SingleCamera>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
                     [&](std::size_t i) { runs[i] = std::make_unique<SingleCamera>(*cameras[i], area, options); });
@@ -85,7 +85,7 @@ std::string_view reason(calibrate::pitch::OffsetVerdict verdict) {
       return "";
     case calibrate::pitch::OffsetVerdict::no_overlap:
       return "no person was seen on ground that it has in common with another camera";
-    case calibrate::pitch::OffsetVerdict::nobody_moves:
+    case calibrate::pitch::OffsetVerdict::no_motion:
       return "too few people move on the ground that it has in common with others";
     case calibrate::pitch::OffsetVerdict::ambiguous:
       return "no offset explains how people move plainly better than others";
@@ -129,7 +129,8 @@ bool lacks_offsets(const Rig& rig) {
                                   [](const RigCamera& camera) { return looks_at_ground(camera) && !camera.offset_s; });
 }
 
-RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOffsetsOptions& options, const Hooks& hooks) {
+RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options,
+                            const Hooks& hooks) {
   RigOffsets result;
   std::vector<const RigCamera*> cameras;
   std::vector<double> assumed;

@@ -11,8 +11,8 @@
 #include "marey/calibrate/pitch/ground_offset.h"
 #include "marey/core/rig.h"
 #include "marey/detect/background/background.h"
-#include "marey/pipeline/ground_area.h"
 #include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {
@@ -61,7 +61,8 @@ bool lacks_offsets(const Rig& rig);
 /// Looks at the beginning of every camera, follows people in each alone, and finds when cameras were started that the rig does not
 /// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error where a camera cannot be
 /// read.
-RigOffsets find_rig_offsets(const Rig& rig, const GroundArea& area, const RigOffsetsOptions& options = {}, const Hooks& hooks = {});
+RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options = {},
+                            const Hooks& hooks = {});
 
 /// Writes them into the rig where it says none; cameras for which none was found stay without.
 void enter_offsets(Rig& rig, const RigOffsets& offsets);

@@ -8,8 +8,8 @@
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
 #include "marey/filter/fit_noise.h"
-#include "marey/pipeline/marker_video.h"
 #include "marey/pipeline/rows_by_frame.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/track/fill_gaps.h"
 #include "marey/track/recording.h"
 

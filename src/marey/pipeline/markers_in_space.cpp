@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/gap_filler.h"
-#include "marey/pipeline/learned_noise.h"
-#include "marey/pipeline/marker_video.h"
 #include "marey/pipeline/set_labels.h"
+#include "marey/pipeline/simulation_files.h"
+#include "marey/reconstruct/learned_noise.h"
+#include "marey/track/gap_filler.h"
 
 namespace marey::pipeline {
 namespace {
@@ -30,11 +30,11 @@ double since(SteadyClock::time_point begin) {
 /// What still waited for the end of gaps when the cameras had ended.
 class Waiting final : public InstantSource {
  public:
-  explicit Waiting(GapFiller& filler) : filler_(filler) { filler_.finish(); }
+  explicit Waiting(track::GapFiller& filler) : filler_(filler) { filler_.finish(); }
   std::optional<Instant> next() override { return filler_.next(); }
 
  private:
-  GapFiller& filler_;
+  track::GapFiller& filler_;
 };
 
 class MarkersInSpace final : public Stage {
@@ -194,9 +194,9 @@ class MarkersInSpace final : public Stage {
   MarkersInSpaceOptions options_;
   RecordingHeader header_;
   std::vector<bool> calibrated_;  // by camera of the rig
-  LearnedNoise noise_;
+  reconstruct::LearnedNoise noise_;
   SetLabels labels_;
-  GapFiller filler_;
+  track::GapFiller filler_;
   std::optional<reconstruct::Corresponder> corresponder_;
   std::unique_ptr<track::Tracker<3>> tracker_;
   std::map<TrackId, std::string> names_;

@@ -22,7 +22,7 @@ struct MarkersInSpaceOptions {
   reconstruct::CorrespondOptions correspond = {};
   std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
   track::RosterTrackerOptions tracker = space_tracker_options();
-  format::motion::MarkerSet set;  ///< labels, with places where the markers keep their distances at the beginning; may be empty
+  MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
   std::optional<double> rate_hz;  ///< of sources and observations of which nobody says it
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is reported as it was expected; ≤ fill_s

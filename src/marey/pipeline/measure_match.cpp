@@ -7,9 +7,9 @@
 
 #include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/match_report.h"
 #include "marey/format/text_rows.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::pipeline {
 namespace {
@@ -37,13 +37,13 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   draw::MatchReport::Person page;
   page.name = name_of(person);
   page.team = person.team;
-  page.wears = shirt_of(person.team);
+  page.appearance = shirt_of(person.team);
   page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
                 fmt::format("{:.1f}", person.top_mps),    std::to_string(person.sprints),
                 std::to_string(person.accelerations),     std::to_string(person.decelerations)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
-    page.ways.push_back(path.place);
+    page.paths.push_back(path.place);
     auto& speeds = page.speeds.emplace_back();
     for (std::size_t i = 0; i < path.velocity.size(); ++i)
       speeds.emplace_back(path.start_s + path.step_s * static_cast<double>(i), path.velocity[i].norm());
@@ -98,7 +98,7 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
                             fmt::format("{:.1f}", team.average_place.y())});
     }
   }
-  format::WholeFile file((std::filesystem::path(folder) / "report.html").string());
+  WholeFile file((std::filesystem::path(folder) / "report.html").string());
   file.write(draw::to_html(report));
   file.finish();
 }

@@ -232,7 +232,8 @@ class GroundStage final : public PeopleOnGround {
   void join() {
     auto joined = std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
     const std::size_t all = joined.recording.tracks().size();
-    KeptPeople people = people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
+    reconstruct::KeptPeople people =
+        reconstruct::people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
     recording_ = std::move(people.recording);
     recording_.header = header_;
     off_pitch_ = static_cast<std::int64_t>(all - people.now.size());
@@ -298,7 +299,7 @@ class GroundStage final : public PeopleOnGround {
 
   PeopleOnGroundOptions options_;
   Rig rig_;
-  GroundArea area_;
+  reconstruct::GroundArea area_;
   RecordingHeader header_;
   std::vector<GroundCamera> cameras_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
@@ -318,7 +319,8 @@ class GroundStage final : public PeopleOnGround {
 
 }  // namespace
 
-std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options) {
+std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig,
+                                                 const PeopleOnGroundOptions& options) {
   return std::make_unique<GroundStage>(feeds, rig, options);
 }
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "marey/core/sink.h"
+#include "marey/core/whole_file.h"
 #include "marey/draw/trajectory_plot.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::pipeline {
 
@@ -28,7 +28,7 @@ class PlotFile final : public Sink {
 
  private:
   std::string path_;
-  format::WholeFile file_;
+  WholeFile file_;
   std::string title_;
   draw::TrajectoryPlot plot_;
 };

@@ -15,8 +15,7 @@
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/gap_filler.h"
-#include "marey/pipeline/room_files.h"
+#include "marey/pipeline/simulation_files.h"
 #include "marey/reconstruct/layout.h"
 #include "marey/simulate/room/room.h"
 
@@ -154,40 +153,6 @@ TEST(Reconstruct, RefusesWhatCannotBe) {
   EXPECT_THROW(reconstruct(rig, folder / "nothing.csv", folder / "a.marey"), Error);
   rig.cameras[1].lens.reset();
   EXPECT_THROW(reconstruct(rig, folder / "observations.csv", folder / "a.marey"), Error) << "one calibrated camera";
-}
-
-TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
-  GapFiller filler(10, 2);
-  const auto at = [](double t) { return Vector<3>(t * t * t, 1 - t * t, 2 * t); };
-  const auto speed = [](double t) { return Vector<3>(3 * t * t, -2 * t, 2); };
-  Vector<3> place, velocity;
-  for (int i = 0; i < 20; ++i) {
-    const double t = 0.1 * i;
-    const bool seen = i < 5 || i > 9;
-    if (seen) place = at(t), velocity = speed(t);
-    Track<3> track;
-    track.id = TrackId{1};
-    track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
-    track.velocity = velocity;
-    track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
-    Instant frame;
-    frame.index = i;
-    frame.time = timestamp_from_seconds(t);
-    if (seen) {
-      frame.samples.emplace_back();
-      frame.samples.back().track = track.id;
-      frame.samples.back().position = track.position;
-    }
-    filler.add(frame, std::span(&track, 1));
-  }
-  filler.finish();
-  for (int i = 0; i < 20; ++i) {
-    const auto frame = filler.next();
-    ASSERT_TRUE(frame);
-    ASSERT_EQ(frame->samples.size(), 1) << i;
-    EXPECT_EQ(frame->samples[0].provenance, i < 5 || i > 9 ? Provenance::measured : Provenance::filled) << i;
-    EXPECT_LT((frame->samples[0].position - at(0.1 * i)).norm(), 1e-9) << i;
-  }
 }
 
 /// The wing's calibration, as its author gives it.

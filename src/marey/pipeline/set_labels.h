@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/marker_set.h"
 #include "marey/core/track.h"
-#include "marey/format/motion/marker_set.h"
 #include "marey/reconstruct/layout.h"
 
 namespace marey::pipeline {
@@ -17,7 +17,7 @@ namespace marey::pipeline {
 /// later ones name those who were missing, while the set still keeps its shape.
 class SetLabels {
  public:
-  explicit SetLabels(const format::motion::MarkerSet& set) : set_(set) {
+  explicit SetLabels(const MarkerSet& set) : set_(set) {
     if (!set_.has_places()) return;
     double nearest = kWidest;
     for (std::size_t a = 0; a < set_.places.size(); ++a) {
@@ -53,7 +53,7 @@ class SetLabels {
   static constexpr double kWidest = 0.03, kNarrowest = 0.001;  // m
   static constexpr int kFrames = 2000;                         // that are looked at
 
-  format::motion::MarkerSet set_;
+  MarkerSet set_;
   std::string none_;
   double tolerance_ = kWidest;
   int frames_ = 0;

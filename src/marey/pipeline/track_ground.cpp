@@ -8,9 +8,9 @@
 #include "marey/core/error.h"
 #include "marey/draw/overlay_film.h"
 #include "marey/format/match/ground_file.h"
-#include "marey/format/rig/rig_sources.h"
 #include "marey/pipeline/ground_films.h"
 #include "marey/pipeline/ground_offsets.h"
+#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {
@@ -28,7 +28,7 @@ void check(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptio
 
 CameraId id_of(const Rig& rig, const std::string& name) {
   Rig copy = rig;
-  return CameraId{static_cast<int>(&format::rig::camera_named(copy, name) - copy.cameras.data())};
+  return CameraId{static_cast<int>(&camera_named(copy, name) - copy.cameras.data())};
 }
 
 void add_films(Sinks& sinks, const GroundOutput& output, const std::vector<Feed>& feeds) {
@@ -54,7 +54,7 @@ Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundO
   }
   if (!output.overlays.empty()) add_films(sinks, output, feeds);
   if (!output.pitch_view.empty()) {
-    const GroundArea area(rig.ground_from_world, options.pitch, options.margin);
+    const reconstruct::GroundArea area(rig.ground_from_world, options.pitch, options.margin);
     sinks.add(std::make_unique<PitchViewFilm>(output.pitch_view, area, feeds.front().info().rate_hz));
   }
   return sinks;
@@ -84,7 +84,7 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Peo
     RigOffsetsOptions how;
     how.background = options.background;
     how.rate_hz = options.rate_hz;
-    offsets = find_rig_offsets(rig, GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
+    offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
     enter_offsets(timed, offsets);
   }
   GroundSummary summary = run_over(timed, output, options, hooks);

@@ -14,16 +14,16 @@ class Corresponder::Impl {
       : options_(options),
         triangulator_(options.triangulate),
         frame_(std::move(cameras), ids),
-        claims_(options.sigmas, triangulator_),
-        meetings_(frame_.all_cameras(), options.sigmas, triangulator_) {}
+        track_matches_(options.sigmas, triangulator_),
+        intersections_(frame_.all_cameras(), options.sigmas, triangulator_) {}
 
   const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
     frame_.build(seen, options_.noise_px);
     groups_.clear(frame_);
-    claims_.claim(frame_, expected, groups_, result_.missed);
-    meetings_.find(frame_, groups_);
+    track_matches_.match(frame_, expected, groups_, result_.missed);
+    intersections_.find(frame_, groups_);
     const auto sure = groups_.groups().size();
-    meetings_.find_pairs(frame_, groups_);
+    intersections_.find_pairs(frame_, groups_);
     report(seen.size(), options_.fewest_rays > 2 ? sure : groups_.groups().size());
     return result_;
   }
@@ -51,8 +51,8 @@ class Corresponder::Impl {
   CorrespondOptions options_;
   Triangulator triangulator_;
   FrameRays frame_;
-  TrackMatches claims_;
-  RayIntersections meetings_;
+  TrackMatches track_matches_;
+  RayIntersections intersections_;
   RayGroups groups_;
   std::vector<int> seen_;
   Correspondences result_;

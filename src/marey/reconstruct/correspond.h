@@ -3,7 +3,7 @@
 // (1) Claim: the predictions of a tracker come first. Each is projected into every camera and takes the blob that fits best within
 // its own uncertainty, one to one; a wrong ray shows in the triangulation and is left out; cameras that gave nothing are then asked
 // again about the place itself, which is known far better than the prediction.
-// (2) Meet: what is left is matched by rays, camera pair by camera pair, the pairs that tell depth best first. Two rays that lie in
+// (2) Meet: what is left is matched by rays, camera pair by camera pair, the pairs that give depth best first. Two rays that lie in
 // one epipolar plane propose a point, and every other camera is asked for a blob there. Groups of four rays and more that fit are
 // taken at once, the largest first, so that later pairs have little left to do; groups of three wait until all pairs have been
 // seen, because three rays also meet by chance, and then the best fit wins.
@@ -37,14 +37,14 @@ struct CorrespondOptions {
 struct Placed {
   SpacePoint point;             ///< `used` counts the rays in `seen`
   std::span<const int> seen;    ///< indices of the observations behind it, by camera; all of them count
-  std::optional<int> expected;  ///< index of the prediction that claimed it; nothing: it was found by rays alone
+  std::optional<int> expected;  ///< index of the prediction that it matched; nothing: it was found by rays alone
 
   bool by_two_rays() const { return point.rays == 2; }
 };
 
 /// Valid until the next call.
 struct Correspondences {
-  std::vector<Placed> points;                  ///< claimed ones in the order of predictions, then new ones of three rays and more
+  std::vector<Placed> points;                  ///< matched ones in the order of predictions, then new ones of three rays and more
   std::vector<Placed> by_two_rays;             ///< new ones of two rays, each the other's only choice
   std::vector<std::optional<NoPoint>> missed;  ///< by prediction: why it has no point, where it has none
   int unexplained = 0;                         ///< observations that are part of no point: ghosts, and markers that one camera sees
@@ -52,8 +52,8 @@ struct Correspondences {
 
 class Corresponder {
  public:
-  /// `ids[i]` is the CameraId of cameras[i], so that a rig may have others whose calibration is not known; empty: i. Observations of
-  /// other cameras are left out. Throws Error where there are fewer than two or more than 64.
+  /// `ids[i]` is the CameraId of cameras[i], so that a rig may have others whose calibration is not known; empty: i. Observations
+  /// of other cameras are left out. Throws Error where there are fewer than two or more than 64.
   explicit Corresponder(std::vector<Camera> cameras, const CorrespondOptions& options = {}, std::vector<CameraId> ids = {});
   ~Corresponder();
   Corresponder(Corresponder&&) noexcept;

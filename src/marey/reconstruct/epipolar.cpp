@@ -7,7 +7,7 @@ namespace marey::reconstruct {
 namespace {
 
 constexpr double kLeastBaseline = 1e-6;  // m
-constexpr double kLeastSine = 0.03;      // rays closer to the line of centres, or to each other, tell no depth
+constexpr double kLeastSine = 0.03;      // rays closer to the line of centres, or to each other, give no depth
 constexpr double kTurn = 4;              // numbers on the pencil go round once in this
 
 /// A number that grows with the angle of (x, y) as atan2 does, from −2 to 2, without its cost.

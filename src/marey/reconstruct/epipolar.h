@@ -10,11 +10,11 @@
 
 namespace marey::reconstruct {
 
-/// Two rays that meet before both cameras, as far as noise lets that be told.
+/// Two rays that meet before both cameras, as far as noise lets that be decided.
 struct EpipolarPair {
   int a = 0, b = 0;                        ///< rays
   Vector<3> position = Vector<3>::Zero();  ///< about where they meet, m
-  double meeting_sine = 1;                 ///< of the angle at which they meet
+  double crossing_sine = 1;                ///< of the angle at which they meet
 };
 
 class EpipolarMatcher {
@@ -23,7 +23,7 @@ class EpipolarMatcher {
 
   int a() const { return a_; }
   int b() const { return b_; }
-  /// How well pairs of the two tell depth: the sine of the angle at which their axes meet, 0 where they look along one line.
+  /// How well pairs of the two give depth: the sine of the angle at which their axes meet, 0 where they look along one line.
   double quality() const { return quality_; }
 
   /// Appends the partners among the rays that are not `taken`, within `sigmas` standard deviations, in the order of camera a's rays

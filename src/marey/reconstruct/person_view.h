@@ -10,7 +10,7 @@ namespace marey::reconstruct {
 /// An upright person, m: what is taken for granted where nothing is known of who it is.
 struct PersonShape {
   double height = 1.75;
-  double width = 0.55;  ///< of the silhouette of somebody who walks, from whichever side
+  double width = 0.55;  ///< of the silhouette of a person who walks, from whichever side
 };
 
 /// The box of a person who stands at `ground` (m, on z = 0), as the camera sees it, px: also where it lies outside the picture.

@@ -55,7 +55,7 @@ class Placer {
     return options_.pixel_noise * options_.pixel_noise + std::pow(options_.edge_noise * box.height, 2);
   }
 
-  /// Of a box's middle: two edges tell it, unless the border or other people hide one.
+  /// Of a box's middle: two edges give it, unless the border or other people hide one.
   double across_variance(const Detection& one, const Cut& cut) const {
     const double edge = edge_variance(one.box);
     if (one.group) return edge + std::pow(group_across * one.box.width, 2);

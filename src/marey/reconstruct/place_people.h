@@ -3,9 +3,9 @@
 // The middle of a box's lower edge is the foot; its ray meets the ground (GroundView::place), and how far a pixel reaches there is
 // the covariance: across the view some centimetres, along it a metre and more where the camera stands low and the person is far.
 // Edges of boxes are wrong by a share of the box's height rather than by pixels. Where the whole camera is known, the upper edge
-// tells too: a head is about 1.75 m above the feet. Both are joined as a Kalman filter would, linearised twice. Where the box is
-// too short for somebody who stands at its foot, and another box or the picture's lower edge hides what is missing, the legs are
-// not seen and the head alone tells.
+// counts too: a head is about 1.75 m above the feet. Both are joined as a Kalman filter would, linearised twice. Where the box is
+// too short for a person who stands at its foot, and another box or the picture's lower edge hides what is missing, the legs are
+// not seen and the head alone counts.
 // Cost: two projections and a ray a person, about a microsecond; looking for who hides whom is quadratic in a frame's boxes.
 #pragma once
 

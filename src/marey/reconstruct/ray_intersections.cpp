@@ -9,7 +9,7 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double kWorstMeeting = 0.15;  // sine of the angle below which two rays may tell where, but not to a third camera
+constexpr double kSmallestSine = 0.15;  // sine of the angle below which two rays give a place, but not for a third camera
 
 }  // namespace
 
@@ -70,7 +70,7 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
   const SightLine& b = frame.line(pair.b);
   // Noise of the meeting point, m: across the rays, and more along them the flatter they meet.
   const double across = std::hypot(a.sigma / a.scale() * a.depth(pair.position), b.sigma / b.scale() * b.depth(pair.position));
-  const double spread = across / std::max(pair.meeting_sine, kWorstMeeting);
+  const double spread = across / std::max(pair.crossing_sine, kSmallestSine);
   for (int c = 0; c < frame.cameras(); ++c) {
     if (c == cameras.a()) list_.add(frame, pair.a);
     if (c == cameras.b()) list_.add(frame, pair.b);

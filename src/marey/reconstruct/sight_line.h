@@ -12,7 +12,7 @@ namespace marey::reconstruct {
 /// whatever the lens: the half-line behind the pixel, and how pixels change across it.
 ///
 /// For a point x with p = x − origin the error in px is  across · p / (direction · p):  exact on the half-line and to first order
-/// beside it, which for errors of a few px is all that can be told. Divided by the noise it is in standard deviations.
+/// beside it, which for errors of a few px is all that can be known. Divided by the noise it is in standard deviations.
 struct SightLine {
   int camera = 0;                            ///< number of the camera it belongs to
   Vector<3> origin = Vector<3>::Zero();      ///< the camera's centre, m

@@ -14,24 +14,24 @@ constexpr int kMostCandidates = 3;  // blobs for a prediction in one picture
 
 }  // namespace
 
-void TrackMatches::claim(const FrameRays& frame, std::span<const Track<3>> expected, RayGroups& groups,
+void TrackMatches::match(const FrameRays& frame, std::span<const Track<3>> expected, RayGroups& groups,
                          std::vector<std::optional<NoPoint>>& missed) {
   const auto cameras = static_cast<std::size_t>(frame.cameras());
   missed.assign(expected.size(), std::nullopt);
   if (expected.empty()) return;
-  claimed_.assign(expected.size() * cameras, assign::kNoIndex);
-  for (int c = 0; c < frame.cameras(); ++c) claim_in(frame, c, expected);
+  matched_.assign(expected.size() * cameras, assign::kNoIndex);
+  for (int c = 0; c < frame.cameras(); ++c) match_in(frame, c, expected);
   for (int i = 0; i < std::ssize(expected); ++i) missed[i] = place(frame, i, expected[i], groups);
 }
 
 /// One camera: the assignment of blobs to predictions that is the likeliest as a whole.
-void TrackMatches::claim_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected) {
+void TrackMatches::match_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected) {
   if (frame.first(camera) == frame.last(camera)) return;
   const int first = frame.first(camera);
   pairs_.clear();
   const double noise = frame.largest_sigma(camera);
   const double gate = sigmas_ * sigmas_;
-  claimants_.assign(static_cast<std::size_t>(frame.last(camera) - first), 0);
+  contenders_.assign(static_cast<std::size_t>(frame.last(camera) - first), 0);
   bool contested = false;
   for (int i = 0; i < std::ssize(expected); ++i) {
     const auto at = frame.camera(camera).project_with_jacobian(expected[i].position);
@@ -48,12 +48,12 @@ void TrackMatches::claim_in(const FrameRays& frame, int camera, std::span<const 
       if (distance >= gate) return;
       pairs_.push_back({i, ray - first, 1 + gate - distance});
       ++found;
-      contested |= ++claimants_[ray - first] > 1 || found > 1;
+      contested |= ++contenders_[ray - first] > 1 || found > 1;
     });
     if (found > kMostCandidates) pairs_.resize(before);  // a guess among so many would take what is another's
   }
   const auto cameras = static_cast<std::size_t>(frame.cameras());
-  const auto give = [&](int row, int column) { claimed_[static_cast<std::size_t>(row) * cameras + camera] = first + column; };
+  const auto give = [&](int row, int column) { matched_[static_cast<std::size_t>(row) * cameras + camera] = first + column; };
   if (!contested) {
     for (const assign::GatedPair& pair : pairs_) give(pair.row, pair.column);
     return;
@@ -68,7 +68,7 @@ std::optional<NoPoint> TrackMatches::place(const FrameRays& frame, int index, co
   const auto cameras = static_cast<std::size_t>(frame.cameras());
   list_.clear();
   for (std::size_t c = 0; c < cameras; ++c) {
-    const int ray = claimed_[static_cast<std::size_t>(index) * cameras + c];
+    const int ray = matched_[static_cast<std::size_t>(index) * cameras + c];
     if (ray != assign::kNoIndex && !groups.taken(ray)) list_.add(frame, ray);
   }
   Triangulation result = triangulator_(list_.lines(), expected.position);

@@ -16,18 +16,18 @@ class TrackMatches {
   TrackMatches(double sigmas, const Triangulator& triangulator) : sigmas_(sigmas), triangulator_(triangulator) {}
 
   /// Adds a group for every prediction that has a point; `missed[i]` says why prediction i has none.
-  void claim(const FrameRays& frame, std::span<const Track<3>> expected, RayGroups& groups,
+  void match(const FrameRays& frame, std::span<const Track<3>> expected, RayGroups& groups,
              std::vector<std::optional<NoPoint>>& missed);
 
  private:
-  void claim_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected);
+  void match_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected);
   std::optional<NoPoint> place(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups);
   bool complete(const FrameRays& frame, const SpacePoint& point, const RayGroups& groups);
 
   double sigmas_;
   const Triangulator& triangulator_;
-  std::vector<int> claimed_;    // by prediction and camera: the ray, or −1
-  std::vector<int> claimants_;  // by ray
+  std::vector<int> matched_;     // by prediction and camera: the ray, or −1
+  std::vector<int> contenders_;  // by ray
   std::vector<assign::GatedPair> pairs_;
   assign::GatedAssigner assigner_;
   RayList list_, better_;

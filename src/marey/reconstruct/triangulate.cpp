@@ -106,7 +106,7 @@ std::variant<Triangulator::Fit, NoPoint> Triangulator::fit(std::span<const Sight
     if (!(fit.position.squaredNorm() < kFarthest * kFarthest)) return NoPoint::no_solution;
     if (size < kSmallStep * kSmallStep) break;
   }
-  return fit;  // rays far apart approach their compromise slowly; their sum of squares tells that they do not meet
+  return fit;  // rays far apart approach their compromise slowly; their sum of squares shows that they do not meet
 }
 
 /// The best fit without one of the rays, and which; nothing where none is sound, or two could be the wrong one.

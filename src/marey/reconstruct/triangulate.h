@@ -24,7 +24,7 @@ enum class NoPoint {
   too_few_rays,   ///< fewer than two
   parallel_rays,  ///< all but: the distance would be a guess
   behind_camera,  ///< they meet where a camera cannot see
-  rays_disagree,  ///< they pass each other by more than noise explains, and it cannot be told which is wrong
+  rays_disagree,  ///< they pass each other by more than noise explains, and it is not decidable which is wrong
   no_solution,    ///< the search for the point left the world: numbers beyond any sense
 };
 std::string_view meaning(NoPoint reason);

@@ -81,7 +81,7 @@ Vector<2> smooth_place_at(const Path& path, double time) {
   return sum / weights;
 }
 
-/// Who is nearer than `merged` to whom is seen with him as one: groups by chains of such.
+/// Who is nearer than `merged` to another is seen with it as one: groups by chains of such.
 std::vector<Vector<2>> blend(const std::vector<Vector<2>>& places, double merged) {
   std::vector<Vector<2>> blended;
   std::vector<char> done(places.size(), 0);
@@ -103,8 +103,8 @@ std::vector<Vector<2>> blend(const std::vector<Vector<2>>& places, double merged
   return blended;
 }
 
-std::vector<Observation<2>> look(Random& random, const std::vector<Vector<2>>& places, double noise,
-                                 const EncounterOptions& options) {
+std::vector<Observation<2>> observe(Random& random, const std::vector<Vector<2>>& places, double noise,
+                                    const EncounterOptions& options) {
   std::vector<Observation<2>> seen;
   const auto add = [&](const Vector<2>& place) {
     Observation<2>& one = seen.emplace_back();
@@ -140,7 +140,7 @@ EncounterScene simulate_encounters(std::uint64_t seed, const EncounterOptions& o
   for (int frame = 0; frame < frames; ++frame) {
     std::vector<Vector<2>>& places = scene.truth.emplace_back();
     for (const Path& path : paths) places.push_back(smooth_place_at(path, frame / options.rate_hz));
-    scene.seen.push_back(look(random, places, scene.noise, options));
+    scene.seen.push_back(observe(random, places, scene.noise, options));
   }
   return scene;
 }

@@ -22,7 +22,7 @@ struct EncounterOptions {
   std::optional<Encounter> kind = {};  ///< of all meetings; nothing: drawn for each
   double least_noise = 0.1;            ///< m, standard deviation of a place, per axis: drawn for each scene
   double most_noise = 0.4;
-  double missed = 0.1;   ///< probability that somebody is not seen in a frame
+  double missed = 0.1;   ///< probability that a person is not seen in a frame
   double clutter = 0.5;  ///< false observations a frame
   double merged = 0.5;   ///< m: two nearer than this are seen as one, between them
   double side = 40;      ///< m, of the ground
@@ -32,7 +32,7 @@ struct EncounterOptions {
 struct EncounterScene {
   EncounterOptions options;
   double noise = 0;                               ///< m
-  std::vector<std::vector<Vector<2>>> truth;      ///< by frame, by person; everybody is there in all frames; m
+  std::vector<std::vector<Vector<2>>> truth;      ///< by frame, by person; all are there in all frames; m
   std::vector<std::vector<Observation<2>>> seen;  ///< by frame
 };
 

@@ -43,7 +43,6 @@ int turn_of(const AVStream& stream) {
 }
 
 FormatPtr open_format(const std::string& path) {
-  av_log_set_level(AV_LOG_QUIET);
   AVFormatContext* opened = nullptr;
   // "file:" keeps FFmpeg from reading a protocol out of a name that holds a colon.
   if (const int code = avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr); code < 0) {
@@ -85,6 +84,7 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   p.stream = p.format->streams[stream];
   p.codec.reset(avcodec_alloc_context3(codec));
   avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
+  p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   p.codec->thread_count = threads;
   if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
     throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));

@@ -17,7 +17,7 @@ namespace {
 constexpr int kLeastCommon = 3;
 constexpr double kLeastShare = 0.3;     // of the most views that any offset brings together
 constexpr double kLongestGap = 2.5;     // frames between two views that are still interpolated between
-constexpr double kLimitOfSpread = 0.2;  // a pair whose views disagree more tells nothing
+constexpr double kLimitOfSpread = 0.2;  // a pair whose views disagree more decides nothing
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

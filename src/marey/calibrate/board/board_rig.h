@@ -1,6 +1,6 @@
 // Where several cameras stand, from a board carried before them.
 //
-// Each camera tells the board's pose in its own frame, so any two that see the board at one time tell how they stand to each other.
+// Each camera gives the board's pose in its own frame, so any two that see the board at one time give how they stand to each other.
 // These pairs are a graph; its tree of the strongest edges places every camera (board_graph). Then all is refined together:
 // cameras, and the board's pose at each instant (stills), or, where the board moves and the cameras are out of step, the board's
 // path as a smooth curve that each camera samples at its own times (board_motion). So the offset between cameras that were not

@@ -37,7 +37,7 @@ Features features_of(const ViewCandidate& candidate, const cv::Size& size) {
   Matrix<2> scatter = Matrix<2>::Identity() * 1e-6;
   for (const BoardCorner& corner : corners) scatter += (corner.pixel - mean) * (corner.pixel - mean).transpose();
   const double area = std::sqrt(scatter.determinant());
-  // The scatter's shape tells how the board is turned and foreshortened.
+  // The scatter's shape shows how the board is turned and foreshortened.
   features.shape = {std::log(area) / 2 / 0.5, (scatter(0, 0) - scatter(1, 1)) / scatter.trace() / 0.3,
                     2 * scatter(0, 1) / scatter.trace() / 0.3};
   return features;

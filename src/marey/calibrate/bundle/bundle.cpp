@@ -272,7 +272,7 @@ std::vector<std::optional<Vector<2>>> errors_of(const Bundle& bundle) {
 }
 
 BundleResult adjust(Bundle& bundle, const BundleOptions& options) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres tells of every step that it has to shorten; a library prints nothing
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports every step that it has to shorten; a library prints nothing
   BundleResult result;
   std::vector<BundleCamera> start = bundle.cameras;  // what was known beforehand stays what it was in every round
   for (BundleCamera& camera : start) camera.lens = camera.known.value_or(camera.lens);

@@ -79,7 +79,7 @@ Derivatives derivatives_of(const Bundle& bundle, const BundleObservation& seen, 
   return result;
 }
 
-/// Adds what one body's observations tell of the cameras, the body itself eliminated.
+/// Adds one body's information about the cameras, the body itself eliminated.
 void add_body(const Bundle& bundle, const std::vector<const BundleObservation*>& seen, const std::vector<FreeNumbers>& free,
               Dense& S) {
   std::map<int, Dense> W;  // by camera: free numbers × body's

@@ -25,7 +25,7 @@ struct Edge {
 };
 
 /// Two cameras, and what they see of each other's people.
-struct Meeting {
+struct CameraPair {
   std::size_t a = 0, b = 0;
   GroundPair pair;
 };
@@ -82,7 +82,7 @@ OffsetVerdict verdict_of(std::size_t camera, const std::vector<Edge>& all) {
     if (edge.a != camera && edge.b != camera) continue;
     // A pair may well be found, in a group that hangs together and not with the first.
     if (edge.shift.verdict == OffsetVerdict::ambiguous) verdict = OffsetVerdict::ambiguous;
-    if (edge.shift.verdict == OffsetVerdict::nobody_moves && verdict == OffsetVerdict::no_overlap) verdict = edge.shift.verdict;
+    if (edge.shift.verdict == OffsetVerdict::no_motion && verdict == OffsetVerdict::no_overlap) verdict = edge.shift.verdict;
   }
   return verdict;
 }
@@ -95,7 +95,7 @@ std::string_view offset_verdict_name(OffsetVerdict verdict) {
       return "found";
     case OffsetVerdict::no_overlap:
       return "no overlap";
-    case OffsetVerdict::nobody_moves:
+    case OffsetVerdict::no_motion:
       return "nobody moves";
     case OffsetVerdict::ambiguous:
       return "ambiguous";
@@ -114,16 +114,16 @@ std::vector<GroundOffset> find_ground_offsets(std::span<const std::vector<Ground
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     for (const GroundPath& path : cameras[c]) paths[c].emplace_back(path);
   }
-  std::vector<Meeting> meetings;
+  std::vector<CameraPair> camera_pairs;
   for (std::size_t a = 0; a < cameras.size(); ++a) {
-    for (std::size_t b = a + 1; b < cameras.size(); ++b) meetings.push_back({a, b, GroundPair(paths[a], paths[b], options)});
+    for (std::size_t b = a + 1; b < cameras.size(); ++b) camera_pairs.push_back({a, b, GroundPair(paths[a], paths[b], options)});
   }
-  std::stable_sort(meetings.begin(), meetings.end(),
-                   [](const Meeting& x, const Meeting& y) { return x.pair.meeting_s() > y.pair.meeting_s(); });
+  std::stable_sort(camera_pairs.begin(), camera_pairs.end(),
+                   [](const CameraPair& x, const CameraPair& y) { return x.pair.overlap_s() > y.pair.overlap_s(); });
   std::vector<Edge> all, found;
   std::vector<const GroundPair*> pairs;
   Tree tree(cameras.size());
-  for (auto& [a, b, pair] : meetings) {
+  for (auto& [a, b, pair] : camera_pairs) {
     const bool joined = tree.group[a] == tree.group[b];
     Edge edge{a, b, pair.find(joined ? std::optional(tree.offset[b] - tree.offset[a]) : std::nullopt)};
     edge.shift.deviation_s = std::hypot(edge.shift.deviation_s, kSystematic);

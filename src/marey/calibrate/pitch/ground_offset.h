@@ -1,7 +1,7 @@
 // When cameras over one ground were started, from the people whom they see.
 //
-// Each camera follows people by itself; the ways of one person, seen by two cameras, agree when the clocks do. Two seconds of a way
-// from one camera are compared with every way from the other, its time shifted: as one person's (both apart by something
+// Each camera follows people by itself; the paths of one person, seen by two cameras, agree when the clocks do. Two seconds of a
+// path from one camera are compared with every path from the other, its time shifted: as one person's (both apart by something
 // systematic, half a metre that hardly changes, and by noise) against as two people's (anywhere, moving anyhow). The logarithms of
 // the ratios, those against cut off, add up to a score for the shift. A shift moves who runs straight along like the systematic
 // part, so turns, starts and stops carry the answer, and people who run in different directions.
@@ -9,8 +9,8 @@
 //   fine    from its best peaks, least squares over the pairs that agree: the shift, what is systematic of all and of each pair,
 //   chain   cameras are joined to one clock, those first that see most in common; pairs that are joined already only help to put
 //           all offsets right together.
-// Assumes people's ways to be right for a second or two (numbers may change in between), and cameras to place them within a metre.
-// Cost: shifts × ways × people at once, some ten nanoseconds each: less than 0.3 s for six cameras, 25 people and half a minute.
+// Assumes people's paths to be right for a second or two (numbers may change in between), and cameras to place them within a metre.
+// Cost: shifts × paths × people at once, some ten nanoseconds each: less than 0.3 s for six cameras, 25 people and half a minute.
 #pragma once
 
 #include <optional>
@@ -40,7 +40,7 @@ struct GroundOffsetOptions {
   double most_deviation_s = 0.15;  ///< a shift less sure than this is not taken for found
 };
 
-enum class OffsetVerdict { found, no_overlap, nobody_moves, ambiguous };
+enum class OffsetVerdict { found, no_overlap, no_motion, ambiguous };
 
 /// "found", "no overlap", "nobody moves", "ambiguous".
 std::string_view offset_verdict_name(OffsetVerdict verdict);
@@ -49,11 +49,11 @@ struct GroundOffset {
   OffsetVerdict verdict = OffsetVerdict::no_overlap;
   double offset_s = 0;     ///< added to the camera's times gives the first camera's; only where found
   double deviation_s = 0;  ///< standard deviation
-  double gain = 0;         ///< nats by which it explains the ways better than the offset that was assumed
+  double gain = 0;         ///< nats by which it explains the paths better than the offset that was assumed
 };
 
 /// Whether what was found speaks against an offset: by several deviations, more than a hundredth of a second or two, and by how
-/// well people's ways are explained.
+/// well people's paths are explained.
 bool contradicts(const GroundOffset& found, double assumed_s, const GroundOffsetOptions& options = {});
 
 /// The offset of every camera to the first, whose own is 0 and found. `assumed`: the offsets that `gain` compares with, s. Cameras

@@ -43,7 +43,7 @@ class Crowd {
     Vector<2> shift_by_x = Vector<2>::Zero();  // and per m
     double noise = 0.15;                       // m
     double missed = 0.1;
-    double swap = 0.02;  // a second: a way ends and another begins
+    double swap = 0.02;  // a second: a path ends and another begins
   };
 
   std::vector<GroundPath> seen_by(const View& view) {
@@ -133,7 +133,7 @@ TEST(GroundOffset, SaysWhyThereIsNone) {
             OffsetVerdict::no_overlap);
   EXPECT_EQ(found({crowd.seen_by({}), {}})[1].verdict, OffsetVerdict::no_overlap);
   Crowd still(8, 16, 0, 40);
-  EXPECT_EQ(found({still.seen_by({}), still.seen_by({.offset_s = 1})})[1].verdict, OffsetVerdict::nobody_moves);
+  EXPECT_EQ(found({still.seen_by({}), still.seen_by({.offset_s = 1})})[1].verdict, OffsetVerdict::no_motion);
   Crowd other(9, 16, 4, 40);
   EXPECT_EQ(found({crowd.seen_by({}), other.seen_by({})})[1].verdict, OffsetVerdict::ambiguous) << "different matches";
 }
@@ -149,8 +149,7 @@ TEST(GroundOffset, PeopleWhoAllRunStraightTheSameWayDecideNothing) {
     }
     a.push_back(here), b.push_back(there);
   }
-  const auto offset = found({a, b})[1];
-  EXPECT_TRUE(offset.verdict == OffsetVerdict::ambiguous || std::abs(offset.offset_s - 0.4) < 3 * offset.deviation_s);
+  EXPECT_EQ(found({a, b})[1].verdict, OffsetVerdict::ambiguous);
 }
 
 }  // namespace

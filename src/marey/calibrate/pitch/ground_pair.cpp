@@ -17,7 +17,7 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr double kSegment_s = 2;                    // long enough to show how somebody moves, short enough to be one person's
+constexpr double kSegment_s = 2;                    // long enough to show how a person moves, short enough to be one person's
 constexpr double kStride_s = 1;                     // from one segment to the next: they overlap,
 constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
 constexpr double kSample_s = 0.2;                   // between the places that are compared
@@ -25,7 +25,7 @@ constexpr int kSamples = 10;                        // of a segment,
 constexpr std::size_t kLeastSamples = 5;            // where one of both was not seen throughout
 constexpr double kMemory_s = 0.5;                   // errors hang together for about so long
 constexpr double kFloor_m = 0.05;                   // noise that a smoothed place has at least
-constexpr double kStrangers_m = 1.0;                // how much the distance of two different people changes within a segment
+constexpr double kDifferent_m = 1.0;                // how much the distance of two different people changes within a segment
 constexpr double kDensity = 0.01;                   // other people per m²
 constexpr double kFarthest_m = 4;                   // who is farther apart is not one person
 constexpr double kPaired = 2;                       // nats above which a pair takes part in the fine search
@@ -36,13 +36,13 @@ constexpr int kIterations = 10;                     // of the fine search
 constexpr double kStandsOut = 4;                    // times what peaks differ by chance
 constexpr double kExplained = 0.2;                  // of who walks before both cameras, that must be seen by both
 constexpr double kOptimism = 1.5;     // by which errors that hang together for longer make the answer worse than least squares say
-constexpr double kLeastFree = 20;     // degrees of freedom that tell how large the noise is
+constexpr double kLeastFree = 20;     // degrees of freedom that estimate the noise
 constexpr double kLeastNoise = 0.02;  // and by how much less, or more, than covariances say
 constexpr int kNoiseRounds = 2;
 constexpr double kBeside_s = 0.5;      // a peak so near is the same one
 constexpr double kWalks_m = 1;         // who gets no farther within a segment stands
-constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that can tell anything
-constexpr double kLeastMeeting_s = 3;  // person-seconds in places that both see, that make an overlap
+constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that decide anything
+constexpr double kLeastOverlap_s = 3;  // person-seconds in places that both see, that make an overlap
 constexpr double kCell_m = 4;
 constexpr double kTick_s = SmoothPath::kStep_s;
 constexpr std::size_t kMostSegments = 600;
@@ -83,7 +83,7 @@ GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<Smoot
   cut(a, cells);
 }
 
-/// Cuts ways into segments, and keeps of those that can tell something so many as are enough.
+/// Cuts paths into segments, and keeps of those that are informative so many as are enough.
 void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<int, int>>& cells) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (double begin = a[i].begin_s(); begin < a[i].end_s(); begin += kStride_s) {
@@ -96,7 +96,7 @@ void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<
       const auto common = std::count_if(segment.states.begin(), segment.states.end(),
                                         [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.place)); });
       const double common_s = kWeight * kSample_s * static_cast<double>(common);
-      meeting_s_ += common_s;
+      overlap_s_ += common_s;
       if (common == 0 || (segment.states.back().place - segment.states.front().place).norm() < kWalks_m) continue;
       moving_s_ += common_s;
       segments_.push_back(std::move(segment));
@@ -129,12 +129,12 @@ std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const
   const double worth = count * kSample_s / kMemory_s;  // independent samples
   const double systematic = options_.systematic_m * options_.systematic_m;
   const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / worth;
-  const Matrix<2> strangers = noise + kStrangers_m * kStrangers_m * Matrix<2>::Identity();
+  const Matrix<2> different = noise + kDifferent_m * kDifferent_m * Matrix<2>::Identity();
   const double same_mean =
       -0.5 * mean.dot(of_mean.inverse() * mean) - std::log(2 * std::numbers::pi) - 0.5 * log_det(of_mean) - std::log(kDensity);
   const double same_motion =
       -0.5 * (worth - 1) *
-      ((noise.inverse() * spread).trace() + log_det(noise) - (strangers.inverse() * spread).trace() - log_det(strangers));
+      ((noise.inverse() * spread).trace() + log_det(noise) - (different.inverse() * spread).trace() - log_det(different));
   return same_mean + same_motion;
 }
 
@@ -276,12 +276,12 @@ std::vector<GroundPair::Fit> GroundPair::fits(const std::vector<double>& peaks) 
 
 GroundOffset GroundPair::find(std::optional<double> near) {
   GroundOffset result;
-  if (meeting_s_ < kLeastMeeting_s) return result;
-  result.verdict = moving_s_ < kLeastMoving_s ? OffsetVerdict::nobody_moves : OffsetVerdict::ambiguous;
-  if (result.verdict == OffsetVerdict::nobody_moves) return result;
+  if (overlap_s_ < kLeastOverlap_s) return result;
+  result.verdict = moving_s_ < kLeastMoving_s ? OffsetVerdict::no_motion : OffsetVerdict::ambiguous;
+  if (result.verdict == OffsetVerdict::no_motion) return result;
   const Peaks coarse = near ? Peaks{{*near}, 0} : peaks();
   std::vector<Fit> fits = this->fits(coarse.shifts_s);
-  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the ways tell.
+  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the paths show.
   for (int i = 0; i < kNoiseRounds && !fits.empty(); ++i) {
     noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kLeastNoise, 1 / kLeastNoise);
     std::vector<double> again;

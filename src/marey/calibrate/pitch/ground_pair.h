@@ -10,7 +10,7 @@
 
 namespace marey::calibrate::pitch {
 
-/// Two cameras' ways over one ground, and how well they agree when the second's clock is shifted.
+/// Two cameras' paths over one ground, and how well they agree when the second's clock is shifted.
 class GroundPair {
  public:
   /// `b` must outlive it.
@@ -21,9 +21,9 @@ class GroundPair {
   GroundOffset find(std::optional<double> near = std::nullopt);
 
   /// Person-seconds on ground that both see.
-  double meeting_s() const { return meeting_s_; }
+  double overlap_s() const { return overlap_s_; }
 
-  /// Logarithm of the likelihood of the ways at this shift, but for a constant; nats.
+  /// Logarithm of the likelihood of the paths at this shift, but for a constant; nats.
   double score(double shift_s) const;
 
  private:
@@ -64,7 +64,7 @@ class GroundPair {
   std::vector<Segment> segments_;
   std::vector<std::vector<Present>> present_;  // of b, at each step of a tenth of a second
   double b_begin_ = 0, b_end_ = 0;
-  double meeting_s_ = 0, moving_s_ = 0;
+  double overlap_s_ = 0, moving_s_ = 0;
   double noise_scale_ = 1;           // of covariances
   double first_s_ = 0, last_s_ = 0;  // shifts to be tried
 };

@@ -65,7 +65,7 @@ void measure_lines(PitchViewResult& result) {
   result.line_95_m = quantile(metres, 0.95);
 }
 
-/// Clicks against the camera; an outlier that another name on the pitch would suit is told so.
+/// Clicks against the camera; an outlier is given the other name on the pitch that would suit it.
 void measure_points(const std::vector<PitchPoint>& points, const Matrix<3>& ground_from_world, PitchViewResult& result) {
   const GroundView view(result.camera);
   result.error_px.clear();

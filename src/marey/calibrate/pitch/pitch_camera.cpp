@@ -286,7 +286,8 @@ std::vector<double> errors_of(const Camera& camera, const std::vector<PitchPoint
   return errors;
 }
 
-constexpr double kLeastOutlier = 6;  // px: nobody clicks better than this always
+constexpr double kWorstMedian = 0.02;  // of the picture's width: points that half lie farther off are of no camera
+constexpr double kLeastOutlier = 6;    // px: no user clicks better than this always
 constexpr double kOutlierSigmas = 4;
 
 std::vector<char> inliers_of(const std::vector<double>& errors) {
@@ -334,6 +335,12 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
   PitchCamera result{camera_of(numbers, size), {}, {}};
   result.error_px = errors_of(result.camera, points);
   result.inlier = inliers_of(result.error_px);
+  std::vector<double> sorted = result.error_px;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  if (*middle > kWorstMedian * size.width)
+    throw Error("{}: no camera sees half of the {} points within {:.0f} px of their clicks; most are clicked or named wrong", name,
+                points.size(), *middle);
   const auto good = std::count(result.inlier.begin(), result.inlier.end(), 1);
   if (good < 4 || 2 * good <= static_cast<std::ptrdiff_t>(points.size()))
     throw Error("{}: only {} of {} points agree on one camera; most are clicked or named wrong, or left and right are exchanged",

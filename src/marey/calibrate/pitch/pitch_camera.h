@@ -33,7 +33,7 @@ struct LineSighting {
   int line = 0;                           ///< which line of the model
 };
 
-/// A straight line of the pitch that somebody clicked along.
+/// A straight line of the pitch that a user clicked along.
 struct PitchClickedLine {
   Vector<2> from = Vector<2>::Zero(), to = Vector<2>::Zero();  ///< m, in the frame of whoever clicked
   std::vector<Vector<2>> pixels;
@@ -51,7 +51,7 @@ struct PitchCamera {
 PitchCamera camera_from_points(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size);
 
 /// Whether the points, as seen from above, are in a left-handed frame (y grows to the right of x): a camera sees the ground from
-/// above, so that the sign of the map tells. Throws Error as `camera_from_points`.
+/// above, so that the sign of the map decides. Throws Error as `camera_from_points`.
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size);
 
 /// Which points lie about as near to where the camera sees them as most of them do.

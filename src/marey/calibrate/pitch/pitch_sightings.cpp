@@ -20,8 +20,8 @@ constexpr double kFaint = 0.3;        // of the contrast of a line's brighter fi
 constexpr double kLeastShare = 0.25;  // of a line's samples in the picture
 constexpr int kLeastSamples = 6;
 constexpr int kDraws = 300;
-constexpr std::size_t kTrail = 12;       // samples that tell where paint goes on
-constexpr int kLongestGap = 8;           // samples without paint, as where somebody stood
+constexpr std::size_t kTrail = 12;       // samples that predict where paint goes on
+constexpr int kLongestGap = 8;           // samples without paint, as where a person stood
 constexpr std::size_t kLongestArc = 60;  // samples: a quarter of the centre circle; longer pieces of arcs are no parabola
 
 // Offsets are counted in units of what a camera nearly right may be wrong by: a pixel far away, centimetres of uneven ground near

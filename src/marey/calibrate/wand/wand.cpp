@@ -151,13 +151,13 @@ class WandCalibration {
     options_.step("looking again");
     WandFit fit(in_, tracks_, growth_.bundle, growth_.fit.noise_px);
     fit.free_lenses(options_.lens == LensUse::refined);
-    fit.claim();
+    fit.match_blobs();
     options_.step("adjusting everything");
     std::optional<HeldOutReport> held_out;
     fit.adjust_held_out(options_.find_offsets, held_out);
     if (options_.lens == LensUse::automatic && refining_helps(fit)) {
       fit.free_lenses(true);
-      fit.claim();
+      fit.match_blobs();
       fit.adjust_held_out(options_.find_offsets, held_out);
     }
     const bundle::BundleResult result = fit.adjust_all();

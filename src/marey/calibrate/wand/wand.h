@@ -46,7 +46,7 @@ struct WandOptions {
   bool find_offsets = true;                    ///< whether cameras may have been started at other times than their offsets say
   std::optional<KnownDistance> distance = {};  ///< of two cameras: what a single light's scale comes from
   std::uint64_t seed = 1;
-  std::function<void(std::string_view)> step = [](std::string_view) {};  ///< told what is done now
+  std::function<void(std::string_view)> step = [](std::string_view) {};  ///< called with what is done now
 };
 
 struct WandResult {

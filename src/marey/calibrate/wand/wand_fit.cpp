@@ -12,7 +12,7 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr double kLeastGatePx = 2;      // in a picture of 1280 columns, within which a blob is claimed
+constexpr double kLeastGatePx = 2;      // in a picture of 1280 columns, within which a blob is matched
 constexpr double kGateNoise = 8;        // times the noise
 constexpr std::size_t kHeldOutOf = 10;  // every so many-th place of the wand is held out
 constexpr std::size_t kLeastToHold = 200;
@@ -84,7 +84,7 @@ void WandFit::free_lenses(bool given_too) {
   }
 }
 
-void WandFit::claim() {
+void WandFit::match_blobs() {
   instants_ = instants_of(tracks_);
   const WandTable table = table_of(tracks_, instants_, in_.wand.markers());
   WandPlacement placement(wand_cameras(in_, bundle_, noise_px_), in_.wand, table);
@@ -182,7 +182,7 @@ void WandFit::adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& r
       report = judge_held_out(judged, sizes);
     }
     if (!find_offsets || !moving || !take_over_offsets(fit)) return;
-    claim();
+    match_blobs();
   }
 }
 

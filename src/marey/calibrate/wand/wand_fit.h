@@ -18,7 +18,7 @@ class WandFit {
   void free_lenses(bool given_too);
 
   /// Looks where the wand must be, in every frame of every camera, and makes the bundle of it.
-  void claim();
+  void match_blobs();
 
   /// Adjusts by nine tenths of the instants, with the cameras' time offsets where `find_offsets`, and judges the others;
   /// where the wand is long enough known for that. Samples are taken anew where an offset is found.

@@ -85,8 +85,8 @@ bool divides(double t, double s) {
   return t >= seen(1 / kDepthRatio) && t <= seen(kDepthRatio);
 }
 
-/// Ways round in which three points, ends first and last, can be the wand: bit 0 as they are, bit 1 reversed.
-int ways_round(const std::array<Vector<2>, 3>& points, double s, bool knows_lens) {
+/// Orientations in which three points, ends first and last, can be the wand: bit 0 as they are, bit 1 reversed.
+int orientations_of(const std::array<Vector<2>, 3>& points, double s, bool knows_lens) {
   const Vector<2> line = points[2] - points[0];
   const double length = line.norm();
   if (length < 2 * kLeastGapPx) return 0;
@@ -109,10 +109,10 @@ std::optional<Marks> only_triple(const std::vector<Vector<2>>& blobs, const Wand
         // Cheap first: the middle one lies between the ends.
         if ((blobs[middle] - blobs[i]).dot(blobs[middle] - blobs[j]) >= 0) continue;
         const auto straight = straighten({blobs[i], blobs[middle], blobs[j]});
-        const int ways = straight ? ways_round(*straight, s, straighten.knows_lens()) : 0;
-        if (ways == 0) continue;
-        if (found || (ways == 3 && !wand.reversible())) return std::nullopt;
-        found = (ways & 1) != 0 ? Marks{blobs[i], blobs[middle], blobs[j]} : Marks{blobs[j], blobs[middle], blobs[i]};
+        const int orientations = straight ? orientations_of(*straight, s, straighten.knows_lens()) : 0;
+        if (orientations == 0) continue;
+        if (found || (orientations == 3 && !wand.reversible())) return std::nullopt;
+        found = (orientations & 1) != 0 ? Marks{blobs[i], blobs[middle], blobs[j]} : Marks{blobs[j], blobs[middle], blobs[i]};
       }
     }
   }
@@ -148,24 +148,24 @@ std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const WandS
 }
 
 Marks match_marks(const BlobFrame& frame, const Marks& expected, double gate_px) {
-  struct Claim {
+  struct Candidate {
     double distance;
     std::size_t marker, blob;
   };
-  std::vector<Claim> claims;
+  std::vector<Candidate> candidates;
   for (std::size_t m = 0; m < expected.size(); ++m) {
     for (std::size_t b = 0; expected[m] && b < frame.blobs.size(); ++b) {
       const double distance = (frame.blobs[b] - *expected[m]).norm();
-      if (distance <= gate_px) claims.push_back({distance, m, b});
+      if (distance <= gate_px) candidates.push_back({distance, m, b});
     }
   }
-  std::sort(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) { return a.distance < b.distance; });
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
   Marks marks;
   std::vector<char> taken(frame.blobs.size(), 0);
-  for (const Claim& claim : claims) {
-    if (marks[claim.marker] || taken[claim.blob]) continue;
-    marks[claim.marker] = frame.blobs[claim.blob];
-    taken[claim.blob] = 1;
+  for (const Candidate& candidate : candidates) {
+    if (marks[candidate.marker] || taken[candidate.blob]) continue;
+    marks[candidate.marker] = frame.blobs[candidate.blob];
+    taken[candidate.blob] = 1;
   }
   return marks;
 }

@@ -74,7 +74,7 @@ void WandPlacement::turn_to_fit(std::size_t i, std::size_t first, std::size_t ot
     turned[i][other] = turn;
     for (std::size_t m = 0; m < wand_.markers(); ++m) {
       const std::array lines = {line(i, first, m), line(i, other, m)};
-      const auto point = meeting_point(lines);
+      const auto point = intersection_point(lines);
       off[static_cast<std::size_t>(turn)] +=
           point ? std::pow(angle_off(lines[0], *point), 2) + std::pow(angle_off(lines[1], *point), 2) : never;
     }

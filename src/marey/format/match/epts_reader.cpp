@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/text_rows.h"
-#include "marey/format/whole_file.h"
 #include "marey/format/xml_text.h"
 
 namespace marey::format::match {

@@ -7,7 +7,7 @@
 
 #include "marey/core/recording.h"
 #include "marey/core/sink.h"
-#include "marey/format/whole_file.h"
+#include "marey/core/whole_file.h"
 
 namespace marey::format::match {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::motion {
 namespace {

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/motion/length_unit.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/motion/wide_table.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::motion {
 namespace {

@@ -11,10 +11,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/text_rows.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::motion {
 namespace {

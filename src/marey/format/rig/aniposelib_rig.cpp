@@ -9,9 +9,9 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::rig {
 namespace {

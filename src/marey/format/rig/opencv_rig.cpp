@@ -10,8 +10,8 @@
 #include <opencv2/core/persistence.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_exchange.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::rig {
 namespace {

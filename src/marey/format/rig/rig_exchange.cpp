@@ -11,10 +11,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/rig/lens_fit.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/lens_fit.h"
 
 namespace marey::format::rig {
 namespace {
@@ -191,8 +191,8 @@ geometry::BrownLens as_brown(const RigCamera& camera, int coefficients, std::str
   geometry::BrownLens start;
   start.focal = geometry::focal_of(*camera.lens);
   start.principal = geometry::principal_of(*camera.lens);
-  const auto fit = fit_brown([&](const Vector<2>& pixel) { return bearing(*camera.lens, *camera.size, pixel); }, *camera.size,
-                             start, {.coefficients = coefficients, .turn = false});
+  const auto fit = geometry::fit_brown([&](const Vector<2>& pixel) { return bearing(*camera.lens, *camera.size, pixel); },
+                                       *camera.size, start, {.coefficients = coefficients, .turn = false});
   if (!fit || fit->rms_px > kNearEnough) {
     throw Error("camera \"{}\": {} cannot hold its lens ({}){}; write a format that can: marey, opencv", camera.name, format,
                 geometry::name_of(*camera.lens), fit ? fmt::format(": the nearest is {:.2f} px off", fit->rms_px) : "");

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/format/rig/rig_sources.h"
 
 #include "support/files.h"
 
@@ -196,36 +195,6 @@ TEST(RigFile, SourcesLieBesideTheFile) {
   EXPECT_EQ(read_rig(folder / "out.toml").cameras[0].source, folder / "a/left_camera.mp4");
   EXPECT_THROW(read_rig(folder / "none.toml"), Error);
   EXPECT_THROW(read_rig(folder.path()), Error);
-}
-
-TEST(RigSources, AreReplacedByPairs) {
-  Rig rig = parse_rig(kExample, "rig.toml");
-  const std::vector<std::string> pairs{"left=other.mp4", "far=boxes.txt"};
-  set_sources(rig, pairs);
-  EXPECT_EQ(rig.cameras[0].source, "other.mp4");
-  EXPECT_EQ(rig.cameras[1].detections, "boxes.txt");
-  for (const char* wrong : {"left", "=a.mp4", "left=", "right=a.mp4"}) {
-    const std::vector<std::string> bad{wrong};
-    EXPECT_THROW(set_sources(rig, bad), Error) << wrong;
-  }
-  const std::vector<std::string> twice{"left=a.mp4", "left=b.mp4"};
-  EXPECT_THROW(set_sources(rig, twice), Error);
-}
-
-TEST(RigSources, ACalibrationIsScaledWhereTheShapeFits) {
-  Rig rig = parse_rig(kExample, "rig.toml");
-  RigCamera& left = rig.cameras[0];
-  const Vector<3> point(0.3, -0.2, 1);
-  const Vector<2> before = *left.camera()->project(point);
-  fit_to_size(left, {1536, 864});
-  EXPECT_EQ(left.size, cv::Size(1536, 864));
-  EXPECT_LT((*left.camera()->project(point) - ((before.array() + 0.5) / 2 - 0.5).matrix()).norm(), 1e-9);
-  EXPECT_THROW(fit_to_size(left, {1440, 1080}), Error);
-
-  RigCamera& far = rig.cameras[1];
-  const Vector<2> ground = far.ground_view()->place({100.25, 300})->ground;
-  fit_to_size(far, {1280, 960});
-  EXPECT_LT((far.ground_view()->place({200.5 + 0.5, 600.5})->ground - ground).norm(), 1e-12);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/whole_file.h"
 
 namespace marey::format::rig {
 namespace {

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/rig/lens_fit.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_exchange.h"
 #include "marey/format/rig/self_cal_folder.h"
-#include "marey/format/whole_file.h"
+#include "marey/geometry/lens_fit.h"
 
 namespace marey::format::rig {
 namespace {
@@ -67,7 +67,7 @@ double set_lens(RigCamera& camera, const Decomposed& found, const std::optional<
   };
   geometry::BrownLens start = pinhole;
   if (rad) start.distortion = rad->distortion;
-  const auto fit = fit_brown(direction, *camera.size, start, {.coefficients = 4, .turn = true});
+  const auto fit = geometry::fit_brown(direction, *camera.size, start, {.coefficients = 4, .turn = true});
   if (!fit) return 0;
   camera.lens = fit->lens;
   camera.camera_from_world = Rigid3{fit->turn, Vector<3>::Zero()} * found.camera_from_world;

@@ -160,7 +160,7 @@ TEST_F(TakeFile, IsReadWhileItIsWritten) {
 TEST_F(TakeFile, TakesOneWriter) {
   TakeWriter writer(path_, header());
   writer.write(frame_of(0));
-  EXPECT_NE(error_of([&] { TakeWriter second(path_, header()); }).find("is being recorded by another program"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeWriter second(path_, header()); }).find("is being written by another run"), std::string::npos);
   const int status =
       in_child([&] { _exit(error_of([&] { TakeWriter third(path_, header()); }).find("recorded") != std::string::npos); });
   EXPECT_EQ(WEXITSTATUS(status), 1);

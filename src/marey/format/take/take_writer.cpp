@@ -11,7 +11,7 @@
 #include <map>
 
 #include "marey/core/error.h"
-#include "marey/format/file_lock.h"
+#include "marey/core/file_lock.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_file.h"

@@ -6,7 +6,7 @@
 
 #include "marey/core/sink.h"
 #include "marey/core/track_names.h"
-#include "marey/format/whole_file.h"
+#include "marey/core/whole_file.h"
 
 namespace marey::format::tracks {
 

@@ -37,8 +37,8 @@ Vector<2> middle(const cv::Size& size) {
 }
 
 double heading_inwards(const Vector<2>& place, const cv::Size& size, Random& random) {
-  const Vector<2> way = middle(size) - place;
-  return std::atan2(way.y(), way.x()) + random.uniform(-0.5, 0.5);
+  const Vector<2> to_middle = middle(size) - place;
+  return std::atan2(to_middle.y(), to_middle.x()) + random.uniform(-0.5, 0.5);
 }
 
 struct ZigzagMotion {
@@ -102,10 +102,10 @@ Path accelerating(int frames, const cv::Size& size, Random& random) {
 }
 
 /// A path through `meeting` at the middle of the video, which bends there by `bend` rad over `bend_frames` frames.
-Path through(const Vector<2>& meeting, double course, double speed, double bend, int bend_frames, int frames) {
+Path through(const Vector<2>& crossing, double course, double speed, double bend, int bend_frames, int frames) {
   Path path(static_cast<std::size_t>(frames));
   const int half = frames / 2;
-  path[half] = meeting;
+  path[half] = crossing;
   const auto course_at = [&](double frame) {
     const double share = bend_frames > 0 ? std::clamp((frame - half) / bend_frames + 0.5, 0.0, 1.0) : (frame > half ? 1.0 : 0.0);
     return course + (share - 0.5) * bend;
@@ -150,12 +150,12 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
   constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
   constexpr Range kBend{-0.5, 0.5};   // rad
   for (;;) {
-    const Vector<2> meeting = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
+    const Vector<2> crossing = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
     const double course = random.uniform(0, 2 * kPi);
     const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
-    Path first = through(meeting, course, kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
+    Path first = through(crossing, course, kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
     Path second =
-        through(meeting + miss, course + kAngle.draw(random), kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
+        through(crossing + miss, course + kAngle.draw(random), kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
     const bool apart_at_first = (first.front() - second.front()).norm() > 8 * radius;
     const bool apart_at_last = (first.back() - second.back()).norm() > 8 * radius;
     if (apart_at_first && apart_at_last && stays_inside(first, size) && stays_inside(second, size)) {
@@ -275,6 +275,34 @@ cv::Mat render_frame(const MarkerScene& scene, int index) {
   draw_discs(image, discs);
   for (const Box& barrier : scene.barriers) draw_barrier(image, barrier, kBarrier);
   return expose(image, options.noise, scene.seed * 100'003 + static_cast<std::uint64_t>(index));
+}
+
+namespace {
+
+class SceneSource final : public Source {
+ public:
+  explicit SceneSource(MarkerScene scene) : scene_(std::move(scene)) {
+    info_ = {"simulated markers", scene_.options.size, scene_.options.rate_hz, std::ssize(scene_.frames)};
+  }
+
+  const SourceInfo& info() const override { return info_; }
+
+  std::optional<Frame> next() override {
+    if (next_ >= std::ssize(scene_.frames)) return std::nullopt;
+    const int index = next_++;
+    return Frame{CameraId{}, index, timestamp_from_seconds(index / scene_.options.rate_hz), Picture(render_frame(scene_, index))};
+  }
+
+ private:
+  MarkerScene scene_;
+  SourceInfo info_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Source> make_source(MarkerScene scene) {
+  return std::make_unique<SceneSource>(std::move(scene));
 }
 
 }  // namespace marey::simulate::markers

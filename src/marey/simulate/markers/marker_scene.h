@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/geometry.h"
+#include "marey/core/source.h"
 
 namespace marey::simulate::markers {
 
@@ -65,5 +67,8 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
 /// Frame `index` of the scene as a camera gives it: CV_8UC1. Bright discs over a dark ground, each before those of lower number,
 /// barriers before all of them; the noise follows from the scene's seed.
 cv::Mat render_frame(const MarkerScene& scene, int index);
+
+/// The scene as a camera gives it.
+std::unique_ptr<Source> make_source(MarkerScene scene);
 
 }  // namespace marey::simulate::markers

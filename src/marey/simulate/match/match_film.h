@@ -35,13 +35,13 @@ class MatchFilm {
   people::PeopleRenderer renderer_;
 };
 
-/// Somebody's click on a crossing of lines or another place that is easily recognised.
+/// A user's click on a crossing of lines or another place that is easily recognised.
 struct MatchClick {
   Vector<2> ground;  ///< m, on the pitch
   Vector<2> pixel;
 };
 
-/// What somebody would click in a camera's picture: every such place that it sees, `noise` px off in each axis. Of these `wrong`
+/// What a user would click in a camera's picture: every such place that it sees, `noise` px off in each axis. Of these `wrong`
 /// lie elsewhere or bear another place's name.
 std::vector<MatchClick> match_clicks(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                      double noise, int wrong, std::uint64_t seed);

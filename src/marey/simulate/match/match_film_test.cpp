@@ -61,7 +61,7 @@ TEST(MatchFilm, PeopleAreDrawnWithinTheirBoxes) {
   cv::absdiff(film.render(figures, first, 3, 0).luma(), film.render(figures, second, 3, 1).luma(), changed);
   EXPECT_GT(cv::countNonZero(changed > 20), 500);
   for (const auto& stances : {first, second}) {
-    for (const SeenPerson& seen : look_at(camera, figures, stances)) {
+    for (const SeenPerson& seen : people_in_view(camera, figures, stances)) {
       const Box& box = seen.shown;
       const cv::Rect around(static_cast<int>(std::floor(box.left)) - 1, static_cast<int>(std::floor(box.top)) - 1,
                             static_cast<int>(box.width) + 3, static_cast<int>(box.height) + 3);

@@ -17,11 +17,11 @@ constexpr double kMostEffort = 5;     // m/s²
 constexpr double kApproach = 2.0;     // m/s²; how people brake before a place they want to stand on
 constexpr double kApart = 0.45;       // m between bodies
 constexpr double kBrake = 8;          // m/s² that two have together, not to run into each other
-constexpr double kForesight = 1.5;    // s that people look ahead for others in their way
+constexpr double kForesight = 1.5;    // s that people look ahead for others ahead
 constexpr double kPass = 0.8;         // m at which they like to pass each other
 constexpr double kSwerve = 3.5;       // m/s² that they spend on it
 constexpr int kRounds = 6;            // over all pairs that are too fast towards each other
-constexpr double kFollow = 1.2;       // 1/s: how a gap to somebody who is followed closes
+constexpr double kFollow = 1.2;       // 1/s: how a gap to a person who is followed closes
 constexpr double kTurning = 5;        // rad/s
 constexpr double kStature = 1.79;     // m; decides the length of strides
 constexpr double kWatchBelow = 0.6;   // m/s; slower people face the ball
@@ -61,12 +61,12 @@ MatchMotion::MatchMotion(std::uint64_t seed, const geometry::PitchSize& pitch) :
 
 Vector<2> MatchMotion::wanted_velocity(std::size_t i, const MatchIntent& intent) const {
   if (intent.speed <= 0) return Vector<2>::Zero();
-  const Vector<2> way = intent.target - begin_[i].place;
+  const Vector<2> to_target = intent.target - begin_[i].place;
   const double top = std::min(intent.speed, bodies_[i].top_speed);
-  if (intent.target_velocity.squaredNorm() > 0.25) return at_most(intent.target_velocity + kFollow * way, top);
-  const double away = way.norm();
-  if (away < 0.05) return Vector<2>::Zero();
-  return way / away * std::min(top, std::sqrt(2 * kApproach * away));
+  if (intent.target_velocity.squaredNorm() > 0.25) return at_most(intent.target_velocity + kFollow * to_target, top);
+  const double distance = to_target.norm();
+  if (distance < 0.05) return Vector<2>::Zero();
+  return to_target / distance * std::min(top, std::sqrt(2 * kApproach * distance));
 }
 
 /// Acceleration sideways, so as to pass others at some distance: both do their half, and where they meet head on both step to the
@@ -83,13 +83,13 @@ Vector<2> MatchMotion::swerve(std::size_t i) const {
     const Vector<2> miss = between - when * closing;
     if (miss.norm() >= kPass) continue;
     const Vector<2> hand(closing.y(), -closing.x());
-    const Vector<2> away = miss.norm() > 0.1 ? Vector<2>(-miss / miss.norm()) : Vector<2>(hand / hand.norm());
-    sum += std::min(kSwerve, (kPass - miss.norm()) / (when * when + 0.05)) * away;
+    const Vector<2> sideways = miss.norm() > 0.1 ? Vector<2>(-miss / miss.norm()) : Vector<2>(hand / hand.norm());
+    sum += std::min(kSwerve, (kPass - miss.norm()) / (when * when + 0.05)) * sideways;
   }
   return at_most(sum, kSwerve);
 }
 
-/// The effort goes towards what the wanted velocity asks for; forward, less is left the faster he is.
+/// The effort goes towards what the wanted velocity asks for; forward, less is left the faster it is.
 void MatchMotion::exert(std::size_t i, const Vector<2>& wanted) {
   const Vector<2>& velocity = begin_[i].velocity;
   Vector<2> asked = at_most((wanted - velocity) / kResponse + swerve(i), kMostEffort);
@@ -103,7 +103,7 @@ void MatchMotion::exert(std::size_t i, const Vector<2>& wanted) {
   bodies_[i].effort += kStep / kEffortTime * (asked - bodies_[i].effort);
 }
 
-/// Nobody approaches another faster than both can brake within what is left between them.
+/// No one approaches another faster than both can brake within what is left between them.
 void MatchMotion::keep_apart(Velocities& next) const {
   for (int round = 0; round < kRounds; ++round) {
     bool calm = true;

@@ -27,7 +27,7 @@ std::string_view match_team(int index);
 
 /// 22 players and 3 referees of a football match: the same for the same seed, at whatever rate it is looked at.
 ///
-/// They are stepped at a fixed 50 Hz; within a step everybody's acceleration is constant, so that places and velocities are exact
+/// They are stepped at a fixed 50 Hz; within a step each acceleration is constant, so that places and velocities are exact
 /// at any time. Accelerations stay within what people have (the faster, the less), change smoothly, and keep bodies apart: the
 /// speed at which two approach is held to what they can still brake. Memory does not grow with time.
 class MatchMotion {
@@ -44,7 +44,7 @@ class MatchMotion {
  private:
   struct Body {
     Vector<2> acceleration = Vector<2>::Zero();  // m/s², throughout the step
-    Vector<2> effort = Vector<2>::Zero();        // m/s²: what it would be if nobody were in the way
+    Vector<2> effort = Vector<2>::Zero();        // m/s²: what it would be if no one else were there
     double turning = 0, gait = 0;                // rad/s
     double top_speed = 8;                        // m/s
   };

@@ -42,15 +42,15 @@ TEST(MatchMotion, VelocityIsTheDerivativeOfPlace) {
   }
 }
 
-struct Ways {
+struct Motion {
   std::array<double, kMatchPeople> metres{}, fastest{}, longest_stand{};
   double nearest = 1e9, sideways = 0, hard = 0, close_pairs = 0;  // the last three: shares of all people and instants; per instant
 };
 
-Ways ways(std::uint64_t seed, double seconds) {
+Motion motion_over(std::uint64_t seed, double seconds) {
   constexpr double kStep = 0.05;
   MatchMotion match(seed);
-  Ways all;
+  Motion all;
   std::array<double, kMatchPeople> stood{};
   std::array<Vector<2>, kMatchPeople> last;
   const int count = static_cast<int>(seconds / kStep);
@@ -79,7 +79,7 @@ Ways ways(std::uint64_t seed, double seconds) {
 TEST(MatchMotion, PeopleMoveAsInAMatch) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     constexpr double kMinutes = 10;
-    const Ways all = ways(seed, 60 * kMinutes);
+    const Motion all = motion_over(seed, 60 * kMinutes);
     double outfield = 0;
     for (std::size_t i = 0; i < kMatchPlayers; ++i) {
       const bool keeper = i % kMatchSide == 0;

@@ -26,11 +26,11 @@ constexpr std::array<Formation, 2> kFormations{
      {{{0.05, -0.8}, {0, -0.25}, {0, 0.25}, {0.05, 0.8}, {0.35, 0}, {0.5, -0.4}, {0.5, 0.4}, {0.9, -0.85}, {1, 0}, {0.9, 0.85}}}}};
 
 constexpr double kBallSpeed = 15;    // m/s, of a pass
-constexpr double kReach = 1.2;       // m; the ball is somebody's within it
+constexpr double kReach = 1.2;       // m; the ball is a player's within it
 constexpr double kWanderTime = 9;    // s
 constexpr double kWander = 2.4;      // m
 constexpr double kBeside = 0.55;     // m between two who fight for the ball
-constexpr double kSprint = 9.5;      // m/s; as fast as he can
+constexpr double kSprint = 9.5;      // m/s; as fast as possible
 constexpr double kOutOfPlay = 0.15;  // of all times that a player gives the ball away
 constexpr double kLost = 0.24;       // of all passes
 
@@ -238,13 +238,13 @@ Vector<2> MatchPlay::referee_place(int official, People people) const {
     const double turn = (ball_.x() / pitch_.length - 0.5) * 12;
     return on_pitch(ball_ + Vector<2>(ball_.x() > pitch_.length / 2 ? -9 : 9, 5 + turn) + minds_[22].wander, 3);
   }
-  const int side = official == 23 ? 0 : 1;  // whose half he runs along: level with its last man but the keeper
+  const int side = official == 23 ? 0 : 1;  // whose half it runs along: level with its last man but the keeper
   double last = pitch_.length / 2;
   for (int i = side * kMatchSide + 1; i < (side + 1) * kMatchSide; ++i) last = std::min(last, along(side, people[index(i)].place));
   return {from_goal(side, last, 0).x(), side == 0 ? -1.0 : pitch_.width + 1.0};
 }
 
-/// Thinks again now and then; stands while his place is near, else goes there the faster the farther it is.
+/// Thinks again now and then; stands while its place is near, else goes there the faster the farther it is.
 void MatchPlay::hold_role(int who, const Vector<2>& target, double deadband, People people) {
   Mind& mind = minds_[index(who)];
   if (now_ < mind.rethink_at) return;
@@ -294,7 +294,7 @@ void MatchPlay::chase(People people) {
   intents_[index(presser)] = {by.place + aside + 0.2 * ahead, by.velocity, 7.5};
 }
 
-/// Who sprints, and who goes with him, between him and the goal.
+/// Who sprints, and who goes along, between the sprinter and the goal.
 void MatchPlay::mark(People people) {
   if (!run_) return;
   intents_[index(run_->runner)] = {run_->target, Vector<2>::Zero(), run_->speed};

@@ -1,5 +1,5 @@
-// What everybody on a football pitch wants to do at a moment: the ball is held, passed, lost, run after and out of play; each side
-// keeps a formation that moves and breathes with it, closes the holder down and marks who runs; some stand and watch. It is no
+// What each person on a football pitch wants to do at a moment: the ball is held, passed, lost, run after and out of play; each
+// side keeps a formation that moves and breathes with it, closes the holder down and marks who runs; some stand and watch. It is no
 // model of tactics: it makes people move, meet, run side by side, cross and stand as they do in a match. Cost: 25 people × 25 a
 // step.
 #pragma once
@@ -15,20 +15,20 @@
 
 namespace marey::simulate::match {
 
-inline constexpr int kMatchPeople = 25;   ///< 0–10 the home side, 11–21 the away side, 22 the referee, 23 and 24 his assistants
+inline constexpr int kMatchPeople = 25;   ///< 0–10 the home side, 11–21 the away side, 22 the referee, 23 and 24 the assistants
 inline constexpr int kMatchPlayers = 22;  ///< of them
 inline constexpr int kMatchSide = 11;     ///< players of a side; the first is its keeper
 
-/// Where somebody is and how he moves; m and m/s on the pitch.
+/// Where a person is and how it moves; m and m/s on the pitch.
 struct MatchPlace {
   Vector<2> place = Vector<2>::Zero();
   Vector<2> velocity = Vector<2>::Zero();
 };
 
-/// Where somebody wants to be.
+/// Where a person wants to be.
 struct MatchIntent {
   Vector<2> target = Vector<2>::Zero();           ///< m
-  Vector<2> target_velocity = Vector<2>::Zero();  ///< m/s: of whom he runs beside
+  Vector<2> target_velocity = Vector<2>::Zero();  ///< m/s: of the one it runs beside
   double speed = 0;                               ///< m/s at most; 0 to stand
 };
 
@@ -36,10 +36,10 @@ class MatchPlay {
  public:
   MatchPlay(std::uint64_t seed, const geometry::PitchSize& pitch);
 
-  /// Where everybody stands at the kick-off.
+  /// Where all stand at the kick-off.
   std::array<Vector<2>, kMatchPeople> beginning();
 
-  /// What everybody wants after `step` s more. Steps are short (some hundredths of a second).
+  /// What each wants after `step` s more. Steps are short (some hundredths of a second).
   const std::array<MatchIntent, kMatchPeople>& decide(double step, std::span<const MatchPlace, kMatchPeople> people);
 
   /// m on the pitch.

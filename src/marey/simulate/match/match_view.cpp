@@ -1,5 +1,5 @@
-// A person's box is that of his figure's limbs, each seen as two discs and what lies between them, so that it breathes with the
-// gait as real boxes do. What hides whom is counted on a coarse raster of each box: a cell is hidden where the box of somebody
+// A person's box is that of its figure's limbs, each seen as two discs and what lies between them, so that it breathes with the
+// gait as real boxes do. What hides whom is counted on a coarse raster of each box: a cell is hidden where the box of a person
 // nearer covers it. Cost: two projections a limb, some fifty a person and camera.
 #include "marey/simulate/match/match_view.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kColumns = 8, kRows = 16;  // of the raster of a box
 constexpr double kBodyShare = 0.75;      // of the width of a box that its person fills: people see past each other's elbows
-constexpr double kLeast = 4;             // px; a box lower than this is nobody's
+constexpr double kLeast = 4;             // px; a box lower than this is no person's
 
 struct Placed {
   SeenPerson seen;
@@ -77,7 +77,7 @@ int poisson(double mean, Random& random) {
   return count;
 }
 
-/// What the box of somebody upright at a place of the ground would be; nothing where that is out of the picture.
+/// What the box of a person upright at a place of the ground would be; nothing where that is out of the picture.
 std::optional<Box> box_at(const Camera& camera, const Vector<2>& at, double stature) {
   const auto foot = sight(camera, {at.x(), at.y(), 0}), head = sight(camera, {at.x(), at.y(), stature});
   if (!foot || !head || !camera.in_picture(foot->at) || !camera.in_picture(head->at)) return std::nullopt;
@@ -134,8 +134,8 @@ people::Stance match_stance(const MatchPerson& person, const Matrix<3>& world_fr
   return stance;
 }
 
-std::vector<SeenPerson> look_at(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
-                                std::span<const people::Stance, kMatchPeople> stances) {
+std::vector<SeenPerson> people_in_view(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
+                                       std::span<const people::Stance, kMatchPeople> stances) {
   const Box picture{0, 0, static_cast<double>(camera.size().width), static_cast<double>(camera.size().height)};
   std::vector<Placed> all;
   for (std::size_t i = 0; i < figures.size(); ++i) {

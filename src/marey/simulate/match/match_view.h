@@ -18,13 +18,13 @@ namespace marey::simulate::match {
 /// Where a point of the world is seen by a camera; nothing where it cannot be.
 std::optional<people::Sighting> sight(const Camera& camera, const Vector<3>& point);
 
-/// How everybody of a match is built and dressed: white and blue sides, keepers and referees in colours of their own.
+/// How each person of a match is built and dressed: white and blue sides, keepers and referees in colours of their own.
 std::array<people::Figure, kMatchPeople> match_figures(std::uint64_t seed);
 
-/// How somebody stands in the world. `world_from_pitch` turns the pitch's x and y into the world's, a reflection perhaps.
+/// How a person stands in the world. `world_from_pitch` turns the pitch's x and y into the world's, a reflection perhaps.
 people::Stance match_stance(const MatchPerson& person, const Matrix<3>& world_from_pitch);
 
-/// A person as one camera sees him.
+/// A person as one camera sees it.
 struct SeenPerson {
   int person = 0;            ///< 0 … kMatchPeople − 1
   Box whole;                 ///< px; round the figure, hidden parts and what lies outside the picture included
@@ -32,9 +32,9 @@ struct SeenPerson {
   double visible_share = 0;  ///< of the box `whole`: within the picture and not behind boxes of nearer people
 };
 
-/// Everybody of whom something lies within the picture, in the order of their numbers.
-std::vector<SeenPerson> look_at(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
-                                std::span<const people::Stance, kMatchPeople> stances);
+/// Each person of whom something lies within the picture, in the order of their numbers.
+std::vector<SeenPerson> people_in_view(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
+                                       std::span<const people::Stance, kMatchPeople> stances);
 
 /// A person of whom less is to be seen is hardly ever detected.
 inline constexpr double kHiddenShare = 0.35;
@@ -43,7 +43,7 @@ inline constexpr double kHiddenShare = 0.35;
 struct MatchDetectorOptions {
   double missed = 0.1;         ///< share of people in plain view that are not detected, in [0, 1]
   double size_noise = 0.05;    ///< standard deviation of widths and heights, as a share of them; each edge errs on its own
-  double false_alarms = 0.5;   ///< a frame, on average; boxes of people where nobody is
+  double false_alarms = 0.5;   ///< a frame, on average; boxes of people where there is none
   double hidden_found = 0.05;  ///< of people who are hidden, the share that is detected all the same
 };
 

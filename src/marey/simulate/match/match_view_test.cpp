@@ -79,7 +79,7 @@ TEST(MatchView, BoxesHoldHeadAndFeetAndHideWhatIsBehind) {
     const auto stances = stances_of(motion, Matrix<3>::Identity());
     for (const RigCamera& eye : rig.cameras) {
       const Camera camera = *eye.camera();
-      for (const SeenPerson& seen : look_at(camera, figures, stances)) {
+      for (const SeenPerson& seen : people_in_view(camera, figures, stances)) {
         const auto i = static_cast<std::size_t>(seen.person);
         const Vector<2> at = motion.people()[i].place;
         const auto foot = camera.project({at.x(), at.y(), 0});
@@ -116,7 +116,7 @@ TEST(MatchView, TheDetectorErrsAsOftenAsItSays) {
   constexpr int kFrames = 800;
   for (int k = 0; k < kFrames; ++k) {
     motion.advance(0.2 * k);
-    const auto seen = look_at(camera, figures, stances_of(motion, Matrix<3>::Identity()));
+    const auto seen = people_in_view(camera, figures, stances_of(motion, Matrix<3>::Identity()));
     const auto detect = [&](const MatchDetectorOptions& options) {
       return detect_match(seen, camera, Matrix<3>::Identity(), cameras.pitch, k, options, random);
     };

@@ -19,12 +19,12 @@ namespace marey::simulate::people {
 
 /// What people do in a film.
 enum class PeopleSituation {
-  apart,     ///< each walks and runs in a lane of the picture's own: nobody is hidden
+  apart,     ///< each walks and runs in a lane of the picture's own: no one is hidden
   crossing,  ///< two players pass, the farther one partly hidden for some twenty frames (Arnaut & Costa, Figure 6)
-  post,      ///< each passes behind a board of his own, which hides him wholly for a while
+  post,      ///< each passes behind a board of its own, which hides it wholly for a while
   abrupt,    ///< apart, but they stop, start, turn round, squat and throw up their arms as abruptly as people can
-  border,    ///< each walks out of the picture and in again at its sides, in a lane of his own
-  crowd,     ///< everybody goes anywhere: every kind of occlusion, entering and leaving
+  border,    ///< each walks out of the picture and in again at its sides, in a lane of its own
+  crowd,     ///< each goes anywhere: every kind of occlusion, entering and leaving
 };
 
 struct NamedPeopleSituation {
@@ -42,12 +42,12 @@ struct PeopleFilmOptions {
   std::optional<int> frames;  ///< nothing: 100 of crossing, 200 of the others
   std::optional<int> people;  ///< nothing: 2 of crossing and post, 6 of the others. As many as fit where they keep apart.
   double height_px = 60;      ///< of a person of 1.78 m who stands in the middle of the picture
-  double pace = 1;            ///< factor on everybody's speed
+  double pace = 1;            ///< factor on all speeds
   double noise = 2;           ///< standard deviation of luma, grey levels
   double shake_px = 0;        ///< standard deviation of the picture's movement, each axis
   LightChange light = LightChange::steady;
   bool shadows = true;
-  double hidden_s = 2;      ///< post: the longest time that somebody is hidden; the shortest is a fifth of it
+  double hidden_s = 2;      ///< post: the longest time that a person is hidden; the shortest is a fifth of it
   int overlap_frames = 20;  ///< crossing: about how long the two overlap
   Picture ground;           ///< the empty scene, scaled to `size`; empty for a lawn
   int samples = 4;          ///< lattice points per pixel and axis, for edges and silhouettes
@@ -63,7 +63,7 @@ class PeopleFilm {
   const PeopleFilmOptions& options() const { return options_; }
   int frames() const { return static_cast<int>(conditions_.size()); }
   const LevelCamera& camera() const { return camera_; }
-  /// Everybody who is in the film at all, in the order of their ids 1, 2, …
+  /// All who are in the film at all, in the order of their ids 1, 2, …
   const std::vector<Figure>& figures() const { return figures_; }
 
   /// Frame 0 ≤ `index` < frames(): picture and truth. Safe to call from several threads.

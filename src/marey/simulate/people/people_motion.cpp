@@ -1,5 +1,5 @@
 // People go from goal to goal: they gain and lose speed by 3 m/s² and turn by a few rad/s, as people do, unless a situation wants
-// it abrupt. Where they shall keep apart, the picture is cut into lanes one above the other, with room for a person and his arms; a
+// it abrupt. Where they shall keep apart, the picture is cut into lanes one above the other, with room for a person and its arms; a
 // goal is a place in one's own lane. Meetings (crossing, post) are laid out backwards from the moment of the meeting.
 #include "marey/simulate/people/people_motion.h"
 
@@ -23,7 +23,7 @@ double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
 }
 
-/// A person on the way to a goal.
+/// A person bound for a goal.
 struct Walker {
   int id = 0;
   Stance stance;
@@ -33,8 +33,8 @@ struct Walker {
 
   /// Moves on by dt; true where the goal is reached.
   bool walk(double now, double dt, double stature, bool abrupt) {
-    const Vector<2> way = goal - stance.place;
-    const double wished_heading = std::atan2(way.y(), way.x());
+    const Vector<2> to_goal = goal - stance.place;
+    const double wished_heading = std::atan2(to_goal.y(), to_goal.x());
     const double turn = wrapped(wished_heading - stance.heading);
     const double wish = now < rests_until ? 0 : wished_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
     const double gain = abrupt ? kAbruptGain : kGain;
@@ -44,7 +44,7 @@ struct Walker {
     stance.crouch += std::clamp(wished_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
     stance.reach += std::clamp(wished_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
     step(dt, stature);
-    return way.norm() < std::max(0.4, 0.35 * stance.speed);
+    return to_goal.norm() < std::max(0.4, 0.35 * stance.speed);
   }
 
   void step(double dt, double stature) {
@@ -79,7 +79,7 @@ class Director {
     return at ? 1.78 * std::cos(camera_.pitch) * camera_(Vector<3>(at->x(), at->y(), 0))->scale : 1;
   }
   Vector<2> ground(double column, double row) const {
-    // Above the horizon nobody can stand: as far away as the picture's top row that shows ground.
+    // Above the horizon no one can stand: as far away as the picture's top row that shows ground.
     for (double r = row;; r += 1) {
       if (const auto at = camera_.on_ground({column, r})) return *at;
     }
@@ -171,7 +171,7 @@ void Director::in_lanes(bool abrupt, bool over_border) {
   }
 }
 
-/// On a way that passes a place at a moment; its heading swings by up to `wander` rad, for nobody walks like a machine.
+/// On a path that passes a place at a moment; its heading swings by up to `wander` rad, for no person walks like a machine.
 void Director::walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander) {
   Walker walker;
   walker.id = id;
@@ -218,7 +218,7 @@ void Director::behind_posts() {
     const double hidden = random_.uniform(0.2, 1) * options_.hidden_s;
     const Vector<2> at = ground(camera_.size.width * random_.uniform(0.4, 0.6), row);
     const double px_per_m = camera_(Vector<3>(at.x(), at.y(), 0))->scale;
-    // The board hides the whole width of a person for that long; the way ends within the picture.
+    // The board hides the whole width of a person for that long; the path ends within the picture.
     const double length = static_cast<double>(motion_.frames.size()) * dt_;
     const double person = kWide * height / px_per_m;
     const double half = 0.36 * camera_.size.width / px_per_m;

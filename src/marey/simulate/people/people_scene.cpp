@@ -138,9 +138,9 @@ class SimulatedDetector {
     for (int i = 0; i < model.haunted_places; ++i) haunted_.push_back(like_a_person(truth));
   }
 
-  std::vector<Observation<2>> look(std::span<const TrueBox> people) {
+  std::vector<Observation<2>> observe(std::span<const TrueBox> people) {
     std::vector<Observation<2>> seen;
-    for (const TrueBox& person : people) look_at(person, people, seen);
+    for (const TrueBox& person : people) observe_person(person, people, seen);
     for (const Box& place : haunted_) {
       if (random_.chance(0.33)) add(seen, jittered(place, 0.03), random_.gaussian(0.6, 0.12));
     }
@@ -203,7 +203,7 @@ class SimulatedDetector {
     return {static_cast<double>(seen) / (columns * rows), part.value_or(person.box)};
   }
 
-  void look_at(const TrueBox& person, std::span<const TrueBox> people, std::vector<Observation<2>>& seen) {
+  void observe_person(const TrueBox& person, std::span<const TrueBox> people, std::vector<Observation<2>>& seen) {
     Memory& memory = memories_[person.id];
     const double leave = std::min(1.0, dt_ / model_.miss_duration);
     memory.missing =
@@ -258,7 +258,7 @@ std::vector<std::vector<Observation<2>>> simulate_detector(std::span<const TrueB
   for (int frame = 0; frame < frames; ++frame) {
     const std::size_t begin = next;
     while (next < truth.size() && truth[next].frame == frame) ++next;
-    seen.push_back(detector.look(truth.subspan(begin, next - begin)));
+    seen.push_back(detector.observe(truth.subspan(begin, next - begin)));
   }
   return seen;
 }

@@ -25,7 +25,7 @@ const std::array<LimbShape, kLimbs>& limb_shapes();
 /// Where every limb is: world_from_limb, in m.
 using BodyPose = std::array<Rigid3, kLimbs>;
 
-/// Somebody of 1.75 m, his pelvis over (x, y), who looks along `heading` (rad from the x axis).
+/// A person of 1.75 m, the pelvis over (x, y), that faces along `heading` (rad from the x axis).
 struct BodyStance {
   double x = 0, y = 0, heading = 0;
 };

@@ -28,7 +28,7 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
   return x ^ (x >> 31);
 }
 
-/// A smooth way to and fro that comes near every place between −1 and 1 in time: two sines of incommensurate rates.
+/// A smooth path to and fro that comes near every place between −1 and 1 in time: two sines of incommensurate rates.
 struct Sway {
   double slow, quick, slow_phase, quick_phase;  // rad/s, rad
 

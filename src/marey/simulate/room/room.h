@@ -17,9 +17,9 @@ namespace marey::simulate::room {
 
 /// What moves in the room.
 enum class RoomMotion {
-  walk,    ///< somebody with markers on his body walks round; his limbs hide his markers
-  wave,    ///< he stands and waves his arms
-  still,   ///< he stands with his arms aside and does not move
+  walk,    ///< a person with markers on the body walks round; limbs hide markers
+  wave,    ///< the person stands and waves both arms
+  still,   ///< the person stands with arms aside and does not move
   wand,    ///< a wand, or a single light, is waved through the whole volume
   ground,  ///< an L-frame lies on the floor: it defines the world
   cloud,   ///< free markers drift through the volume, and nothing hides them

@@ -9,7 +9,7 @@ namespace marey::simulate::room {
 /// different from the others as the seed says.
 Rig room_rig(const RoomOptions& options);
 
-/// The same after somebody ran into the camera of `options.bump`.
+/// The same after a person ran into the camera of `options.bump`.
 Rig bumped(const Rig& rig, const RoomOptions& options);
 
 }  // namespace marey::simulate::room

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "marey/core/perceived.h"
+#include "marey/core/colour.h"
 
 namespace marey::track::ground {
 namespace {

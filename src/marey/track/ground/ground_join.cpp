@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "marey/assign/sparse_assignment.h"
-#include "marey/core/perceived.h"
+#include "marey/core/colour.h"
 
 namespace marey::track::ground {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <optional>
 
+#include "marey/core/colour.h"
 #include "marey/core/geometry.h"
 #include "marey/core/observation.h"
 #include "marey/core/track.h"

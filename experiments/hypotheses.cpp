@@ -1,0 +1,182 @@
+#include "experiments/hypotheses.h"
+
+#include <array>
+#include <chrono>
+#include <mutex>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/evaluate/ground_evaluation.h"
+
+namespace marey::experiments {
+namespace {
+
+constexpr double same_place = 1;  // m
+
+struct Kind {
+  const char* name;
+  std::optional<simulate::Encounter> encounter;
+};
+constexpr std::array kinds{Kind{"cross", simulate::Encounter::cross}, Kind{"side by side", simulate::Encounter::alongside},
+                           Kind{"stop", simulate::Encounter::stop}, Kind{"any", std::nullopt}};
+
+struct Method {
+  const char* name;
+  track::ground::GroundAssociation association;
+  bool live;  ///< judged is what is said at once
+};
+constexpr std::array methods{
+    Method{"gnn", track::ground::GroundAssociation::gnn, false}, Method{"jpda", track::ground::GroundAssociation::jpda, false},
+    Method{"mht", track::ground::GroundAssociation::mht, false}, Method{"mht, live", track::ground::GroundAssociation::mht, true}};
+
+void add(std::vector<evaluate::PersonPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
+  for (const Track<2>& track : tracks) {
+    if (track.confirmed) places.push_back({frame, number(track.id), track.position, track.velocity});
+  }
+}
+
+std::vector<evaluate::PersonPlace> truth_of(const simulate::EncounterScene& scene) {
+  std::vector<evaluate::PersonPlace> places;
+  for (std::size_t frame = 0; frame < scene.truth.size(); ++frame) {
+    for (std::size_t i = 0; i < scene.truth[frame].size(); ++i)
+      places.push_back({static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), scene.truth[frame][i], {}});
+  }
+  return places;
+}
+
+/// A camera high above that sees all of the ground, 10 px a metre.
+GroundView view_of(const simulate::EncounterOptions& options) {
+  const double margin = 30;
+  Matrix<3> ground_from_image;
+  ground_from_image << 0.1, 0, -margin, 0, -0.1, options.side + margin, 0, 0, 1;
+  const int pixels = static_cast<int>(10 * (options.side + 2 * margin));
+  return GroundView(ground_from_image, cv::Size(pixels, pixels));
+}
+
+struct Outcome {
+  HypothesesExperiment::Score score;
+  double seconds = 0;
+  std::int64_t steps = 0;
+};
+
+Outcome follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Method& method,
+               track::ground::GroundTrackerOptions options) {
+  options.associate = method.association;
+  const auto tracker = track::ground::make_ground_tracker(options, {view_of(scene.options)});
+  std::vector<evaluate::PersonPlace> said;
+  std::int32_t decided = 0;
+  Outcome outcome;
+  for (std::size_t frame = 0; frame < scene.seen.size(); ++frame) {
+    const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / scene.options.rate_hz);
+    const track::ground::CameraObservations look{CameraId{0}, now, scene.seen[frame]};
+    const auto begin = std::chrono::steady_clock::now();
+    const auto tracks = tracker->step(now, {&look, 1});
+    outcome.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (method.live) {
+      add(said, static_cast<std::int32_t>(frame), tracks);
+    } else {
+      for (const track::ground::GroundDecision& decision : tracker->decided()) add(said, decided++, decision.tracks);
+    }
+  }
+  if (!method.live) {
+    for (const track::ground::GroundDecision& decision : tracker->decide_all()) add(said, decided++, decision.tracks);
+  }
+  outcome.steps = static_cast<std::int64_t>(scene.seen.size());
+  const evaluate::Evaluation judged = evaluate::evaluate_ground(truth, said, same_place).scores;
+  outcome.score = {judged.clear.switches, judged.true_boxes, judged.clear.misses, judged.clear.false_positives, 0};
+  return outcome;
+}
+
+}  // namespace
+
+HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options) {
+  HypothesesExperiment experiment{.scenes = options.scenes, .seed = options.seed, .kinds = {}, .meetings = {}, .rows = {}};
+  for (const Kind& kind : kinds) {
+    experiment.kinds.emplace_back(kind.name);
+    experiment.meetings.push_back(options.scenes * options.encounters.pairs * options.encounters.meetings);
+  }
+  std::vector<std::vector<Outcome>> sums(methods.size(), std::vector<Outcome>(kinds.size()));
+  std::mutex mutex;
+  int done = 0;
+  const int all = options.scenes * static_cast<int>(kinds.size());
+  tbb::parallel_for(0, all, [&](int index) {
+    const std::size_t kind = static_cast<std::size_t>(index) % kinds.size();
+    simulate::EncounterOptions encounters = options.encounters;
+    encounters.kind = kinds[kind].encounter;
+    const simulate::EncounterScene scene =
+        simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kinds.size(), encounters);
+    const std::vector<evaluate::PersonPlace> truth = truth_of(scene);
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      const Outcome outcome = follow(scene, truth, methods[m], options.tracker);
+      const std::lock_guard lock(mutex);
+      Outcome& sum = sums[m][kind];
+      sum.score.switches += outcome.score.switches;
+      sum.score.people += outcome.score.people;
+      sum.score.misses += outcome.score.misses;
+      sum.score.strangers += outcome.score.strangers;
+      sum.seconds += outcome.seconds;
+      sum.steps += outcome.steps;
+    }
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (options.progress) options.progress(done, all);
+  });
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    auto& row = experiment.rows.emplace_back();
+    row.method = methods[m].name;
+    for (Outcome& sum : sums[m]) {
+      row.scores.push_back(sum.score);
+      if (sum.steps > 0) row.scores.back().step_us = 1e6 * sum.seconds / static_cast<double>(sum.steps);
+    }
+  }
+  return experiment;
+}
+
+std::string to_text(const HypothesesExperiment& experiment) {
+  std::string text =
+      fmt::format("{} scenes of each kind, from seed {}\n\nidentity switches\n{:<12}", experiment.scenes, experiment.seed, "");
+  const auto out = std::back_inserter(text);
+  const auto columns = [&](const char* last) {
+    for (const std::string& kind : experiment.kinds) fmt::format_to(out, "{:>16}", kind);
+    fmt::format_to(out, "{}\n", last);
+  };
+  columns("");
+  fmt::format_to(out, "{:<12}", "meetings");
+  for (const int meetings : experiment.meetings) fmt::format_to(out, "{:>16}", meetings);
+  fmt::format_to(out, "\n");
+  const auto& first = experiment.rows.front();
+  for (const auto& row : experiment.rows) {
+    fmt::format_to(out, "{:<12}", row.method);
+    for (std::size_t kind = 0; kind < row.scores.size(); ++kind) {
+      const double ratio = static_cast<double>(row.scores[kind].switches) /
+                           static_cast<double>(std::max<std::int64_t>(1, first.scores[kind].switches));
+      fmt::format_to(out, "{:>16}", fmt::format("{} ({:.2f})", row.scores[kind].switches, ratio));
+    }
+    fmt::format_to(out, "\n");
+  }
+  fmt::format_to(out, "in brackets: against {}\n\nmissed / false, % of people and frames\n{:<12}", first.method, "");
+  columns("");
+  for (const auto& row : experiment.rows) {
+    fmt::format_to(out, "{:<12}", row.method);
+    for (const auto& score : row.scores) {
+      const double percent = 100.0 / static_cast<double>(std::max<std::int64_t>(1, score.people));
+      fmt::format_to(out, "{:>16}",
+                     fmt::format("{:.2f} / {:.2f}", percent * static_cast<double>(score.misses),
+                                 percent * static_cast<double>(score.strangers)));
+    }
+    fmt::format_to(out, "\n");
+  }
+  fmt::format_to(out, "\ntime of a step, µs, mean\n{:<12}", "");
+  columns("");
+  for (const auto& row : experiment.rows) {
+    fmt::format_to(out, "{:<12}", row.method);
+    for (const auto& score : row.scores) fmt::format_to(out, "{:>16.1f}", score.step_us);
+    fmt::format_to(out, "\n");
+  }
+  return text;
+}
+
+}  // namespace marey::experiments

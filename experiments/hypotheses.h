@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/simulate/encounters.h"
+#include "marey/track/ground/ground_tracker.h"
+
+namespace marey::experiments {
+
+struct HypothesesExperimentOptions {
+  int scenes = 100;  ///< of each kind of meeting
+  std::uint64_t seed = 1;
+  simulate::EncounterOptions encounters;
+  track::ground::GroundTrackerOptions tracker;      ///< for all methods; `associate` is not looked at
+  std::function<void(int done, int all)> progress;  ///< scenes
+};
+
+struct HypothesesExperiment {
+  /// What one method made of the scenes of one kind.
+  struct Score {
+    std::int64_t switches = 0;   ///< of identity, as CLEAR counts
+    std::int64_t people = 0;     ///< people times frames
+    std::int64_t misses = 0;     ///< of these
+    std::int64_t strangers = 0;  ///< reported where nobody is
+    double step_us = 0;          ///< mean time of a tracker's step
+  };
+  struct Row {
+    std::string method;
+    std::vector<Score> scores;  ///< one a kind
+  };
+  int scenes = 0;
+  std::uint64_t seed = 0;
+  std::vector<std::string> kinds;  ///< of meetings
+  std::vector<int> meetings;       ///< of each kind
+  std::vector<Row> rows;
+};
+
+/// The same scenes of people who meet and part, told apart by place alone, followed by each association with the same filter,
+/// gates, costs, birth and death. Judged is what the tracker has decided (GroundTracker::decided); "mht, live" is what mht guessed
+/// in the step itself. A track and a person may match within 1 m.
+HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options);
+
+/// As text: a table of switches and one of times.
+std::string to_text(const HypothesesExperiment& experiment);
+
+}  // namespace marey::experiments

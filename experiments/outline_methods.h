@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "marey/core/detection.h"
+#include "marey/core/frame.h"
+#include "marey/simulate/people/people_renderer.h"
+#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/published_outline.h"
+
+namespace marey::experiments {
+
+/// Where a method says that a person is.
+struct FollowedShape {
+  std::string name;
+  Vector<2> centre = Vector<2>::Zero();  ///< px
+  std::vector<Vector<2>> polygon;        ///< px
+};
+
+/// One way of following outlines, for `marey experiment outlines`.
+class OutlineMethod {
+ public:
+  virtual ~OutlineMethod() = default;
+
+  /// Pictures of the scene from before the first frame: what a detector is primed with.
+  virtual void prime(std::span<const Frame> /*samples*/) {}
+
+  /// What the method says of a frame. `detections` are those of the first method, for methods that have no detector of their own;
+  /// `truth` serves to begin those that have no birth.
+  virtual std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
+                                          std::span<const simulate::people::TrueFigure> truth) = 0;
+
+  /// Of the last frame, where the method has a detector of its own.
+  virtual std::span<const Detection> detections() const { return {}; }
+
+  double seconds() const { return seconds_; }        ///< spent on following, detection and association left out
+  std::int64_t targets() const { return targets_; }  ///< times frames that it was spent on
+
+ protected:
+  double seconds_ = 0;
+  std::int64_t targets_ = 0;
+};
+
+/// Marey's detector and tracker, with the detector's own silhouettes as outlines.
+std::unique_ptr<OutlineMethod> silhouette_method();
+/// The same with followed outlines.
+std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions& options);
+std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options);
+std::unique_ptr<OutlineMethod> box_method();
+
+}  // namespace marey::experiments

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/simulate/people/people_film.h"
+#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/published_outline.h"
+
+namespace marey::experiments {
+
+/// What one way of following outlines made of one case. A person counts while at least half of him can be seen, from the frame in
+/// which the method first has an outline on him; an outline that is missing then overlaps nothing.
+struct OutlineScore {
+  int people = 0;
+  int lost = 0;                        ///< whose name was lost: see judge_labels; or never given
+  std::int64_t frames = 0;             ///< people times the frames that count
+  double followed = 0;                 ///< share of these with an outline of the right name on the person
+  double iou = 0;                      ///< mean, with the true silhouette, hidden parts included, within the picture
+  std::optional<double> centre_error;  ///< px, mean distance to the true silhouette's centre, where the outline is on the person
+  std::optional<double> jitter;        ///< px, RMS of the second difference of the centre from frame to frame
+  std::optional<double> target_us;     ///< µs a person and frame, of the following alone
+};
+
+/// Clips of one kind.
+struct OutlineCase {
+  std::string name;
+  simulate::people::PeopleSituation situation{};
+  double height_px = 60;
+  simulate::people::LightChange light = simulate::people::LightChange::steady;
+  int videos = 1;
+  int people = 0;
+  std::optional<double> true_jitter;  ///< px, as in OutlineScore, of the true silhouettes' centres
+};
+
+struct OutlineExperiment {
+  struct Row {
+    std::string method;
+    std::vector<OutlineScore> scores;  ///< one a case
+  };
+  std::uint64_t seed = 0;
+  std::vector<OutlineCase> cases;
+  std::vector<Row> rows;
+};
+
+struct OutlineExperimentOptions {
+  int videos = 50;  ///< of two people who cross or are hidden; of the other cases, with six people each, a tenth
+  std::uint64_t seed = 1;
+  std::string only;  ///< names of cases that hold this text; empty for all
+  track::contour::OutlineOptions outlines;
+  track::contour::PublishedOptions published;
+  std::function<void(int done, int all)> progress;  ///< videos
+};
+
+/// The same films, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:
+///   silhouettes  the detector's own outlines under the tracker's names: what there is without any outline filter
+///   boxes        the box filter of Xu et al., fed with the nearest detection
+///   published    the coupled filters of Arnaut & Costa, after De Bem
+///   Marey        the tracker with OutlineFollower
+/// Boxes and published filters have no birth of their own: each begins with the first two detections in a row that are on its
+/// person, and is then alone. Everybody knows the past alone; the detector has seen the scene before,
+/// with other people in it, as one that has run for a while.
+OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options);
+
+/// A table a case.
+std::string to_text(const OutlineExperiment& experiment);
+
+}  // namespace marey::experiments

@@ -1,0 +1,43 @@
+#include "marey/core/rig.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "marey/core/error.h"
+
+namespace marey {
+
+std::string camera_names(const Rig& rig) {
+  std::string all;
+  for (const RigCamera& camera : rig.cameras) all += (all.empty() ? "" : ", ") + camera.name;
+  return all;
+}
+
+RigCamera& camera_named(Rig& rig, const std::string& name) {
+  const auto at = std::find_if(rig.cameras.begin(), rig.cameras.end(), [&](const RigCamera& each) { return each.name == name; });
+  if (at == rig.cameras.end()) throw Error("the rig has no camera \"{}\"; there are: {}", name, camera_names(rig));
+  return *at;
+}
+
+void fit_to_size(RigCamera& camera, cv::Size found) {
+  if (!camera.size) camera.size = found;
+  if (*camera.size == found) return;
+  const double factor = static_cast<double>(found.width) / camera.size->width;
+  const bool same_shape = std::abs(camera.size->height * factor - found.height) <= std::max(1.0, factor);
+  if (!same_shape) {
+    throw Error(
+        "camera \"{}\": its pictures are {} x {}, but it is calibrated for {} x {}, which has another shape; calibrate it at {} x "
+        "{}",
+        camera.name, found.width, found.height, camera.size->width, camera.size->height, found.width, found.height);
+  }
+  camera.size = found;
+  if (camera.lens) camera.lens = geometry::scaled(*camera.lens, factor);
+  if (camera.ground_from_image) {
+    Matrix<3> calibrated_from_found = Matrix<3>::Identity();  // whole numbers are centres of pixels
+    calibrated_from_found(0, 0) = calibrated_from_found(1, 1) = 1 / factor;
+    calibrated_from_found(0, 2) = calibrated_from_found(1, 2) = 0.5 / factor - 0.5;
+    *camera.ground_from_image = *camera.ground_from_image * calibrated_from_found;
+  }
+}
+
+}  // namespace marey

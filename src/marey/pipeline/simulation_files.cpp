@@ -1,0 +1,347 @@
+// Simulations as files: what a scene of `simulate` shows goes through the writers of films, observations, tracks and rigs. Nothing
+// is simulated here.
+#include "marey/pipeline/simulation_files.h"
+
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/core/whole_file.h"
+#include "marey/draw/canvas.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/observations.h"
+#include "marey/format/rig/rig_file.h"
+
+namespace marey::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLongestMatch = 24 * 3600;  // s
+
+void write_text(const fs::path& path, std::string_view text) {
+  WholeFile file(path.string());
+  file.write(text);
+  file.finish();
+}
+
+/// A source's frames as a film.
+class Film {
+ public:
+  Film(std::unique_ptr<Source> source, const fs::path& path)
+      : source_(std::move(source)),
+        movie_(path.string(), source_->info().size, source_->info().rate_hz, draw::MovieWriter::Quality::to_measure) {}
+
+  /// False at the end.
+  bool write_next() {
+    const auto frame = source_->next();
+    if (frame) movie_.write(draw::Canvas(frame->picture).take(), frame->time);
+    return frame.has_value();
+  }
+  void finish() { movie_.finish(); }
+
+ private:
+  std::unique_ptr<Source> source_;
+  draw::MovieWriter movie_;
+};
+
+/// COCO's uncompressed run lengths of a mask: columns from the left, each from the top; background first, foreground next, and so
+/// on.
+std::string run_lengths(const cv::Mat& mask) {
+  std::string text = "[";
+  bool inside = false;
+  int length = 0;
+  const auto end_run = [&] {
+    fmt::format_to(std::back_inserter(text), "{}{}", text.size() > 1 ? "," : "", length);
+    length = 0;
+    inside = !inside;
+  };
+  for (int x = 0; x < mask.cols; ++x) {
+    for (int y = 0; y < mask.rows; ++y) {
+      if ((mask.at<unsigned char>(y, x) != 0) != inside) end_run();
+      ++length;
+    }
+  }
+  end_run();
+  return text + "]";
+}
+
+class PeopleTruth {
+ public:
+  explicit PeopleTruth(const fs::path& folder)
+      : boxes_((folder / "truth.txt").string()),
+        positions_((folder / "positions.csv").string()),
+        silhouettes_((folder / "silhouettes.jsonl").string()) {
+    positions_.write("frame,time,id,team,x,y,foot_x,foot_y,visible\n");
+  }
+
+  void write(int frame, double time, const simulate::people::TrueFigure& person, cv::Size size) {
+    const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+    const Box box = geometry::intersection(person.whole.box(), picture);
+    if (box.empty()) return;
+    boxes_.write(fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.id, box.left + 1, box.top + 1,
+                             box.width, box.height, person.visible_share));
+    positions_.write(fmt::format("{},{:.6f},{},{},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f}\n", frame, time, person.id, person.team,
+                                 person.ground.x(), person.ground.y(), person.foot.x(), person.foot.y(), person.visible_share));
+    silhouettes_.write(fmt::format(R"({{"frame":{},"id":{},"size":[{},{}],"whole":{},"visible":{}}})", frame, person.id,
+                                   size.height, size.width, run_lengths(person.whole.pixel_mask(size)),
+                                   run_lengths(person.visible.pixel_mask(size))) +
+                       "\n");
+  }
+
+  void finish() {
+    boxes_.finish();
+    positions_.finish();
+    silhouettes_.finish();
+  }
+
+ private:
+  WholeFile boxes_, positions_, silhouettes_;
+};
+
+format::SeenFrame seen_of(const simulate::room::RoomFrame& frame, const std::vector<std::string>& labels) {
+  format::SeenFrame seen;
+  seen.frame = frame.index;
+  for (int camera = 0; camera < std::ssize(frame.seen); ++camera) {
+    for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(camera)]) {
+      seen.points.push_back({CameraId{camera}, blob.pixel, blob.marker ? labels[static_cast<std::size_t>(*blob.marker)] : ""});
+    }
+  }
+  return seen;
+}
+
+std::string truth_rows(const simulate::room::RoomScene& scene, const simulate::room::RoomFrame& frame) {
+  const std::vector<int> cameras = simulate::room::cameras_that_see(scene, frame);
+  std::string text;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    const Vector<3>& p = frame.points[i];
+    fmt::format_to(std::back_inserter(text), "{},{:.6f},{},{:.6f},{:.6f},{:.6f},{}\n", frame.index, frame.time_s, scene.labels()[i],
+                   p.x(), p.y(), p.z(), cameras[i]);
+  }
+  return text;
+}
+
+Rig with_sources(Rig rig, bool videos) {
+  for (RigCamera& camera : rig.cameras) camera.source = videos ? camera.name + ".mp4" : "";
+  return rig;
+}
+
+void write_labels(const simulate::room::RoomScene& scene, const fs::path& folder) {
+  std::string text = "label,x,y,z\n";
+  const std::vector<Vector<3>> points = scene.points(0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{},{:.6f},{:.6f},{:.6f}\n", scene.labels()[i], points[i].x(), points[i].y(),
+                   points[i].z());
+  }
+  write_text(folder / "labels.csv", text);
+}
+
+void write_room_rigs(const simulate::room::RoomScene& scene, const fs::path& folder, bool videos) {
+  const auto write = [&](const Rig& rig, const char* name) { write_text(folder / name, format::rig::rig_text(rig)); };
+  Rig truth = with_sources(scene.rig(), videos);
+  truth.calibration = Rig::Calibration{
+      .method = "simulated: the exact truth", .mean_px = {}, .rms_px = {}, .inliers = {}, .observations = {}, .grade = {}};
+  write(truth, "rig.toml");
+  if (const auto& bump = scene.options().bump) write(with_sources(scene.rig_at(bump->time_s), videos), "rig_after.toml");
+  Rig start = with_sources(scene.rig(), videos);
+  for (RigCamera& camera : start.cameras) {
+    camera.camera_from_world.reset();
+    camera.offset_s = 0;
+  }
+  write(start, "start.toml");
+}
+
+/// What one camera of a match yields, in files of its name.
+class MatchCameraFiles {
+ public:
+  MatchCameraFiles(simulate::match::MatchCamera& camera, const MatchFilesOptions& options, const fs::path& folder)
+      : camera_(camera), truth_((folder / (camera.rig_camera().name + "_truth.txt")).string()) {
+    const RigCamera& rig_camera = camera.rig_camera();
+    if (options.boxes) detections_.emplace((folder / (rig_camera.name + ".txt")).string());
+    if (!options.films) return;
+    movie_.emplace((folder / (rig_camera.name + ".mp4")).string(), *rig_camera.size, rig_camera.rate_hz);
+    std::string clicks = "x,y,u,v\n";
+    for (const simulate::match::MatchClick& click : camera.clicks(options.click_noise, options.wrong_clicks)) {
+      fmt::format_to(std::back_inserter(clicks), "{:g},{:g},{:.2f},{:.2f}\n", click.ground.x(), click.ground.y(), click.pixel.x(),
+                     click.pixel.y());
+    }
+    write_text(folder / (rig_camera.name + "_clicks.csv"), clicks);
+  }
+
+  /// The frame at which the camera stands.
+  void write() {
+    text_.clear();
+    for (const simulate::match::SeenPerson& person : camera_.seen()) {
+      fmt::format_to(std::back_inserter(text_), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", camera_.frame() + 1,
+                     person.person + 1, person.shown.left + 1, person.shown.top + 1, person.shown.width, person.shown.height,
+                     person.visible_share);
+    }
+    truth_.write(text_);
+    if (detections_) write_detections();
+    if (movie_) movie_->write(camera_.picture(), timestamp_from_seconds(camera_.time()));
+  }
+
+  void finish() {
+    if (movie_) movie_->finish();
+    truth_.finish();
+    if (detections_) detections_->finish();
+  }
+
+ private:
+  void write_detections() {
+    text_.clear();
+    for (const LabelledBox& box : camera_.detect()) {
+      fmt::format_to(std::back_inserter(text_), "{},-1,{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},-1,-1,-1\n", box.frame + 1,
+                     box.box.left + 1, box.box.top + 1, box.box.width, box.box.height, box.score);
+    }
+    detections_->write(text_);
+  }
+
+  simulate::match::MatchCamera& camera_;
+  WholeFile truth_;
+  std::optional<WholeFile> detections_;
+  std::optional<draw::MovieWriter> movie_;
+  std::string text_;
+};
+
+void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs::path& folder) {
+  const auto write = [&](const Rig& each, const char* name) { write_text(folder / name, format::rig::rig_text(each)); };
+  Rig exact = rig;
+  for (RigCamera& camera : exact.cameras) {
+    if (options.films)
+      camera.source = camera.name + ".mp4";
+    else if (options.boxes)
+      camera.detections = camera.name + ".txt";
+  }
+  Rig known = exact;
+  if (options.hide_offsets) {
+    write(exact, "true_rig.toml");
+    for (RigCamera& camera : known.cameras) camera.offset_s.reset();
+  }
+  write(known, "rig.toml");
+  if (!options.films) return;
+  Rig boxes = known, start = known;
+  start.ground_from_world.reset();
+  start.calibration.reset();
+  for (RigCamera& camera : boxes.cameras) {
+    camera.source.clear();
+    camera.detections = camera.name + ".txt";
+  }
+  for (RigCamera& camera : start.cameras) {
+    camera.lens.reset();
+    camera.camera_from_world.reset();
+  }
+  if (options.boxes) write(boxes, "boxes.toml");
+  write(start, "start.toml");
+}
+
+}  // namespace
+
+void film_markers(const simulate::markers::MarkerScene& scene, const std::string& path) {
+  Film film(simulate::markers::make_source(scene), path);
+  while (film.write_next()) {
+  }
+  film.finish();
+}
+
+void write_marker_truth(const simulate::markers::MarkerScene& scene, const std::string& path) {
+  WholeFile file(path);
+  file.write("frame,time,label,x,y,visible\n");
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    for (const simulate::markers::MarkerTruth& marker : scene.frames[i]) {
+      file.write(fmt::format("{},{:.6f},M{},{:.4f},{:.4f},{}\n", i, static_cast<double>(i) / scene.options.rate_hz,
+                             marker.marker + 1, marker.position.x(), marker.position.y(), marker.visible ? 1 : 0));
+    }
+  }
+  file.finish();
+}
+
+void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const FramesWritten& progress) {
+  const fs::path place = folder;
+  const simulate::people::PeopleFilmOptions& options = film.options();
+  draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
+  PeopleTruth truth(place);
+  for (int i = 0; i < film.frames(); ++i) {
+    const double time = i / options.rate_hz;
+    const simulate::people::RenderedFrame frame = film.render(i);
+    movie.write(frame.picture, timestamp_from_seconds(time));
+    for (const simulate::people::TrueFigure& person : frame.people) truth.write(i, time, person, options.size);
+    if (progress) progress(i + 1, film.frames());
+  }
+  movie.finish();
+  truth.finish();
+}
+
+void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options,
+                const FramesWritten& progress) {
+  const fs::path place = folder;
+  write_room_rigs(scene, place, options.videos);
+  write_labels(scene, place);
+  format::ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
+  format::ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
+  WholeFile truth((place / "truth.csv").string());
+  truth.write("frame,time,label,x,y,z,cameras\n");
+  std::vector<std::unique_ptr<Film>> films;
+  for (std::size_t i = 0; options.videos && i < scene.rig().cameras.size(); ++i) {
+    films.push_back(std::make_unique<Film>(simulate::room::film_room(scene.options(), i, options.film),
+                                           place / (scene.rig().cameras[i].name + ".mp4")));
+  }
+  for (std::int64_t i = 0; i < scene.options().frames; ++i) {
+    const simulate::room::RoomFrame frame = scene.frame(i);
+    const format::SeenFrame seen = seen_of(frame, scene.labels());
+    observations.write(seen);
+    blobs.write(seen);
+    truth.write(truth_rows(scene, frame));
+    tbb::parallel_for(std::size_t{0}, films.size(), [&](std::size_t camera) { films[camera]->write_next(); });
+    if (progress) progress(i + 1, scene.options().frames);
+  }
+  observations.finish();
+  blobs.finish();
+  truth.finish();
+  for (const auto& film : films) film->finish();
+}
+
+void write_match(const MatchFilesOptions& options, const std::string& folder, const FramesWritten& progress) {
+  const simulate::match::MatchScene scene(options.cameras, options.seed);
+  if (!(options.seconds > 0 && options.seconds <= kLongestMatch))
+    throw Error("a match of {} s; more than 0 and {} at most are possible", options.seconds, kLongestMatch);
+  const auto frames = std::max<std::int64_t>(1, std::llround(options.seconds * options.cameras.rate_hz));
+  const fs::path place = folder;
+  const std::size_t count = scene.rig.cameras.size();
+  std::vector<simulate::match::MatchCamera> cameras;
+  cameras.reserve(count);  // the files hold references
+  std::vector<std::unique_ptr<MatchCameraFiles>> files;
+  for (std::size_t i = 0; i < count; ++i) {
+    cameras.emplace_back(scene, i, options.detector, options.films ? std::optional(options.film) : std::nullopt);
+    files.push_back(std::make_unique<MatchCameraFiles>(cameras[i], options, place));
+  }
+  simulate::match::MatchTruth truth(scene);
+  format::match::GroundWriter writer((place / "truth.csv").string());
+  RecordingHeader header;
+  header.name = "truth.csv";
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  header.rate_hz = options.cameras.rate_hz;
+  header.rig = scene.rig;
+  writer.begin(header);
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      cameras[i].advance();
+      files[i]->write();
+    });
+    writer.write(truth.next(cameras));
+    if (progress) progress(frame + 1, frames);
+  }
+  for (const auto& each : files) each->finish();
+  writer.finish();
+  write_match_rigs(scene.rig, options, place);
+}
+
+}  // namespace marey::pipeline

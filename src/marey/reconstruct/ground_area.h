@@ -1,0 +1,54 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "marey/core/geometry.h"
+#include "marey/core/other_ground.h"
+#include "marey/core/recording.h"
+#include "marey/core/rig.h"
+#include "marey/geometry/pitch.h"
+
+namespace marey::reconstruct {
+
+/// The part of the ground whose people count: a pitch with a margin round it, in the user's frame. Without a pitch all of it.
+class GroundArea {
+ public:
+  GroundArea() = default;
+
+  /// The pitch's corner is the origin of the user's frame, which is the world through `ground_from_world`. `margin` in m.
+  GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch, double margin);
+
+  /// The user's coordinates of a place in the world, and a velocity's.
+  Vector<2> ground(const Vector<2>& world) const;
+  Vector<2> ground_velocity(const Vector<2>& velocity) const;
+  Vector<2> world(const Vector<2>& ground) const;
+  /// The same for a whole recording. This must outlive it.
+  GroundChange change() const;
+
+  /// Whether a person at this place of the world counts; with `slack` m more on all sides.
+  bool holds(const Vector<2>& world, double slack = 0) const;
+
+  /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
+  bool mirrored() const { return ground_from_world_.topLeftCorner<2, 2>().determinant() < 0; }
+  const std::optional<geometry::PitchSize>& pitch() const { return pitch_; }
+  double margin() const { return margin_; }
+
+ private:
+  Matrix<3> ground_from_world_ = Matrix<3>::Identity(), world_from_ground_ = Matrix<3>::Identity();
+  std::optional<geometry::PitchSize> pitch_;
+  double margin_ = 0;
+};
+
+/// A recording of those who count.
+struct KeptPeople {
+  Recording recording;
+  std::map<TrackId, TrackId> now;  ///< what each track that is kept is called
+};
+
+/// Leaves out places that do not count, and who was nowhere else; the others are numbered anew from 1, by their first instant. What
+/// is kept is in the user's frame of reference. `recording` is of the world's ground and used up track by track. Throws Error for
+/// another frame.
+KeptPeople people_in(const GroundArea& area, Recording recording);
+
+}  // namespace marey::reconstruct

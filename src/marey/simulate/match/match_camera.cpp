@@ -1,0 +1,93 @@
+#include "marey/simulate/match/match_camera.h"
+
+#include <algorithm>
+
+namespace marey::simulate::match {
+
+MatchScene::MatchScene(const MatchCamerasOptions& how, std::uint64_t its_seed)
+    : options(how), seed(its_seed), rig(match_cameras(how, its_seed)), figures(match_figures(its_seed)) {
+  if (rig.ground_from_world) world_from_pitch = rig.ground_from_world->inverse();
+}
+
+double MatchScene::match_time(double rig_time) const {
+  return std::max(0.0, rig_time + options.offset_s);
+}
+
+MatchScene::Stances MatchScene::stances(std::span<const MatchPerson, kMatchPeople> people) const {
+  Stances all;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = match_stance(people[i], world_from_pitch);
+  return all;
+}
+
+MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const MatchDetectorOptions& detector,
+                         const std::optional<MatchFilmOptions>& film)
+    : scene_(scene),
+      index_(index),
+      rig_camera_(scene.rig.cameras[index]),
+      camera_(*rig_camera_.camera()),
+      motion_(scene.seed, scene.options.pitch),
+      detector_(detector),
+      random_((scene.seed * 64 + index) * 2654435761u + 41) {
+  if (film) film_.emplace(camera_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
+}
+
+double MatchCamera::time() const {
+  return static_cast<double>(frame_) / *rig_camera_.rate_hz;
+}
+
+void MatchCamera::advance() {
+  ++frame_;
+  match_time_ = scene_.match_time(time() + rig_camera_.offset_s.value_or(0));
+  motion_.advance(match_time_);
+  stances_ = scene_.stances(motion_.people());
+  seen_ = people_in_view(camera_, scene_.figures, stances_);
+}
+
+std::vector<LabelledBox> MatchCamera::detect() {
+  return detect_match(seen_, camera_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
+                      random_);
+}
+
+Picture MatchCamera::picture() const {
+  return film_ ? film_->render(scene_.figures, stances_, match_time_, frame_) : Picture();
+}
+
+std::vector<MatchClick> MatchCamera::clicks(double noise, int wrong) const {
+  return match_clicks(camera_, scene_.world_from_pitch, scene_.options.pitch, noise, wrong, film_seed());
+}
+
+MatchTruth::MatchTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {
+  for (const RigCamera& camera : scene.rig.cameras) cameras_.push_back(*camera.camera());
+  for (int i = 0; i < kMatchPeople; ++i) people_.push_back({TrackId{i + 1}, match_label(i), std::string(match_team(i))});
+}
+
+Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
+  const double time = static_cast<double>(frame_) / scene_.options.rate_hz;
+  motion_.advance(scene_.match_time(time));
+  const auto stances = scene_.stances(motion_.people());
+  std::array<CameraMask, kMatchPeople> seen_by{};
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    std::vector<SeenPerson> own;
+    const bool in_step = scene_.rig.cameras[i].offset_s.value_or(0) == 0;
+    if (!in_step) own = people_in_view(cameras_[i], scene_.figures, stances);
+    for (const SeenPerson& person : in_step ? cameras[i].seen() : std::span<const SeenPerson>(own)) {
+      if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
+    }
+  }
+  Instant instant;
+  instant.index = frame_;
+  instant.time = timestamp_from_seconds(time);
+  if (frame_ == 0) instant.named = people_;
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    const MatchPerson& person = motion_.people()[i];
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = people_[i].id;
+    sample.position.head<2>() = person.place;
+    sample.velocity.emplace(Vector<3>::Zero()).head<2>() = person.velocity;
+    sample.cameras = seen_by[i];
+  }
+  ++frame_;
+  return instant;
+}
+
+}  // namespace marey::simulate::match

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "marey/core/source.h"
+#include "marey/simulate/room/room.h"
+
+namespace marey::simulate::room {
+
+struct RoomFilmOptions {
+  double marker_radius = 0.007;  ///< m
+  double picture_noise = 0.7;    ///< standard deviation of the pixels, grey levels
+};
+
+/// What camera `index` of a room films: grey frames with the markers as discs at their exact places, the pixels bring the noise.
+std::unique_ptr<Source> film_room(const RoomOptions& room, std::size_t index, const RoomFilmOptions& options = {});
+
+/// By how many cameras each marker can be seen in a frame, in the order of the labels.
+std::vector<int> cameras_that_see(const RoomScene& scene, const RoomFrame& frame);
+
+}  // namespace marey::simulate::room
