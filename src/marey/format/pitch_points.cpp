@@ -10,6 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format {
 namespace {
@@ -92,9 +93,7 @@ std::optional<std::vector<Vector<2>>> cvat_pixels(std::string_view text) {
 }
 
 PitchClicks parse_cvat(std::string_view text, const std::string& name) {
-  pugi::xml_document document;
-  const auto parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) throw Error("{}: this is no whole XML file: {} at byte {}", name, parsed.description(), parsed.offset);
+  const pugi::xml_document document = parse_xml(text, name);
   PitchClicks clicks;
   const auto images = document.select_nodes("//image");
   if (images.empty()) throw Error("{}: no <image> in it; export the task as \"CVAT for images\"", name);

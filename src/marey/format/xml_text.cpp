@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "marey/core/error.h"
+#include "marey/format/nesting.h"
 
 namespace marey::format {
 namespace {
@@ -15,6 +16,7 @@ struct StringWriter : pugi::xml_writer {
 }  // namespace
 
 pugi::xml_document parse_xml(std::string_view text, const std::string& name) {
+  check_nesting(text, Notation::xml, name);
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
   if (result) return document;

@@ -335,5 +335,28 @@ TEST(GroundExchange, FilesOfVendors) {
   EXPECT_LT((pets.recording.find(TrackId{9})->place(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
 }
 
+TEST(GroundExchange, DeepFilesAreRefusedAndNoMessageShowsALibrarysInternals) {
+  const auto said = [](auto parse) -> std::string {
+    try {
+      parse();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  std::string lists = "{\"predictions\": ", elements;
+  for (int i = 0; i < 200'000; ++i) lists += '[', elements += "<a>";
+  EXPECT_NE(said([&] { parse_soccernet(lists, "m.json", {}); }).find("m.json:1: is nested more than"), std::string::npos);
+  EXPECT_NE(said([&] { parse_sportec(elements, "m.xml", {}, {}); }).find("m.xml:1: is nested more than"), std::string::npos);
+  EXPECT_NE(said([&] { parse_epts("1:1:1,1,1:\n", "m.txt", elements, "m.xml"); }).find("m.xml:1: is nested more than"),
+            std::string::npos);
+  for (const char* text : {"{\"predictions\": [", "\xff\xfe", "[1, 2}", "{\"predictions\": [1e999999]}"}) {
+    const std::string message = said([&] { parse_soccernet(text, "m.json", {}); });
+    EXPECT_TRUE(message.starts_with("m.json")) << message;
+    EXPECT_EQ(message.find("exception"), std::string::npos) << message;
+    EXPECT_EQ(message.find("syntax error"), std::string::npos) << message;
+  }
+}
+
 }  // namespace
 }  // namespace marey::format::match

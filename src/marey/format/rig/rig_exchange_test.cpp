@@ -319,5 +319,48 @@ TEST(LensFit, FindsALensAndItsTurn) {
   EXPECT_FALSE(fit_brown([](const Vector<2>&) { return std::optional<Vector<3>>(); }, size, start));
 }
 
+std::string times(std::string_view text, int count) {
+  std::string result;
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
+  constexpr int kMany = 200'000;
+  const auto refused = [](auto parse, const std::string& text) {
+    try {
+      parse(text, "file");
+    } catch (const Error& error) {
+      return std::string_view(error.what()).find("nested more than") != std::string_view::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\na: " + times("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\n" + times("- ", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "{\"a\": " + times("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "<?xml version=\"1.0\"?>\n<opencv_storage>" + times("<a>", kMany)));
+  EXPECT_TRUE(refused(parse_aniposelib_rig, "[cam_0]\nmatrix" + times(".a", kMany) + " = 1"));
+  EXPECT_TRUE(refused(parse_qualisys_rig, times("<calibration>", kMany)));
+  EXPECT_TRUE(refused(parse_tsai_rig, times("<Camera>", kMany)));
+}
+
+TEST(RigExchange, NoMessageShowsALibrarysInternals) {
+  const std::string head = "%YAML:1.0\n---\n",
+                    matrix = "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 1., 2. ]\n";
+  for (const std::string& text :
+       {head + matrix, std::string("%YAML:1.0\n---\na: [ 1, }\n"), head + "cameras:\n   - { camera_matrix: 1 }\n",
+        std::string("{ \"camera_matrix\": { \"type_id\": \"opencv-matrix\" "), std::string()}) {
+    try {
+      parse_opencv_rig(text, "file.yml");
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      const std::string said = error.what();
+      EXPECT_TRUE(said.starts_with("file.yml: ")) << said;
+      for (const char* internal : {"nelems", "cv::", "OpenCV(", ".cpp", "persistence", "=="})
+        EXPECT_EQ(said.find(internal), std::string::npos) << said;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marey::format::rig

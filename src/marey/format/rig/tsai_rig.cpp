@@ -6,8 +6,10 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
+#include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
 #include "marey/format/whole_file.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -28,10 +30,8 @@ Matrix<3> rotation_of(double rx, double ry, double rz) {
 
 }  // namespace
 
-Rig read_tsai_rig(const std::string& path) {
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_file(path.c_str());
-  if (!parsed) throw Error("{}: this XML cannot be read ({}, at byte {})", path, parsed.description(), parsed.offset);
+Rig parse_tsai_rig(std::string_view text, const std::string& path) {
+  const pugi::xml_document document = parse_xml(text, path);
   const pugi::xml_node root = document.child("Camera");
   const pugi::xml_node sensor = root.child("Geometry"), in = root.child("Intrinsic"), out = root.child("Extrinsic");
   const auto of = [&](const pugi::xml_node& node, const char* name) { return number(node, name, path); };
@@ -50,6 +50,10 @@ Rig read_tsai_rig(const std::string& path) {
                                     Vector<3>(of(out, "tx"), of(out, "ty"), of(out, "tz")) / kMetre};
   check_imported(rig, path);
   return rig;
+}
+
+Rig read_tsai_rig(const std::string& path) {
+  return parse_tsai_rig(read_file(path), path);
 }
 
 void write_tsai_rig(const Rig& rig, const std::string& path) {

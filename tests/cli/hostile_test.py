@@ -1,0 +1,89 @@
+"""Files made to do harm, and numbers that are wrong by much: the program ends soon, in little memory, with one sentence.
+
+Usage: hostile_test.py MAREY [unittest options].
+"""
+
+import pathlib
+import resource
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+SECONDS = 30
+MEMORY = 6 << 30  # of addresses; the libraries alone map most of one
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+class Hostile(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_hostile_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_marey(self, *arguments):
+        return subprocess.run([MAREY, *map(str, arguments)], capture_output=True, cwd=self.folder, timeout=SECONDS, preexec_fn=limited)
+
+    def refused(self, *arguments, words=()):
+        done = self.run_marey(*arguments)
+        said = done.stderr.decode(errors="replace")
+        self.assertIn(done.returncode, (1, 2), f"{arguments}\n{said[:2000]}")
+        self.assertEqual(len(said.strip().splitlines()), 1, said[:2000])
+        self.assertLess(len(said), 2000)
+        for word in words:
+            self.assertIn(word, said)
+        for internal in ("exception", "nelems", "cv::", "OpenCV(", "std::", "terminate"):
+            self.assertNotIn(internal, said)
+        return said
+
+    def accepted(self, *arguments):
+        done = self.run_marey(*arguments)
+        self.assertEqual(done.returncode, 0, f"{arguments}\n{done.stderr[:2000]}")
+        return done
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def take(self, name="a.marey"):
+        """Two seconds of two markers."""
+        rows = "".join(f"{i},{i / 100:.2f},{m},{i / 100 + k:.3f},0,1\n" for i in range(200) for k, m in enumerate("ab"))
+        self.write("points.csv", "frame,time,marker,x,y,z\n" + rows)
+        self.accepted("convert", "points.csv", name)
+        return self.folder / name
+
+    # --- depth ---
+
+    def test_rigs_that_are_nested_too_deep(self):
+        many = 200_000
+        for name, text in (("a.toml", "a" + ".a" * 50_000 + " = 1\n[[camera]]\n"), ("b.toml", "[[camera]]\nname = " + "[" * many),
+                           ("c.yml", "%YAML:1.0\n---\na: " + "[" * many), ("d.yml", "%YAML:1.0\n---\n" + "- " * many),
+                           ("e.json", '{"camera_matrix": ' + "[" * many), ("f.xml", '<?xml version="1.0"?>\n<opencv_storage>' + "<a>" * many),
+                           ("g.xml", "<calibration><cameras><camera>" + "<a>" * many), ("h.xml", "<Camera><Geometry/>" + "<a>" * many),
+                           ("i.toml", "[cam_0]\nmatrix = [1]\ndistortions" + ".a" * many + " = 1\n")):
+            with self.subTest(name=name):
+                self.write(name, text)
+                self.refused("info", name, words=["nested more than"])
+
+    def test_a_takes_rig_that_is_nested_too_deep(self):
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            database.execute("INSERT OR REPLACE INTO take (key, value) VALUES ('rig', ?)", ("a" + ".a" * 50_000 + " = 1",))
+        self.refused("info", take, words=["nested more than"])
+        self.refused("convert", take, "out.csv", words=["nested more than"])
+
+    def test_a_crossing_that_does_not_fit(self):
+        for frames in (2, 3, 5):
+            with self.subTest(frames=frames):
+                self.refused("simulate", "markers", "crossing", "--frames", frames, "-o", "scene", words=["cross in"])
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    unittest.main()
