@@ -54,7 +54,7 @@ class Hostile(unittest.TestCase):
     def take(self, name="a.marey"):
         """Two seconds of two markers."""
         rows = "".join(f"{i},{i / 100:.2f},{m},{i / 100 + k:.3f},0,1\n" for i in range(200) for k, m in enumerate("ab"))
-        self.write("points.csv", "frame,time,marker,x,y,z\n" + rows)
+        self.write("points.csv", "frame,time,label,x,y,z\n" + rows)
         self.accepted("convert", "points.csv", name)
         return self.folder / name
 
@@ -82,6 +82,31 @@ class Hostile(unittest.TestCase):
         for frames in (2, 3, 5):
             with self.subTest(frames=frames):
                 self.refused("simulate", "markers", "crossing", "--frames", frames, "-o", "scene", words=["cross in"])
+
+    # --- one wild number ---
+
+    def test_one_wild_frame_is_named_before_anything_is_followed(self):
+        far, words = 999_999_999, ["999999999 are named, of which", "a number must be wrong"]
+        self.write("boxes.txt", "".join(f"{i},-1,100,100,20,50,0.9\n" for i in (1, 2, 3, far)))
+        self.refused("track", "boxes.txt", "-o", "out.txt", words=words)
+        self.write("tracks.txt", "".join(f"{i},1,100,100,20,50,1\n" for i in (1, 2, 3, far)))
+        self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=words)
+        self.write("points.csv", "frame,time,id,label,x,y,z\n" + "".join(f"{i},{i / 100:.2f},1,a,1,2,3\n" for i in (0, 1, 2, far)))
+        self.refused("convert", "points.csv", "out.c3d", words=words)
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{i / 25:.2f},1,2,3\n" for i in (0, 1, 2, far)))
+        self.refused("measure", "match.csv", words=words)
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            names = [row[1] for row in database.execute("PRAGMA table_info(frame)")]
+            others = ", ".join(names[1:])
+            self.assertEqual(names[0], "frame")
+            database.execute(f"INSERT INTO frame (frame, {others}) SELECT {far}, {others} FROM frame WHERE frame = 199")
+        self.refused("convert", take, "out.csv", words=words)
+
+    def test_a_wild_time_makes_no_wild_rate(self):
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{-5000 if i == 99 else i / 25:.2f},1,2,3\n" for i in range(100)))
+        said = self.accepted("info", "match.csv").stdout.decode()
+        self.assertIn("25 Hz", said)
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ TEST(Nesting, TheLimitItselfPassesAndOneMoreDoesNot) {
     const bool wanted = depth == kDeepestNesting;
     EXPECT_EQ(passes(times("[", depth) + times("]", depth), Notation::json), wanted) << depth;
     EXPECT_EQ(passes(times("[", depth, "a = ") + times("]", depth), Notation::toml), wanted) << depth;
-    EXPECT_EQ(passes(times("[", depth - 1, "a: ") + times("]", depth), Notation::yaml), wanted) << depth;
+    EXPECT_EQ(passes(times("[", depth, "a: ") + times("]", depth), Notation::yaml), wanted) << depth;
     EXPECT_EQ(passes(times("<a>", depth) + times("</a>", depth), Notation::xml), wanted) << depth;
   }
 }

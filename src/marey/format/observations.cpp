@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/rig/self_cal_folder.h"
 
 namespace marey::format {
@@ -129,11 +130,15 @@ class Table {
 bool sorted_by_frame(const std::string& path) {
   Table table(path);
   std::int64_t last = -1;
+  bool sorted = true;
+  FrameNumbers numbers;
   for (Row row; table.next(row);) {
-    if (row.frame < last) return false;
+    sorted &= row.frame >= last;
     last = row.frame;
+    numbers.add(row.frame);
   }
-  return true;
+  numbers.check(path);
+  return sorted;
 }
 
 void in_order(SeenFrame& frame) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 
 namespace marey::format::match {
 namespace {
@@ -104,6 +105,9 @@ std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
   require_once();
   std::vector<Recording::Moment> moments;
   for (const auto& [id, index] : by_id_) add_moments(people_[static_cast<std::size_t>(index)].rows, moments);
+  FrameNumbers numbers;
+  for (const Recording::Moment& moment : moments) numbers.add(moment.index);
+  numbers.check(name_);
   for (const Recording::Moment& moment : moments) recording.add_moment(moment);
   for (const auto& [id, index] : by_id_) {
     Person& person = people_[static_cast<std::size_t>(index)];

@@ -358,5 +358,21 @@ TEST(GroundExchange, DeepFilesAreRefusedAndNoMessageShowsALibrarysInternals) {
   }
 }
 
+TEST(GroundExchange, TheRateIsTheMedianStep) {
+  const TemporaryFolder folder;
+  std::string text = "frame,time,id,x,y\n";
+  for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.4f},1,2,3\n", i, i == 99 ? -5000 : i / 25.0);
+  write_file(folder / "m.csv", text);
+  EXPECT_DOUBLE_EQ(read_ground_any(folder / "m.csv").rate_hz, 25);
+  std::string far = "1,1,-1,-1,-1,-1,1,5,0,0\n2,1,-1,-1,-1,-1,1,5,0,0\n999999999,1,-1,-1,-1,-1,1,5,0,0\n";
+  try {
+    parse_mot_world(far, "m.txt", 25);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find("of which 3 are there; a number must be wrong"), std::string_view::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace marey::format::match

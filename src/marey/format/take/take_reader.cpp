@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/file_lock.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/sqlite.h"
@@ -91,6 +92,7 @@ class TakeReader::Cursor {
     const std::string rig = text("rig");
     if (!rig.empty()) header_.rig = rig::parse_rig(rig, path + " (its rig)");
     if (!(std::isfinite(header_.rate_hz) && header_.rate_hz > 0)) throw Error("{}: is damaged (its rate is missing)", path);
+    check_numbers();
   }
 
   const TakeHeader& header() const { return header_; }
@@ -143,6 +145,16 @@ class TakeReader::Cursor {
     if (version != kTakeSchemaVersion) throw Error("{}: is damaged (schema version {})", database_.path(), version);
     require_tables(database_);
     return kTakeSchemaVersion;
+  }
+
+  /// One frame that is far from all others: who follows the take would walk through all between.
+  void check_numbers() {
+    const auto first = end_of("ASC").first, last = end_of("DESC").first;
+    if (!first || *first < 0 || *last - *first <= FrameNumbers::kMostMissing) return;
+    FrameNumbers numbers;
+    Statement frames(database_, "SELECT frame FROM frame ORDER BY frame");
+    while (frames.step()) numbers.add(frames.integer(0));
+    numbers.check(database_.path());
   }
 
   void fetch() {
