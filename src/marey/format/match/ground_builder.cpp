@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/text_safety.h"
 
 namespace marey::format::match {
 namespace {
@@ -62,8 +63,8 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
   const auto [entry, is_new] = by_id_.try_emplace(id, static_cast<std::int32_t>(people_.size()));
   if (is_new) people_.push_back({{TrackId{id}, {}, {}}, {}});
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].name;
-  if (name.label.empty()) name.label = label;
-  if (name.team.empty()) name.team = team;
+  if (name.label.empty()) name.label = plain_text(label);
+  if (name.team.empty()) name.team = plain_text(team);
   return entry->second;
 }
 

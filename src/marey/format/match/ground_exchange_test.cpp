@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 
 #include "support/data.h"
 #include "support/files.h"
@@ -371,6 +372,24 @@ TEST(GroundExchange, TheRateIsTheMedianStep) {
   } catch (const Error& error) {
     EXPECT_NE(std::string_view(error.what()).find("of which 3 are there; a number must be wrong"), std::string_view::npos)
         << error.what();
+  }
+}
+
+TEST(GroundExchange, ForeignBytesInNamesMakeFilesThatCanBeRead) {
+  GroundMatch match = made_up(4);
+  match.recording.people[0].label = "a\x01\x1B<b>&\"\xFF";
+  match.recording.people[1].label = "=1+1";
+  for (const Case& one : kWritten) {
+    const TemporaryFolder folder;
+    write_ground_as(match, folder / one.name, one.format);
+    EXPECT_NO_THROW(read_ground_as(folder / one.name, one.format)) << one.name;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+      const std::string text = read_file(entry.path().string());
+      EXPECT_EQ(plain_text(text).find("\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"), std::string::npos);
+      for (const char c : text)
+        EXPECT_TRUE(static_cast<unsigned char>(c) >= ' ' || c == '\n' || c == '\r' || c == '\t') << entry.path();
+      EXPECT_EQ(text.find("&#"), std::string::npos) << entry.path() << ": a control character by number";
+    }
   }
 }
 

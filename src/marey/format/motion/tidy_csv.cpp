@@ -12,6 +12,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/text_rows.h"
@@ -126,11 +127,11 @@ class TidyReader : public MotionReader {
       if (value < 1 || value > 2e9 || value != std::floor(value))
         fail(fmt::format("id is {}; ids are whole numbers from 1", value));
       const TrackId found{static_cast<int>(value)};
-      labels_.try_emplace(found, unquoted(field(label)));
+      labels_.try_emplace(found, plain_text(unquoted(field(label))));
       return found;
     }
     const auto [entry, is_new] = ids_.try_emplace(unquoted(field(label)), TrackId(static_cast<int>(ids_.size()) + 1));
-    if (is_new) labels_[entry->second] = entry->first;
+    if (is_new) labels_[entry->second] = plain_text(entry->first);
     return entry->second;
   }
 

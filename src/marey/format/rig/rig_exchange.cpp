@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/rig/lens_fit.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/self_cal_folder.h"
@@ -42,6 +43,7 @@ std::optional<Vector<3>> bearing(const geometry::Lens& lens, cv::Size size, cons
 
 /// A name that is fit for a rig: no / \ , = " and no control characters.
 std::string fit_name(std::string name) {
+  name = plain_text(name);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || has("/\\,=\"", {&c, 1})) c = '_';
   }

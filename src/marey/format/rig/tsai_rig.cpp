@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
 #include "marey/format/whole_file.h"
@@ -85,8 +86,8 @@ void write_tsai_rig(const Rig& rig, const std::string& path) {
                   "  <Intrinsic focal=\"{:.12g}\" kappa1=\"{:.12g}\" cx=\"{:.12g}\" cy=\"{:.12g}\" sx=\"{:.12g}\"/>\n"
                   "  <Extrinsic tx=\"{:.12g}\" ty=\"{:.12g}\" tz=\"{:.12g}\" rx=\"{:.15g}\" ry=\"{:.15g}\" rz=\"{:.15g}\"/>\n"
                   "</Camera>\n",
-                  camera.name, camera.size->width, camera.size->height, camera.size->width, camera.size->width, kPitch, kPitch,
-                  kPitch, kPitch, focal, tsai->distortion[0] / (focal * focal), tsai->principal.x(), tsai->principal.y(),
+                  xml_escaped(camera.name), camera.size->width, camera.size->height, camera.size->width, camera.size->width, kPitch,
+                  kPitch, kPitch, kPitch, focal, tsai->distortion[0] / (focal * focal), tsai->principal.x(), tsai->principal.y(),
                   tsai->focal.x() / tsai->focal.y(), t.x(), t.y(), t.z(), rx, ry, rz));
   file.finish();
 }
