@@ -3,14 +3,19 @@
 Usage: hostile_test.py MAREY [unittest options].
 """
 
+import json
+import os
 import pathlib
 import resource
 import shutil
 import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.dom.minidom
+import zlib
 
 MAREY = ""
 SECONDS = 30
@@ -107,6 +112,61 @@ class Hostile(unittest.TestCase):
         self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{-5000 if i == 99 else i / 25:.2f},1,2,3\n" for i in range(100)))
         said = self.accepted("info", "match.csv").stdout.decode()
         self.assertIn("25 Hz", said)
+
+    # --- foreign bytes ---
+
+    def test_foreign_bytes_in_names(self):
+        head = b"frame,time,id,label,team,x,y\n"
+        row = b"%d,%.2f,%d,a\x01\xff<&,=1+1,%d,3\n"
+        self.write("match.csv", head + b"".join(row % (i, i / 25, k, i % 50 + k) for i in range(60) for k in (1, 2)))
+        said = self.accepted("measure", "match.csv", "--json").stdout
+        json.loads(said.decode())
+        for name in ("out.csv", "out.txt"):
+            self.accepted("convert", "match.csv", name)
+        csv = (self.folder / "out.csv").read_bytes().decode()
+        self.assertIn(",'=1+1,", csv)
+        self.assertNotIn("\x01", csv)
+
+    def test_a_film_with_a_foreign_byte_in_its_name(self):
+        name = os.fsencode(self.folder) + b"/f\xff<m>.txt"
+        with open(name, "wb") as file:
+            file.write(b"".join(b"%d,-1,%d,100,20,50,0.9\n" % (i, 100 + 2 * i) for i in range(1, 60)))
+        done = subprocess.run([MAREY, "track", name, "-o", "out.txt", "--plot", "out.svg"], capture_output=True, cwd=self.folder, timeout=SECONDS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        xml.dom.minidom.parse(str(self.folder / "out.svg"))
+
+    # --- size ---
+
+    def test_labels_and_tracks_without_end(self):
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            database.execute("UPDATE track SET label = ?", ("x" * 20_000_000,))
+        self.refused("info", take, words=["20000000 bytes", "label_bytes"])
+        take = self.take("b.marey")
+        with sqlite3.connect(take) as database:
+            names = [row[1] for row in database.execute("PRAGMA table_info(track)")]
+            values = ", ".join("n" if name == "id" else "''" if name == "label" else "0" for name in names)
+            database.execute(f"WITH RECURSIVE many(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM many LIMIT 200000) "
+                             f"INSERT INTO track ({', '.join(names)}) SELECT {values} FROM many")
+        self.refused("info", take, words=["100000 tracks"])
+
+    def test_a_crowd_beyond_reason(self):
+        self.write("tracks.txt", "".join(f"1,{i},{i % 100},{i // 100},20,50,1\n" for i in range(8000)))
+        self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=["pairs_a_frame"])
+
+    def test_a_picture_beyond_reason(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+        side = 30_000
+        body = zlib.compressobj(9)
+        rows = b"".join(body.compress(bytes(side + 1) * 100) for _ in range(side // 100)) + body.flush()
+        png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0)) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+        pictures = self.folder / "pictures"
+        pictures.mkdir()
+        for i in range(2):
+            (pictures / f"{i:03}.png").write_bytes(png)
+        self.refused("track", pictures, "-o", "out.txt", words=["picture_px"])
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/limits.h"
 #include "marey/core/text_safety.h"
 
 namespace marey::format::match {
@@ -15,6 +16,11 @@ constexpr double kFarthest = 1e5;  // m
 
 bool by_frame(const GroundBuilder::Row& a, const GroundBuilder::Row& b) {
   return a.frame < b.frame;
+}
+
+void require_short(const std::string& label, const std::string& name) {
+  if (label.size() <= Limits{}.label_bytes) return;
+  throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", name, label.size(), Limits{}.label_bytes);
 }
 
 /// Puts the frames of a person's rows, which are sorted, among those that are there already.
@@ -61,7 +67,12 @@ std::int32_t GroundBuilder::person(const std::string& key, int wanted, const std
 
 std::int32_t GroundBuilder::person(int id, const std::string& label, const std::string& team) {
   const auto [entry, is_new] = by_id_.try_emplace(id, static_cast<std::int32_t>(people_.size()));
-  if (is_new) people_.push_back({{TrackId{id}, {}, {}}, {}});
+  if (is_new) {
+    require_short(label, name_);
+    require_short(team, name_);
+    if (people_.size() == Limits{}.tracks) throw Error("{}: names more than {} people (the limit tracks)", name_, Limits{}.tracks);
+    people_.push_back({{TrackId{id}, {}, {}}, {}});
+  }
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].name;
   if (name.label.empty()) name.label = plain_text(label);
   if (name.team.empty()) name.team = plain_text(team);

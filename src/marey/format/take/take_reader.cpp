@@ -84,7 +84,8 @@ class TakeReader::Cursor {
         frames_(database_, options.observations
                                ? "SELECT frame, time_ns, points, observations FROM frame WHERE frame >= ? ORDER BY frame LIMIT ?"
                                : "SELECT frame, time_ns, points FROM frame WHERE frame >= ? ORDER BY frame LIMIT ?"),
-        with_observations_(options.observations) {
+        with_observations_(options.observations),
+        limits_(options.limits) {
     header_.name = text("name");
     header_.made_by = text("made_by");
     header_.recorded_at = text("recorded_at");
@@ -107,7 +108,14 @@ class TakeReader::Cursor {
     std::tie(summary.last_frame, summary.last_time) = end_of("DESC");
     Statement tracks(database_, "SELECT id, label, first_frame, last_frame, measured, filled, predicted FROM track ORDER BY id");
     while (tracks.step()) {
-      const TakeTrack track{TrackId(checked_id(tracks.integer(0), database_.path())), std::string(tracks.text(1))};
+      if (summary.tracks.size() == limits_.tracks)
+        throw Error("{}: has more than {} tracks (the limit tracks)", database_.path(), limits_.tracks);
+      const std::string_view label = tracks.text(1);
+      if (label.size() > limits_.label_bytes) {
+        throw Error("{}: the label of track {} has {} bytes; they have at most {} (the limit label_bytes)", database_.path(),
+                    tracks.integer(0), label.size(), limits_.label_bytes);
+      }
+      const TakeTrack track{TrackId(checked_id(tracks.integer(0), database_.path())), std::string(label)};
       summary.tracks.push_back(
           {track, tracks.integer(2), tracks.integer(3), tracks.integer(4), tracks.integer(5), tracks.integer(6)});
     }
@@ -210,6 +218,7 @@ class TakeReader::Cursor {
   int version_;
   Statement value_, frames_;
   bool with_observations_;
+  Limits limits_;
   TakeHeader header_;
   std::vector<TakeFrame> fetched_;
   std::size_t at_ = 0;
