@@ -14,6 +14,7 @@
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
 #include "marey/format/whole_file.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -127,6 +128,9 @@ cv::FileStorage opened(const std::string& text, const std::string& name) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const char first = begin == std::string::npos ? ' ' : text[begin];
   check_nesting(text, first == '{' ? Notation::json : first == '<' ? Notation::xml : Notation::yaml, name);
+  // OpenCV 4.6 reads beyond the end of XML that is cut off within a tag.
+  if (first == '<') parse_xml(text, name);
+  if (first == '{' && text[text.find_last_not_of(" \t\r\n")] != '}') refuse(name);
   cv::FileStorage file;
   if (begin == std::string::npos || !file.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY)) refuse(name);
   return file;

@@ -362,5 +362,27 @@ TEST(RigExchange, NoMessageShowsALibrarysInternals) {
   }
 }
 
+TEST(RigExchange, NumbersThatNoRigHoldsAreRefused) {
+  for (const char* number : {"1e308", "1e9", "-2e12"}) {
+    const std::string text =
+        std::string("<?xml version=\"1.0\"?><opencv_storage><camera_matrix type_id=\"opencv-matrix\"><rows>3</rows>") +
+        "<cols>3</cols><dt>d</dt><data>600. 0. " + number + " 0. 600. 240. 0. 0. 1.</data></camera_matrix></opencv_storage>";
+    EXPECT_THROW(parse_opencv_rig(text, "file.xml"), Error) << number;
+  }
+}
+
+TEST(RigExchange, OpenCvFilesThatAreCutOffAnywhereEndInOneSentence) {
+  const test::TemporaryFolder folder;
+  const std::string xml =
+      "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt>\n"
+      "<data>600. 0. 320. 0. 600. 240. 0. 0. 1.</data></camera_matrix>\n</opencv_storage>\n";
+  for (std::size_t size = 0; size + 1 < xml.size(); ++size)
+    EXPECT_THROW(parse_opencv_rig(xml.substr(0, size), "file.xml"), Error) << size;
+  write_opencv_rig(two_cameras(), folder / "a.json");
+  const std::string json = test::read_file(folder / "a.json");
+  for (std::size_t size = 0; size < json.size() - 2; size += 7)
+    EXPECT_THROW(parse_opencv_rig(json.substr(0, size), "file.json"), Error) << size;
+}
+
 }  // namespace
 }  // namespace marey::format::rig
