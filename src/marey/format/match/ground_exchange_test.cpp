@@ -364,7 +364,7 @@ TEST(GroundExchange, TheRateIsTheMedianStep) {
   std::string text = "frame,time,id,x,y\n";
   for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.4f},1,2,3\n", i, i == 99 ? -5000 : i / 25.0);
   write_file(folder / "m.csv", text);
-  EXPECT_DOUBLE_EQ(read_ground_any(folder / "m.csv").rate_hz, 25);
+  EXPECT_DOUBLE_EQ(read_ground_any(folder / "m.csv").recording.header.rate_hz, 25);
   std::string far = "1,1,-1,-1,-1,-1,1,5,0,0\n2,1,-1,-1,-1,-1,1,5,0,0\n999999999,1,-1,-1,-1,-1,1,5,0,0\n";
   try {
     parse_mot_world(far, "m.txt", 25);
@@ -377,8 +377,8 @@ TEST(GroundExchange, TheRateIsTheMedianStep) {
 
 TEST(GroundExchange, ForeignBytesInNamesMakeFilesThatCanBeRead) {
   GroundMatch match = made_up(4);
-  match.recording.people[0].label = "a\x01\x1B<b>&\"\xFF";
-  match.recording.people[1].label = "=1+1";
+  match.recording.set_name({TrackId{1}, "a\x01\x1B<b>&\"\xFF", "red"});
+  match.recording.set_name({TrackId{2}, "=1+1", "red"});
   for (const Case& one : kWritten) {
     const TemporaryFolder folder;
     write_ground_as(match, folder / one.name, one.format);
