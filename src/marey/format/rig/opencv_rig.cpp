@@ -211,7 +211,9 @@ Rig parse_opencv_rig(const std::string& text, const std::string& path) try {
   }
   check_imported(rig, path);
   return rig;
-} catch (const cv::Exception&) {
+} catch (const Error&) {
+  throw;
+} catch (const std::exception&) {  // cv::Exception, and what OpenCV's parser lets through: std::length_error
   refuse(path);
 }
 
