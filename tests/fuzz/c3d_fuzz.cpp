@@ -8,13 +8,9 @@
 #include "marey/core/error.h"
 #include "marey/format/motion/c3d.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
+using marey::fuzz::check;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -8,11 +8,11 @@
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/ground_file.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
+using marey::fuzz::check;
+
+namespace {
 
 marey::format::match::GroundMatch parse(unsigned which, std::string_view first, std::string_view second) {
   switch (which % 8) {

@@ -8,11 +8,11 @@
 #include "marey/core/error.h"
 #include "marey/format/tracks/mot.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
+using marey::fuzz::check;
+
+namespace {
 
 void read_and_write(std::string_view text, marey::format::tracks::MotKind kind) {
   marey::format::tracks::MotTable table;

@@ -10,11 +10,11 @@
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/motion/trc.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
+using marey::fuzz::check;
+
+namespace {
 
 void walk(marey::format::motion::MotionReader& reader) {
   check(reader.info().header.rate_hz > 0);

@@ -9,11 +9,11 @@
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
+using marey::fuzz::check;
+
+namespace {
 
 void check_message(std::string_view message) {
   while (!message.empty()) {

@@ -5,29 +5,15 @@
 #include <string>
 #include <string_view>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "marey/core/error.h"
 #include "marey/format/take/take_file.h"
 
-namespace {
+#include "fuzz.h"
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
-
-const std::string& memory_file(const std::uint8_t* data, std::size_t size) {
-  static const int file = memfd_create("take", 0);
-  static const std::string path = "/proc/self/fd/" + std::to_string(file);
-  check(ftruncate(file, 0) == 0 && pwrite(file, data, size, 0) == static_cast<ssize_t>(size));
-  return path;
-}
-
-}  // namespace
+using marey::fuzz::check;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string& path = memory_file(data, size);
+  const std::string& path = marey::fuzz::memory_file(marey::fuzz::text_of(data, size));
   try {
     marey::format::take::TakeReader reader(path);
     check(reader.header().rate_hz > 0);

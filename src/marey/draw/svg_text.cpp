@@ -1,25 +1,11 @@
 #include "marey/draw/svg_text.h"
 
+#include "marey/core/text_safety.h"
+
 namespace marey::draw {
 
 std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
+  return xml_escaped(text);
 }
 
 }  // namespace marey::draw

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "marey/core/labelled_box.h"
+#include "marey/core/limits.h"
 
 namespace marey::evaluate {
 
@@ -55,7 +56,8 @@ struct Evaluation {
 /// Judges tracks against the truth. Both are ordered by frame, and an id stands once a frame; `least_overlap`, in (0, 1], is the
 /// IoU from which CLEAR and identity scores let a box count as found. Two passes over the boxes, frame by frame; memory grows with
 /// the pairs of ids that ever overlap, not with the frames. Cost: truth × tracks of each frame, and an assignment where boxes
-/// crowd.
-Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap = 0.5);
+/// crowd. Throws Error where a frame is crowded beyond `limits`.
+Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap = 0.5,
+                    const Limits& limits = {});
 
 }  // namespace marey::evaluate

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/core/error.h"
+
 namespace marey::evaluate {
 namespace {
 
@@ -82,6 +84,22 @@ TEST(Evaluation, FramesThatDoNotMeet) {
   EXPECT_EQ(result.frames, 2);
   EXPECT_EQ(result.common_frames, 0);
   EXPECT_DOUBLE_EQ(*result.clear.mota, -1);
+}
+
+TEST(Evaluation, ACrowdBeyondTheLimitIsRefusedAndTheLimitCanBeRaised) {
+  std::vector<LabelledBox> boxes(50);
+  for (int i = 0; i < 50; ++i) {
+    boxes[static_cast<std::size_t>(i)].id = i;
+    boxes[static_cast<std::size_t>(i)].box = {20.0 * i, 0, 10, 10};
+  }
+  Limits limits;
+  limits.pairs_a_frame = 2499;
+  EXPECT_THROW(evaluate(boxes, boxes, 0.5, limits), Error);
+  limits.pairs_a_frame = 2500;
+  EXPECT_EQ(evaluate(boxes, boxes, 0.5, limits).clear.matches, 50);
+  std::vector<LabelledBox> many(8000);
+  for (int i = 0; i < 8000; ++i) many[static_cast<std::size_t>(i)] = {.id = i, .box = {0, 0, 10, 10}};
+  EXPECT_THROW(evaluate(many, many), Error);
 }
 
 }  // namespace

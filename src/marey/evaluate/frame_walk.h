@@ -8,6 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/error.h"
+#include "marey/core/limits.h"
+
 namespace marey::evaluate {
 
 /// One thing of one frame, under an id that stands once a frame.
@@ -63,13 +66,18 @@ class FramePairs {
 };
 
 /// Goes through truth and tracks together, one frame that either has at a time. Both are ordered by frame; `close` is
-/// Closeness(const Item& truth, const Item& track).
+/// Closeness(const Item& truth, const Item& track). Throws Error where a frame is crowded beyond `Limits::pairs_a_frame`.
 template <Labelled Item, typename Close>
 class FrameWalk : public FramePairs {
  public:
   FrameWalk(std::span<const Item> truth, std::span<const Item> tracks, const IdNumbers& objects, const IdNumbers& track_numbers,
-            Close close)
-      : truth_(truth), tracks_(tracks), objects_numbers_(objects), track_numbers_(track_numbers), close_(close) {}
+            Close close, const Limits& limits = {})
+      : truth_(truth),
+        tracks_(tracks),
+        objects_numbers_(objects),
+        track_numbers_(track_numbers),
+        close_(close),
+        most_pairs_(limits.pairs_a_frame) {}
 
   /// Steps to the next frame; false at the end.
   bool next() {
@@ -79,6 +87,7 @@ class FrameWalk : public FramePairs {
                                         next_track_ < tracks_.size() ? tracks_[next_track_].frame : never);
     rows_ = take_frame(truth_, next_true_, frame);
     columns_ = take_frame(tracks_, next_track_, frame);
+    if (!rows_.empty() && columns_.size() > most_pairs_ / rows_.size()) refuse(frame);
     fill();
     return true;
   }
@@ -92,6 +101,13 @@ class FrameWalk : public FramePairs {
     const std::size_t first = begin;
     while (begin < items.size() && items[begin].frame == frame) ++begin;
     return items.subspan(first, begin - first);
+  }
+
+  [[noreturn]] void refuse(std::int32_t frame) const {
+    throw Error(
+        "frame {} holds {} of the truth and {} that were tracked; at most {} pairs of one frame are compared (the limit "
+        "pairs_a_frame)",
+        frame + 1, rows_.size(), columns_.size(), most_pairs_);
   }
 
   void fill() {
@@ -114,6 +130,7 @@ class FrameWalk : public FramePairs {
   const IdNumbers& objects_numbers_;
   const IdNumbers& track_numbers_;
   Close close_;
+  std::size_t most_pairs_;
   std::size_t next_true_ = 0;
   std::size_t next_track_ = 0;
 };

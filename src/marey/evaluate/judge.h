@@ -28,7 +28,8 @@ void judge_identities(const PairTable& pairs, Judged& judged);
 /// Every score of tracks against truth, whatever is compared: `close` says how alike two things are, and those up to
 /// `most_distance` apart may match. `matched(walk, clear)` sees each frame once its matches are known.
 template <Labelled Item, typename Close, typename Matched>
-Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double most_distance, Close close, Matched matched) {
+Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double most_distance, Close close, Matched matched,
+             const Limits& limits = {}) {
   const IdNumbers objects(truth);
   const IdNumbers track_numbers(tracks);
   Judged judged;
@@ -41,7 +42,7 @@ Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double m
   PairTable pairs(objects.count());
   ClearCounter clear(objects.count(), track_numbers.count(), most_distance);
   HotaCounter hota(objects.count(), track_numbers.count(), pairs);
-  for (FrameWalk<Item, Close> frame(truth, tracks, objects, track_numbers, close); frame.next();) {
+  for (FrameWalk<Item, Close> frame(truth, tracks, objects, track_numbers, close, limits); frame.next();) {
     ++result.frames;
     if (frame.has_both()) ++result.common_frames;
     clear.add(frame);
@@ -50,7 +51,7 @@ Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double m
     hota.see(frame);
   }
   hota.align();
-  for (FrameWalk<Item, Close> frame(truth, tracks, objects, track_numbers, close); frame.next();) hota.match(frame);
+  for (FrameWalk<Item, Close> frame(truth, tracks, objects, track_numbers, close, limits); frame.next();) hota.match(frame);
 
   result.clear = clear.scores();
   judge_identities(pairs, judged);

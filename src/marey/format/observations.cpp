@@ -14,7 +14,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/rig/self_cal_folder.h"
+#include "marey/format/text_rows.h"
 
 namespace marey::format {
 namespace {
@@ -87,7 +89,7 @@ class Table {
       if (row.camera.empty()) fail("the camera's name is missing");
       const auto frame = number(field(1));
       if (!frame || *frame != std::floor(*frame) || *frame < 0 || *frame > kLastFrame)
-        fail(fmt::format("frame is \"{}\"; it must be a whole number from 0", field(1)));
+        fail(fmt::format("frame is {}; it must be a whole number from 0", shown(field(1))));
       row.frame = static_cast<std::int64_t>(*frame);
       row.pixel = {coordinate(2, row.seen), coordinate(3, row.seen)};
       if (columns_[4] && *columns_[4] < fields_.size()) row.marker = fields_[*columns_[4]];
@@ -113,7 +115,7 @@ class Table {
       return 0;
     }
     if (!value || !(std::abs(*value) < kFarthest))
-      fail(fmt::format("{} is \"{}\"; it must be a number of px", kNames[column], text.substr(0, 24)));
+      fail(fmt::format("{} is {}; it must be a number of px", kNames[column], shown(text)));
     return *value;
   }
 
@@ -129,11 +131,15 @@ class Table {
 bool sorted_by_frame(const std::string& path) {
   Table table(path);
   std::int64_t last = -1;
+  bool sorted = true;
+  FrameNumbers numbers;
   for (Row row; table.next(row);) {
-    if (row.frame < last) return false;
+    sorted &= row.frame >= last;
     last = row.frame;
+    numbers.add(row.frame);
   }
-  return true;
+  numbers.check(path);
+  return sorted;
 }
 
 void in_order(SeenFrame& frame) {
@@ -192,7 +198,7 @@ struct ObservationReader::Parts {
   void add(const Row& row, SeenFrame& frame) const {
     const auto camera = cameras.find(row.camera);
     if (camera == cameras.end())
-      table->fail(fmt::format("the rig has no camera \"{}\"; there are: {}", row.camera.substr(0, 40), camera_names));
+      table->fail(fmt::format("the rig has no camera {}; there are: {}", shown(row.camera), camera_names));
     frame.points.push_back({camera->second, row.pixel, std::string(row.marker)});
   }
 

@@ -166,5 +166,19 @@ TEST(SelfCalFolder, ReadsTheSetsOfLights) {
   EXPECT_EQ(points, 506u + 414 + 456 + 506 + 240);
 }
 
+TEST(Observations, OneWildFrameIsNamed) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.csv", "camera,frame,x,y\nleft,0,1,2\nleft,1,1,2\nleft,999999999,1,2\n");
+  Rig rig;
+  rig.cameras.emplace_back().name = "left";
+  try {
+    read_observations(folder / "a.csv", rig);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find("frames 0 to 999999999 are named, of which 3 are there"), std::string_view::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace marey::format

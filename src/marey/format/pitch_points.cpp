@@ -10,6 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format {
 namespace {
@@ -92,9 +93,7 @@ std::optional<std::vector<Vector<2>>> cvat_pixels(std::string_view text) {
 }
 
 PitchClicks parse_cvat(std::string_view text, const std::string& name) {
-  pugi::xml_document document;
-  const auto parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) throw Error("{}: this is no whole XML file: {} at byte {}", name, parsed.description(), parsed.offset);
+  const pugi::xml_document document = parse_xml(text, name);
   PitchClicks clicks;
   const auto images = document.select_nodes("//image");
   if (images.empty()) throw Error("{}: no <image> in it; export the task as \"CVAT for images\"", name);
@@ -103,10 +102,10 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
       const std::string_view kind = node.name(), label = node.attribute("label").value();
       if (kind != "points" && kind != "polyline") continue;
       const auto pixels = cvat_pixels(node.attribute("points").value());
-      if (!pixels) throw Error("{}: <{} label=\"{}\">: its points are no numbers", name, kind, label);
+      if (!pixels) throw Error("{}: <{} label={}>: its points are no numbers", name, kind, shown(label));
       if (kind == "points") {
         const auto ground = pair(label);
-        if (!ground) throw Error("{}: the label \"{}\" is no place on the pitch; it must read (x,y), in m", name, label);
+        if (!ground) throw Error("{}: the label {} is no place on the pitch; it must read (x,y), in m", name, shown(label));
         for (const Vector<2>& pixel : *pixels) clicks.points.push_back({*ground, pixel, std::string(label)});
         continue;
       }
@@ -114,7 +113,7 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
       const auto from = middle == std::string_view::npos ? std::nullopt : pair(label.substr(0, middle + 1));
       const auto to = middle == std::string_view::npos ? std::nullopt : pair(label.substr(middle + 2));
       if (!from || !to || (*from - *to).norm() < 1e-6)
-        throw Error("{}: the label \"{}\" is no line of the pitch; it must read (x,y)-(x,y), in m", name, label);
+        throw Error("{}: the label {} is no line of the pitch; it must read (x,y)-(x,y), in m", name, shown(label));
       clicks.lines.push_back({*from, *to, *pixels, std::string(label)});
     }
   }

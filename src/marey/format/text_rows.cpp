@@ -4,6 +4,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "marey/core/text_safety.h"
+
 namespace marey::format {
 namespace {
 
@@ -11,6 +13,13 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
+}
+
+/// What a spreadsheet would compute instead of showing it, behind any apostrophes.
+bool is_formula(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of('\'');
+  return begin != std::string_view::npos && std::string_view("=+-@").find(text[begin]) != std::string_view::npos &&
+         !number_of(text);
 }
 
 /// Where the field that begins the line ends.
@@ -59,23 +68,29 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 }
 
 std::string unquoted(std::string_view field) {
-  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return std::string(field);
   std::string text;
-  field = field.substr(1, field.size() - 2);
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    text += field[i];
-    if (field[i] == '"' && i + 1 < field.size() && field[i + 1] == '"') ++i;
+  if (field.size() < 2 || field.front() != '"' || field.back() != '"') {
+    text = field;
+  } else {
+    field = field.substr(1, field.size() - 2);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      text += field[i];
+      if (field[i] == '"' && i + 1 < field.size() && field[i + 1] == '"') ++i;
+    }
   }
+  if (text.starts_with('\'') && is_formula(text)) text.erase(0, 1);
   return text;
 }
 
 std::string quoted_field(const std::string& text) {
-  const bool plain = text.find_first_of(",;\"\t\r\n") == std::string::npos && trimmed(text).size() == text.size();
-  if (plain) return text;
+  std::string kept = plain_text(text);
+  if (is_formula(kept)) kept.insert(0, 1, '\'');
+  const bool plain = kept.find_first_of(",;\"") == std::string::npos && trimmed(kept).size() == kept.size();
+  if (plain) return kept;
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : kept) {
     if (c == '"') result += '"';
-    result += c == '\n' || c == '\r' ? ' ' : c;
+    result += c;
   }
   return result + '"';
 }

@@ -41,9 +41,10 @@ void for_each_line(std::string_view text, const std::string& name, Take&& take) 
 
 /// The line's fields, cut at `separator` but not within quotes; blanks round a field are taken off, its quotes are kept.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
-/// A field without its quotes (RFC 4180).
+/// A field without its quotes (RFC 4180), and without the apostrophe that `quoted_field` sets.
 std::string unquoted(std::string_view field);
-/// A text as a field: in quotes where it must be.
+/// A text as a field: plain text (core/text_safety.h), in quotes where it must be. A text that a spreadsheet would compute, for it
+/// begins with = + - or @ and is no number, gets an apostrophe before it, as spreadsheets themselves mark text.
 std::string quoted_field(const std::string& text);
 
 /// A finite number; nothing for what is none.

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
+#include "marey/format/nesting.h"
 
 namespace marey::format {
 namespace {
@@ -12,9 +14,19 @@ struct StringWriter : pugi::xml_writer {
   void write(const void* data, std::size_t size) override { text.append(static_cast<const char*>(data), size); }
 };
 
+/// XML knows no control characters, however they are written.
+struct PlainTexts : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& node) override {
+    if (node.type() == pugi::node_pcdata) node.set_value(plain_text(node.value()).c_str());
+    for (pugi::xml_attribute attribute : node.attributes()) attribute.set_value(plain_text(attribute.value()).c_str());
+    return true;
+  }
+};
+
 }  // namespace
 
 pugi::xml_document parse_xml(std::string_view text, const std::string& name) {
+  check_nesting(text, Notation::xml, name);
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
   if (result) return document;
@@ -25,7 +37,11 @@ pugi::xml_document parse_xml(std::string_view text, const std::string& name) {
 
 std::string to_text(const pugi::xml_document& document) {
   StringWriter writer;
-  document.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);
+  pugi::xml_document plain;
+  plain.reset(document);
+  PlainTexts texts;
+  plain.traverse(texts);
+  plain.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);
   return std::move(writer.text);
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/tracks/mot.h"
 
 namespace marey::pipeline {
@@ -125,8 +126,10 @@ struct Survey {
   bool probabilities = true;  ///< scores are within 0 and 1
   bool confident = false;     ///< one reaches kConfident
   std::vector<std::string> warnings;
+  FrameNumbers numbers;  ///< from 1, as in the file
 
   void add(const LabelledBox& box) {
+    numbers.add(box.frame + 1);
     in_order &= box.frame + 1 >= frames;
     frames = std::max<std::int64_t>(frames, box.frame + 1);
     probabilities &= box.score >= 0 && box.score <= 1;
@@ -141,6 +144,7 @@ Survey survey(const std::string& path) {
     for (const LabelledBox& box : *piece) found.add(box);
   }
   found.warnings = reader.warnings();
+  found.numbers.check(path);
   return found;
 }
 

@@ -18,6 +18,11 @@ class Corresponder::Impl {
         intersections_(frame_.all_cameras(), options.sigmas, triangulator_) {}
 
   const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
+    if (seen.size() > options_.most_observations) {
+      throw Error(
+          "the cameras see {} blobs at one instant; at most {} are matched (the limit observations): is the threshold too low?",
+          seen.size(), options_.most_observations);
+    }
     frame_.build(seen, options_.noise_px);
     groups_.clear(frame_);
     track_matches_.match(frame_, expected, groups_, result_.missed);

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/limits.h"
 #include "marey/core/observation.h"
 #include "marey/core/track.h"
 #include "marey/reconstruct/triangulate.h"
@@ -31,6 +32,7 @@ struct CorrespondOptions {
   double sigmas = 4;      ///< how far from each other, in standard deviations, rays may pass that are taken for partners
   int fewest_rays = 3;    ///< of a new point; 2: every pair of rays without another choice counts as one
   TriangulateOptions triangulate = {};
+  std::size_t most_observations = Limits{}.observations;  ///< of all cameras at one instant
 };
 
 /// A marker's place at one instant.
@@ -61,7 +63,7 @@ class Corresponder {
 
   /// Points from what all cameras saw at one instant (px; `camera` and `covariance` count) and where a tracker expects its targets
   /// then (m). Observations that are not finite are left out. Deterministic; allocates only where a frame is larger than all
-  /// before.
+  /// before. Throws Error where there are more than `most_observations`.
   const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected = {});
 
   /// From the next call on.

@@ -248,5 +248,13 @@ TEST(Correspond, TakesOddInput) {
   EXPECT_THROW(Corresponder(std::vector<Camera>{scene.cameras[0]}), Error);
 }
 
+TEST(Correspond, TooManyBlobsAtOneInstantAreRefused) {
+  CorrespondOptions options;
+  options.most_observations = 3;
+  const Camera camera(geometry::BrownLens{}, Rigid3{}, {640, 480});
+  Corresponder corresponder({camera, camera}, options);
+  EXPECT_THROW(corresponder.match(std::vector<Observation<2>>(4)), Error);
+}
+
 }  // namespace
 }  // namespace marey::reconstruct

@@ -3,9 +3,11 @@
 #include "marey/source/decoder.h"
 
 #include <cmath>
+#include <vector>
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
+#include "marey/core/limits.h"
 #include "marey/source/decoded_picture.h"
 
 extern "C" {
@@ -52,6 +54,15 @@ FormatPtr open_format(const std::string& path) {
   return FormatPtr(opened);
 }
 
+/// Which streams there are. It decodes their first pictures, within the limit.
+int find_streams(AVFormatContext& format) {
+  std::vector<AVDictionary*> options(format.nb_streams, nullptr);
+  for (AVDictionary*& each : options) av_dict_set_int(&each, "max_pixels", Limits{}.picture_px, 0);
+  const int code = avformat_find_stream_info(&format, options.data());
+  for (AVDictionary*& each : options) av_dict_free(&each);
+  return code;
+}
+
 }  // namespace
 
 struct Decoder::Parts {
@@ -74,7 +85,7 @@ struct Decoder::Parts {
 Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;
   p.format = open_format(path);
-  if (const int code = avformat_find_stream_info(p.format.get(), nullptr); code < 0) {
+  if (const int code = find_streams(*p.format); code < 0) {
     throw Error("{}: cannot be read as a video ({}); the file may be damaged", path, reason(code));
   }
   const AVCodec* codec = nullptr;
@@ -86,12 +97,19 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   p.codec->thread_count = threads;
+  p.codec->max_pixels = Limits{}.picture_px;  // of pictures that change their size on the way too
   if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
     throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));
   }
   p.coded_size = {p.codec->width, p.codec->height};
   if (p.coded_size.width <= 0 || p.coded_size.height <= 0) {
-    throw Error("{}: cannot be read as a video (its pictures have no size); give a video file or a folder of pictures", path);
+    throw Error("{}: cannot be read as a video (its pictures have no size, or more than {} px in all: the limit picture_px)", path,
+                Limits{}.picture_px);
+  }
+  const std::int64_t pixels = std::int64_t{p.coded_size.width} * p.coded_size.height;
+  if (pixels > Limits{}.picture_px) {
+    throw Error("{}: its pictures have {} x {} px, more than {} in all (the limit picture_px); make them smaller first", path,
+                p.coded_size.width, p.coded_size.height, Limits{}.picture_px);
   }
   p.turn = turn_of(*p.stream);
   p.maker.turn_by(p.turn);

@@ -10,7 +10,7 @@
 
 #include "marey/core/frame.h"
 
-namespace marey::test {
+namespace marey::detect::background::test {
 
 /// Someone of 20 × 56 px who stands at `x`, `foot` (left, bottom), casting a shadow to the right.
 struct Figure {
@@ -112,4 +112,4 @@ class SmallScene {
   std::int64_t filmed_ = 0;
 };
 
-}  // namespace marey::test
+}  // namespace marey::detect::background::test

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
+#include "marey/core/limits.h"
+#include "marey/core/text_safety.h"
 
 namespace marey::format::match {
 namespace {
@@ -19,6 +22,11 @@ Sample sample_of(const GroundBuilder::Row& row) {
   sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
   sample.cameras = row.cameras;
   return sample;
+}
+
+void require_short(const std::string& label, const std::string& name) {
+  if (label.size() <= Limits{}.label_bytes) return;
+  throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", name, label.size(), Limits{}.label_bytes);
 }
 
 /// Each frame once, in order.
@@ -51,10 +59,15 @@ std::int32_t GroundBuilder::person(const std::string& key, int wanted, const std
 
 std::int32_t GroundBuilder::person(int id, const std::string& label, const std::string& team) {
   const auto [entry, is_new] = by_id_.try_emplace(id, static_cast<std::int32_t>(people_.size()));
-  if (is_new) people_.push_back({TrackColumns({TrackId{id}, {}, {}}, 2), {}});
+  if (is_new) {
+    require_short(label, name_);
+    require_short(team, name_);
+    if (people_.size() == Limits{}.tracks) throw Error("{}: names more than {} people (the limit tracks)", name_, Limits{}.tracks);
+    people_.push_back({TrackColumns({TrackId{id}, {}, {}}, 2), {}});
+  }
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].rows.name;
-  if (name.label.empty()) name.label = label;
-  if (name.team.empty()) name.team = team;
+  if (name.label.empty()) name.label = plain_text(label);
+  if (name.team.empty()) name.team = plain_text(team);
   return entry->second;
 }
 
@@ -122,6 +135,9 @@ std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
   }
   require_once();
   match::put_in_order(moments_);
+  FrameNumbers numbers;
+  for (const Recording::Moment& moment : moments_) numbers.add(moment.index);
+  numbers.check(name_);
   for (const Recording::Moment& moment : moments_) recording.add_moment(moment);
   for (const auto& [id, index] : by_id_) {
     TrackColumns& rows = people_[static_cast<std::size_t>(index)].rows;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 
 #include "support/data.h"
 #include "support/files.h"
@@ -335,6 +336,63 @@ TEST(GroundExchange, FilesOfVendors) {
   const GroundMatch pets = read_ground_any(test::data("pets2009/gt_001_300.txt"));
   EXPECT_EQ(pets.order.front(), TrackId{9}) << "people are listed as the file names them";
   EXPECT_LT((pets.recording.find(TrackId{9})->place(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
+}
+
+TEST(GroundExchange, DeepFilesAreRefusedAndNoMessageShowsALibrarysInternals) {
+  const auto said = [](auto parse) -> std::string {
+    try {
+      parse();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  std::string lists = "{\"predictions\": ", elements;
+  for (int i = 0; i < 200'000; ++i) lists += '[', elements += "<a>";
+  EXPECT_NE(said([&] { parse_soccernet(lists, "m.json", {}); }).find("m.json:1: is nested more than"), std::string::npos);
+  EXPECT_NE(said([&] { parse_sportec(elements, "m.xml", {}, {}); }).find("m.xml:1: is nested more than"), std::string::npos);
+  EXPECT_NE(said([&] { parse_epts("1:1:1,1,1:\n", "m.txt", elements, "m.xml"); }).find("m.xml:1: is nested more than"),
+            std::string::npos);
+  for (const char* text : {"{\"predictions\": [", "\xff\xfe", "[1, 2}", "{\"predictions\": [1e999999]}"}) {
+    const std::string message = said([&] { parse_soccernet(text, "m.json", {}); });
+    EXPECT_TRUE(message.starts_with("m.json")) << message;
+    EXPECT_EQ(message.find("exception"), std::string::npos) << message;
+    EXPECT_EQ(message.find("syntax error"), std::string::npos) << message;
+  }
+}
+
+TEST(GroundExchange, TheRateIsTheMedianStep) {
+  const TemporaryFolder folder;
+  std::string text = "frame,time,id,x,y\n";
+  for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.4f},1,2,3\n", i, i == 99 ? -5000 : i / 25.0);
+  write_file(folder / "m.csv", text);
+  EXPECT_DOUBLE_EQ(read_ground_any(folder / "m.csv").recording.header.rate_hz, 25);
+  std::string far = "1,1,-1,-1,-1,-1,1,5,0,0\n2,1,-1,-1,-1,-1,1,5,0,0\n999999999,1,-1,-1,-1,-1,1,5,0,0\n";
+  try {
+    parse_mot_world(far, "m.txt", 25);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find("of which 3 are there; a number must be wrong"), std::string_view::npos)
+        << error.what();
+  }
+}
+
+TEST(GroundExchange, ForeignBytesInNamesMakeFilesThatCanBeRead) {
+  GroundMatch match = made_up(4);
+  match.recording.set_name({TrackId{1}, "a\x01\x1B<b>&\"\xFF", "red"});
+  match.recording.set_name({TrackId{2}, "=1+1", "red"});
+  for (const Case& one : kWritten) {
+    const TemporaryFolder folder;
+    write_ground_as(match, folder / one.name, one.format);
+    EXPECT_NO_THROW(read_ground_as(folder / one.name, one.format)) << one.name;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+      const std::string text = read_file(entry.path().string());
+      EXPECT_EQ(plain_text(text).find("\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"), std::string::npos);
+      for (const char c : text)
+        EXPECT_TRUE(static_cast<unsigned char>(c) >= ' ' || c == '\n' || c == '\r' || c == '\t') << entry.path();
+      EXPECT_EQ(text.find("&#"), std::string::npos) << entry.path() << ": a control character by number";
+    }
+  }
 }
 
 }  // namespace

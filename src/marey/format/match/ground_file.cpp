@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/read_file.h"
@@ -113,7 +114,7 @@ class Reader {
 
   std::string text(Column column) const {
     const auto found = field(column);
-    return found ? unquoted(*found) : std::string();
+    return found ? plain_text(unquoted(*found)) : std::string();
   }
 
   void add() {

@@ -168,5 +168,14 @@ TEST(GroundFile, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(message("frame,time,id,x,y\n"), "") << "nobody is no error";
 }
 
+TEST(GroundFile, OneWildFrameIsNamed) {
+  try {
+    parse_ground("frame,id,x,y\n0,1,2,3\n1,1,2,3\n999999999,1,2,3\n", "m.csv");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "m.csv: frames 0 to 999999999 are named, of which 3 are there; a number must be wrong");
+  }
+}
+
 }  // namespace
 }  // namespace marey::format::match

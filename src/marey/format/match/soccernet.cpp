@@ -2,6 +2,7 @@
 // to the right and y downwards. The truth lists them as "annotations" (the file is named Labels-GameState.json), a tracker's result
 // as "predictions"; both are read, and the name decides which is written. The last six digits of an image_id count pictures from 1.
 // Teams are "left" and "right", shirts' numbers are strings or null.
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
+#include "marey/format/nesting.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::match {
@@ -34,6 +36,7 @@ class Reader {
   }
 
   GroundMatch read(std::string_view text) {
+    check_nesting(text, Notation::json, name_);
     const json root = json::parse(text);
     if (!root.is_object()) throw Error("{}: is no game state of SoccerNet: it must be an object", name_);
     if (const auto info = root.find("info"); info != root.end() && info->is_object()) {
@@ -139,9 +142,11 @@ GroundMatch parse_soccernet(std::string_view text, const std::string& name, cons
   try {
     return Reader(name, options).read(text);
   } catch (const json::exception& error) {
-    std::string what = error.what();
-    for (char& c : what) c = c < ' ' || c > '~' ? '?' : c;
-    throw Error("{}: is no JSON ({})", name, what);
+    const auto* broken = dynamic_cast<const json::parse_error*>(&error);
+    if (broken == nullptr)
+      throw Error("{}: holds something else than SoccerNet's game state where a number or a text is wanted", name);
+    const auto read = text.substr(0, broken->byte);
+    throw Error("{}:{}: is no JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/text_rows.h"
@@ -76,12 +77,14 @@ class Reader {
   }
 
   void learn_rate(const pugi::xml_node& set) {
-    const pugi::xml_node first = set.child("Frame"), last = set.last_child();
-    const auto begin = seconds_of_day(first.attribute("T").as_string()), end = seconds_of_day(last.attribute("T").as_string());
-    if (rate_known_ || !begin || !end || !(*end > *begin)) return;
-    const double rate = (number(last, "N", 0, 1e9) - number(first, "N", 0, 1e9)) / (*end - *begin);
-    if (rate < 0.1 || rate > 10'000) return;
-    match_.recording.header.rate_hz = std::round(rate * 100) / 100;
+    if (rate_known_) return;
+    FrameNumbers numbers;
+    for (const pugi::xml_node frame : set.children("Frame")) {
+      numbers.add(static_cast<std::int64_t>(number(frame, "N", 0, 1e9)), seconds_of_day(frame.attribute("T").as_string()));
+    }
+    const auto rate = numbers.rate_hz();
+    if (!rate || *rate < 0.1 || *rate > 10'000) return;
+    match_.recording.header.rate_hz = std::round(*rate * 100) / 100;
     rate_known_ = true;
   }
 

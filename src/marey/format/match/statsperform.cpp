@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/text_rows.h"
@@ -56,21 +57,19 @@ class Reader {
   void learn_rate(std::string_view text) {
     TextLines lines(text);
     std::string_view line;
-    std::optional<double> first;
+    FrameNumbers numbers;
+    std::int64_t count = 0;
     match_.recording.header.rate_hz = 10;
     while (lines.next(line)) {
       if (line.empty()) continue;
       const Head head = head_of(line, fmt::format("{}:{}", name_, lines.number()));
-      if (!first) {
-        first = start_ms_ = head.ms;
-        continue;
-      }
-      const double step = head.ms - *first;
-      if (!(step >= 1 && step <= 10'000))
-        throw Error("{}: its first two instants are {:g} ms apart, which makes no rate", name_, step);
-      match_.recording.header.rate_hz = 1000 / step;
-      return;
+      if (count == 0) start_ms_ = head.ms;
+      numbers.add(count++, head.ms / 1000);
     }
+    if (count < 2) return;
+    const auto rate = numbers.rate_hz();
+    if (!rate || !(*rate >= 0.1 && *rate <= 1000)) throw Error("{}: its instants' times do not go on, which makes no rate", name_);
+    match_.recording.header.rate_hz = std::round(*rate * 1000) / 1000;
   }
 
   void read_line(std::string_view line) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/motion/c3d.h"
 
@@ -144,7 +145,7 @@ class C3dWriter : public MotionWriter {
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const TakeTrack& track : plan_.info.tracks) {
-      names.push_back(track.label.empty() ? fmt::format("*{}", number(track.id)) : track.label.substr(0, kLongestName));
+      names.push_back(track.label.empty() ? fmt::format("*{}", number(track.id)) : plain_text(track.label).substr(0, kLongestName));
     }
     return names;
   }

@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
+#include "marey/format/text_rows.h"
 
 namespace marey::format::motion {
 namespace {
@@ -40,7 +42,7 @@ Vector<3> place_in(const std::vector<std::string_view>& cells, const std::string
   Vector<3> place;
   for (int axis = 0; axis < 3; ++axis) {
     const auto value = number_in(cells[static_cast<std::size_t>(axis) + 1]);
-    if (!value) throw Error("{}:{}: \"{}\" is no length in m", path, line, cells[static_cast<std::size_t>(axis) + 1]);
+    if (!value) throw Error("{}:{}: {} is no length in m", path, line, shown(cells[static_cast<std::size_t>(axis) + 1]));
     place[axis] = *value;
   }
   return place;
@@ -65,10 +67,10 @@ MarkerSet read_marker_set(const std::string& path) {
       continue;
     }
     if (with_places) set.places.push_back(place_in(cells, path, number));
-    const std::string label(with_places ? cells.front() : text);
+    const std::string label = plain_text(with_places ? cells.front() : text);
     if (label.empty()) throw Error("{}:{}: a marker without a name; give it one", path, number);
     if (!known.insert(label).second)
-      throw Error("{}:{}: the name \"{}\" occurs twice; every marker needs its own", path, number, label);
+      throw Error("{}:{}: the name {} occurs twice; every marker needs its own", path, number, shown(label));
     set.labels.push_back(label);
   }
   if (set.labels.empty()) throw Error("{}: holds no name; write one a line, or CSV with the header label,x,y,z", path);

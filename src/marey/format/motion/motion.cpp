@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/motion/c3d.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/motion/trc.h"
@@ -20,7 +21,6 @@ namespace marey::format::motion {
 namespace {
 
 constexpr std::size_t kLookedAt = 4096;
-constexpr std::int64_t kMostMissing = 10'000'000;
 
 struct NamedFormat {
   MotionFormat format;
@@ -156,19 +156,17 @@ std::string beginning_of(const std::string& path) {
 MotionPlan plan_of(MotionReader& reader, const std::string& name) {
   MotionPlan plan;
   plan.info = reader.info();
-  std::int64_t frames = 0;
+  FrameNumbers numbers;
   while (const auto frame = reader.next()) {
-    if (frames++ == 0) plan.first_frame = frame->index;
+    if (numbers.count() == 0) plan.first_frame = frame->index;
+    numbers.add(frame->index);
     plan.last_frame = frame->index;
     for (const TakePoint& point : frame->points) {
       plan.farthest_m = std::max(plan.farthest_m, point.position.cwiseAbs().maxCoeff());
       plan.tells_measured |= point.provenance != Provenance::measured || point.cameras != 0 || point.residual_m.has_value();
     }
   }
-  if (frames > 0 && plan.last_frame - plan.first_frame - frames > kMostMissing) {
-    throw Error("{}: frames {} to {} are named, of which {} are there; a number must be wrong", name, plan.first_frame,
-                plan.last_frame, frames);
-  }
+  numbers.check(name);
   plan.info.frame_count = plan.last_frame - plan.first_frame + 1;
   return plan;
 }

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/motion_csv.h"
@@ -125,11 +127,11 @@ class TidyReader : public MotionReader {
       if (value < 1 || value > 2e9 || value != std::floor(value))
         fail(fmt::format("id is {}; ids are whole numbers from 1", value));
       const TrackId found{static_cast<int>(value)};
-      labels_.try_emplace(found, unquoted(field(label)));
+      labels_.try_emplace(found, plain_text(unquoted(field(label))));
       return found;
     }
     const auto [entry, is_new] = ids_.try_emplace(unquoted(field(label)), TrackId(static_cast<int>(ids_.size()) + 1));
-    if (is_new) labels_[entry->second] = entry->first;
+    if (is_new) labels_[entry->second] = plain_text(entry->first);
     return entry->second;
   }
 
@@ -166,25 +168,20 @@ class TidyReader : public MotionReader {
 
   /// The first reading: tracks, rate, order.
   void look_over() {
-    struct End {
-      std::int64_t index = 0;
-      double time = 0;
-    };
-    std::optional<End> first, last;
+    std::optional<std::int64_t> first, last;
     bool in_order = true;
+    FrameNumbers numbers;
     while (next_row()) {
       const std::int64_t index = frame_index();
       track_of_row();
-      if (last && index < last->index) in_order = false;
-      const End here{index, number_if_any(time).value_or(0)};
-      if (!first || index < first->index) first = here;
-      if (!last || index > last->index) last = here;
+      if (last && index < *last) in_order = false;
+      numbers.add(index, number_if_any(time));
+      first = std::min(first.value_or(index), index);
+      last = std::max(last.value_or(index), index);
     }
-    info_.header.rate_hz = 100;
-    if (first && last->index > first->index && last->time > first->time) {
-      info_.header.rate_hz = plain(static_cast<double>(last->index - first->index) / (last->time - first->time));
-    }
-    if (first) info_.frame_count = last->index - first->index + 1;
+    numbers.check(name_);
+    info_.header.rate_hz = plain(numbers.rate_hz().value_or(100));
+    if (first) info_.frame_count = *last - *first + 1;
     for (const auto& [track, text] : labels_) info_.tracks.push_back({track, text});
     if (!in_order) sort_rows();
   }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/motion/length_unit.h"
 #include "marey/format/motion/wide_table.h"
@@ -128,6 +129,7 @@ class TrcWriter : public MotionWriter {
  private:
   /// Readers cut at tabs, and some at blanks too.
   static std::string one_word(std::string label) {
+    label = plain_text(label);
     for (char& c : label) {
       if (c == '\t' || c == '\n' || c == '\r') c = ' ';
     }

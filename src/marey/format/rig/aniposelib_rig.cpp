@@ -10,8 +10,10 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/rig_section.h"
 
 namespace marey::format::rig {
 namespace {
@@ -175,18 +177,22 @@ std::string camera_text(const RigCamera& camera, std::size_t index) {
 
 }  // namespace
 
-Rig read_aniposelib_rig(const std::string& path) {
-  const std::string text = read_file(path);
+Rig parse_aniposelib_rig(std::string_view text, const std::string& path) {
+  check_nesting(text, Notation::toml, path);
   Rig rig;
   try {
     const toml::table file = toml::parse(text, path);
     add_tables(file, path, "", rig);
   } catch (const toml::parse_error& error) {
-    throw Error("{}:{}: {}", path, std::max<unsigned>(1, error.source().begin.line), error.description());
+    throw Error("{}:{}: {}", path, std::max<unsigned>(1, error.source().begin.line), shown(error.description(), 200));
   }
   to_metres(rig);
   check_imported(rig, path);
   return rig;
+}
+
+Rig read_aniposelib_rig(const std::string& path) {
+  return parse_aniposelib_rig(read_file(path), path);
 }
 
 void write_aniposelib_rig(const Rig& rig, const std::string& path) {

@@ -11,7 +11,10 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/nesting.h"
+#include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -29,13 +32,12 @@ cv::FileNode child(const cv::FileNode& node, Names names) {
 /// Numbers, whether a matrix or a list of numbers (of lists).
 std::optional<std::vector<double>> numbers(const cv::FileNode& node) {
   std::vector<double> values;
-  if (node.isMap()) {
-    cv::Mat matrix;
-    node >> matrix;
-    if (matrix.channels() != 1 || matrix.empty()) return std::nullopt;
-    matrix.convertTo(matrix, CV_64F);
-    for (int i = 0; i < matrix.rows; ++i) values.insert(values.end(), matrix.ptr<double>(i), matrix.ptr<double>(i) + matrix.cols);
-    return values;
+  if (node.isMap()) {  // rows, cols, dt and data; OpenCV itself would make room for rows x cols before it looks how many there are
+    const cv::FileNode rows = node["rows"], cols = node["cols"], data = node["data"];
+    if (!rows.isInt() || !cols.isInt() || !data.isSeq()) return std::nullopt;
+    values = numbers(data).value_or(values);
+    const bool whole = std::ssize(values) == static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(cols);
+    return whole && !values.empty() ? std::optional(values) : std::nullopt;
   }
   if (!node.isSeq()) return std::nullopt;
   for (const cv::FileNode& each : node) {
@@ -118,9 +120,19 @@ RigCamera camera_at(const cv::FileNode& node, const std::string& path) {
   return camera;
 }
 
-cv::FileStorage opened(const std::string& path) {
+[[noreturn]] void refuse(const std::string& name) {
+  throw Error("{}: OpenCV cannot read this file; it is no YAML, JSON or XML of OpenCV's, or is cut off", name);
+}
+
+cv::FileStorage opened(const std::string& text, const std::string& name) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const char first = begin == std::string::npos ? ' ' : text[begin];
+  check_nesting(text, first == '{' ? Notation::json : first == '<' ? Notation::xml : Notation::yaml, name);
+  // OpenCV 4.6 reads beyond the end of XML that is cut off within a tag.
+  if (first == '<') parse_xml(text, name);
+  if (first == '{' && text[text.find_last_not_of(" \t\r\n")] != '}') refuse(name);
   cv::FileStorage file;
-  if (!file.open(path, cv::FileStorage::READ)) throw Error("{}: OpenCV cannot read this file", path);
+  if (begin == std::string::npos || !file.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY)) refuse(name);
   return file;
 }
 
@@ -140,7 +152,7 @@ Rig stereo(const cv::FileStorage& file, const std::string& path) {
   cv::FileNode poses = root;
   if (child(root, {"R"}).empty()) {
     const auto name = std::filesystem::path(path).parent_path() / ("extrinsics" + std::filesystem::path(path).extension().string());
-    if (std::filesystem::exists(name)) poses = beside.emplace(opened(name.string())).root();
+    if (std::filesystem::exists(name)) poses = beside.emplace(opened(read_file(name.string()), name.string())).root();
   }
   if (child(poses, {"R"}).empty() || child(poses, {"T"}).empty()) return rig;
   const auto t = as_many(child(poses, {"T"}), 3, path, "T");
@@ -186,8 +198,8 @@ void write_camera(cv::FileStorage& file, const RigCamera& camera) {
 
 }  // namespace
 
-Rig read_opencv_rig(const std::string& path) try {
-  const cv::FileStorage file = opened(path);
+Rig parse_opencv_rig(const std::string& text, const std::string& path) try {
+  const cv::FileStorage file = opened(text, path);
   const cv::FileNode root = file.root();
   Rig rig;
   if (const cv::FileNode cameras = child(root, {"cameras"}); cameras.isSeq()) {
@@ -200,8 +212,14 @@ Rig read_opencv_rig(const std::string& path) try {
   }
   check_imported(rig, path);
   return rig;
-} catch (const cv::Exception& error) {
-  throw Error("{}: OpenCV cannot read this file ({})", path, error.err);
+} catch (const Error&) {
+  throw;
+} catch (const std::exception&) {  // cv::Exception, and what OpenCV's parser lets through: std::length_error
+  refuse(path);
+}
+
+Rig read_opencv_rig(const std::string& path) {
+  return parse_opencv_rig(read_file(path), path);
 }
 
 void write_opencv_rig(const Rig& rig, const std::string& path) {

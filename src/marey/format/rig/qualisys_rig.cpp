@@ -5,7 +5,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -109,17 +111,10 @@ void add_camera(pugi::xml_node cameras, const RigCamera& camera) {
   set(in, "tangentalDistortion2", lens.distortion[3]);
 }
 
-struct TextWriter : pugi::xml_writer {
-  std::string text;
-  void write(const void* data, std::size_t size) override { text.append(static_cast<const char*>(data), size); }
-};
-
 }  // namespace
 
-Rig read_qualisys_rig(const std::string& path) {
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_file(path.c_str());
-  if (!parsed) throw Error("{}: this XML cannot be read ({}, at byte {})", path, parsed.description(), parsed.offset);
+Rig parse_qualisys_rig(std::string_view text, const std::string& path) {
+  const pugi::xml_document document = parse_xml(text, path);
   Rig rig;
   rig.calibration.emplace().method = "Qualisys";
   for (const pugi::xml_node& node : document.child("calibration").child("cameras").children("camera")) {
@@ -130,6 +125,10 @@ Rig read_qualisys_rig(const std::string& path) {
   return rig;
 }
 
+Rig read_qualisys_rig(const std::string& path) {
+  return parse_qualisys_rig(read_file(path), path);
+}
+
 void write_qualisys_rig(const Rig& rig, const std::string& path) {
   pugi::xml_document document;
   pugi::xml_node root = document.append_child("calibration");
@@ -137,10 +136,8 @@ void write_qualisys_rig(const Rig& rig, const std::string& path) {
   root.append_attribute("source").set_value("marey");
   pugi::xml_node cameras = root.append_child("cameras");
   for (const RigCamera& camera : rig.cameras) add_camera(cameras, camera);
-  TextWriter writer;
-  document.save(writer, "  ");
   WholeFile file(path);
-  file.write(writer.text);
+  file.write(to_text(document));
   file.finish();
 }
 

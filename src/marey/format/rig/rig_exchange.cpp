@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/geometry/decompositions.h"
@@ -32,6 +33,12 @@ constexpr std::array<NamedFormat, 6> kFormats{{{"marey", RigFormat::marey},
 
 constexpr double kNearEnough = 0.05;  // px RMS, of a lens that stands for another
 
+constexpr double kLargest = 1e9;  // of any number in a rig
+
+bool is_sound(double value) {
+  return std::abs(value) < kLargest;
+}
+
 bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -43,6 +50,7 @@ std::optional<Vector<3>> bearing(const geometry::Lens& lens, cv::Size size, cons
 
 /// A name that is fit for a rig: no / \ , = " and no control characters.
 std::string fit_name(std::string name) {
+  name = plain_text(name);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || has("/\\,=\"", {&c, 1})) c = '_';
   }
@@ -164,19 +172,17 @@ void check_imported(Rig& rig, const std::string& path) {
       if (!(focal > 0) || !(geometry::focal_of(*camera.lens).maxCoeff() < 1e9)) {
         throw Error("{}: camera \"{}\": focal length is {}; it must be positive", path, camera.name, focal);
       }
-      const bool finite =
-          geometry::principal_of(*camera.lens).allFinite() &&
-          std::visit(
-              [](const auto& lens) {
-                return std::all_of(lens.distortion.begin(), lens.distortion.end(), [](double k) { return std::isfinite(k); });
-              },
-              *camera.lens);
-      if (!finite) throw Error("{}: camera \"{}\": its lens has numbers that are not finite", path, camera.name);
+      const bool sound =
+          (geometry::principal_of(*camera.lens).array().abs() < kLargest).all() &&
+          std::visit([](const auto& lens) { return std::all_of(lens.distortion.begin(), lens.distortion.end(), is_sound); },
+                     *camera.lens);
+      if (!sound) throw Error("{}: camera \"{}\": its lens has numbers that are not finite, or beyond 1e9", path, camera.name);
     }
+    if (camera.rms_px && !is_sound(*camera.rms_px)) camera.rms_px.reset();
     if (!camera.camera_from_world) continue;
     check_rotation(camera.camera_from_world->rotation, path, camera.name);
-    if (!camera.camera_from_world->translation.allFinite())
-      throw Error("{}: camera \"{}\": its place is not finite", path, camera.name);
+    if (!(camera.camera_from_world->translation.array().abs() < kLargest).all())
+      throw Error("{}: camera \"{}\": its place is not finite, or beyond 1e9 m", path, camera.name);
   }
 }
 

@@ -42,6 +42,11 @@ Rig read_aniposelib_rig(const std::string& path);
 Rig read_self_cal_rig(const std::string& path);
 Rig read_qualisys_rig(const std::string& path);
 Rig read_tsai_rig(const std::string& path);
+// The same of text already in memory; `name` stands for the path in messages.
+Rig parse_opencv_rig(const std::string& text, const std::string& name);
+Rig parse_aniposelib_rig(std::string_view text, const std::string& name);
+Rig parse_qualisys_rig(std::string_view text, const std::string& name);
+Rig parse_tsai_rig(std::string_view text, const std::string& name);
 void write_opencv_rig(const Rig& rig, const std::string& path);
 void write_aniposelib_rig(const Rig& rig, const std::string& path);
 void write_self_cal_rig(const Rig& rig, const std::string& path);

@@ -296,5 +296,70 @@ TEST(SelfCalRig, MatricesAndLensesAreOneLens) {
   EXPECT_LT(median_error(folder.path(), true), 0.56) << "px, where its own matrices leave 0.26";
 }
 
+std::string times(std::string_view text, int count) {
+  std::string result;
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
+  constexpr int kMany = 200'000;
+  const auto refused = [](auto parse, const std::string& text) {
+    try {
+      parse(text, "file");
+    } catch (const Error& error) {
+      return std::string_view(error.what()).find("nested more than") != std::string_view::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\na: " + times("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\n" + times("- ", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "{\"a\": " + times("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "<?xml version=\"1.0\"?>\n<opencv_storage>" + times("<a>", kMany)));
+  EXPECT_TRUE(refused(parse_aniposelib_rig, "[cam_0]\nmatrix" + times(".a", kMany) + " = 1"));
+  EXPECT_TRUE(refused(parse_qualisys_rig, times("<calibration>", kMany)));
+  EXPECT_TRUE(refused(parse_tsai_rig, times("<Camera>", kMany)));
+}
+
+TEST(RigExchange, NoMessageShowsALibrarysInternals) {
+  const std::string head = "%YAML:1.0\n---\n",
+                    matrix = "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 1., 2. ]\n";
+  for (const std::string& text :
+       {head + matrix, std::string("%YAML:1.0\n---\na: [ 1, }\n"), head + "cameras:\n   - { camera_matrix: 1 }\n",
+        std::string("{ \"camera_matrix\": { \"type_id\": \"opencv-matrix\" "), std::string()}) {
+    try {
+      parse_opencv_rig(text, "file.yml");
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      const std::string said = error.what();
+      EXPECT_TRUE(said.starts_with("file.yml: ")) << said;
+      for (const char* internal : {"nelems", "cv::", "OpenCV(", ".cpp", "persistence", "=="})
+        EXPECT_EQ(said.find(internal), std::string::npos) << said;
+    }
+  }
+}
+
+TEST(RigExchange, NumbersThatNoRigHoldsAreRefused) {
+  for (const char* number : {"1e308", "1e9", "-2e12"}) {
+    const std::string text =
+        std::string("<?xml version=\"1.0\"?><opencv_storage><camera_matrix type_id=\"opencv-matrix\"><rows>3</rows>") +
+        "<cols>3</cols><dt>d</dt><data>600. 0. " + number + " 0. 600. 240. 0. 0. 1.</data></camera_matrix></opencv_storage>";
+    EXPECT_THROW(parse_opencv_rig(text, "file.xml"), Error) << number;
+  }
+}
+
+TEST(RigExchange, OpenCvFilesThatAreCutOffAnywhereEndInOneSentence) {
+  const test::TemporaryFolder folder;
+  const std::string xml =
+      "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt>\n"
+      "<data>600. 0. 320. 0. 600. 240. 0. 0. 1.</data></camera_matrix>\n</opencv_storage>\n";
+  for (std::size_t size = 0; size + 1 < xml.size(); ++size)
+    EXPECT_THROW(parse_opencv_rig(xml.substr(0, size), "file.xml"), Error) << size;
+  write_opencv_rig(two_cameras(), folder / "a.json");
+  const std::string json = test::read_file(folder / "a.json");
+  for (std::size_t size = 0; size < json.size() - 2; size += 7)
+    EXPECT_THROW(parse_opencv_rig(json.substr(0, size), "file.json"), Error) << size;
+}
+
 }  // namespace
 }  // namespace marey::format::rig

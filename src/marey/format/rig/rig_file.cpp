@@ -13,6 +13,7 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
+#include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_section.h"
 
@@ -201,6 +202,7 @@ void read_cameras(const toml::node& node, const std::string& folder, Problems& p
 }  // namespace
 
 Rig parse_rig(std::string_view text, const std::string& name, const std::string& folder) {
+  check_nesting(text, Notation::toml, name);
   toml::table file;
   try {
     file = toml::parse(text, name);

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/text_rows.h"
 
 namespace marey::format::rig {
 namespace {
@@ -39,7 +40,7 @@ std::vector<double> numbers_of(std::string_view line, const std::string& path, i
     if (*at == '+') ++at;
     double value = 0;
     const auto [stop, failed] = std::from_chars(at, end, value);
-    if (failed != std::errc()) throw Error("{}:{}: \"{}\" is no number", path, number, std::string(at, std::min(at + 12, end)));
+    if (failed != std::errc()) throw Error("{}:{}: {} is no number", path, number, format::shown({at, end}));
     values.push_back(value);
     at = stop;
   }
@@ -114,6 +115,7 @@ SelfCalFolder::SelfCalFolder(std::string path) : path_(std::move(path)) {
       ++cameras_;
     }
   }
+  if (cameras_ > kMostCameras) throw Error("{}: {} cameras; a folder has at most {}", path_, cameras_, kMostCameras);
   if (cameras_ == 0) {
     throw Error(
         "{}: this is no MultiCamSelfCal folder: there is no points.dat, camN.points4cal.dat, cameraN.Pmat.cal or Pmatrices.dat in "

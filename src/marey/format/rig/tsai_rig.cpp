@@ -6,8 +6,11 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/read_file.h"
 #include "marey/format/rig/rig_exchange.h"
+#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -28,10 +31,8 @@ Matrix<3> rotation_of(double rx, double ry, double rz) {
 
 }  // namespace
 
-Rig read_tsai_rig(const std::string& path) {
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_file(path.c_str());
-  if (!parsed) throw Error("{}: this XML cannot be read ({}, at byte {})", path, parsed.description(), parsed.offset);
+Rig parse_tsai_rig(std::string_view text, const std::string& path) {
+  const pugi::xml_document document = parse_xml(text, path);
   const pugi::xml_node root = document.child("Camera");
   const pugi::xml_node sensor = root.child("Geometry"), in = root.child("Intrinsic"), out = root.child("Extrinsic");
   const auto of = [&](const pugi::xml_node& node, const char* name) { return number(node, name, path); };
@@ -50,6 +51,10 @@ Rig read_tsai_rig(const std::string& path) {
                                     Vector<3>(of(out, "tx"), of(out, "ty"), of(out, "tz")) / kMetre};
   check_imported(rig, path);
   return rig;
+}
+
+Rig read_tsai_rig(const std::string& path) {
+  return parse_tsai_rig(read_file(path), path);
 }
 
 void write_tsai_rig(const Rig& rig, const std::string& path) {
@@ -81,8 +86,8 @@ void write_tsai_rig(const Rig& rig, const std::string& path) {
                   "  <Intrinsic focal=\"{:.12g}\" kappa1=\"{:.12g}\" cx=\"{:.12g}\" cy=\"{:.12g}\" sx=\"{:.12g}\"/>\n"
                   "  <Extrinsic tx=\"{:.12g}\" ty=\"{:.12g}\" tz=\"{:.12g}\" rx=\"{:.15g}\" ry=\"{:.15g}\" rz=\"{:.15g}\"/>\n"
                   "</Camera>\n",
-                  camera.name, camera.size->width, camera.size->height, camera.size->width, camera.size->width, kPitch, kPitch,
-                  kPitch, kPitch, focal, tsai->distortion[0] / (focal * focal), tsai->principal.x(), tsai->principal.y(),
+                  xml_escaped(camera.name), camera.size->width, camera.size->height, camera.size->width, camera.size->width, kPitch,
+                  kPitch, kPitch, kPitch, focal, tsai->distortion[0] / (focal * focal), tsai->principal.x(), tsai->principal.y(),
                   tsai->focal.x() / tsai->focal.y(), t.x(), t.y(), t.z(), rx, ry, rz));
   file.finish();
 }

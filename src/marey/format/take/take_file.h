@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/core/limits.h"
 #include "marey/core/take.h"
 
 namespace marey::format::take {
@@ -42,6 +43,7 @@ class TakeWriter {
 
 struct TakeReaderOptions {
   bool observations = true;  ///< false: frames come without them, and several times sooner
+  Limits limits = {};        ///< `label_bytes` and `tracks` count
 };
 
 /// Reads a take frame by frame, also while it is being written, and after its writer was killed.

@@ -12,6 +12,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_file.h"
@@ -83,7 +84,8 @@ class TakeReader::Cursor {
         frames_(database_, options.observations
                                ? "SELECT frame, time_ns, points, observations FROM frame WHERE frame >= ? ORDER BY frame LIMIT ?"
                                : "SELECT frame, time_ns, points FROM frame WHERE frame >= ? ORDER BY frame LIMIT ?"),
-        with_observations_(options.observations) {
+        with_observations_(options.observations),
+        limits_(options.limits) {
     header_.name = text("name");
     header_.made_by = text("made_by");
     header_.recorded_at = text("recorded_at");
@@ -91,6 +93,7 @@ class TakeReader::Cursor {
     const std::string rig = text("rig");
     if (!rig.empty()) header_.rig = rig::parse_rig(rig, path + " (its rig)");
     if (!(std::isfinite(header_.rate_hz) && header_.rate_hz > 0)) throw Error("{}: is damaged (its rate is missing)", path);
+    check_numbers();
   }
 
   const TakeHeader& header() const { return header_; }
@@ -105,7 +108,14 @@ class TakeReader::Cursor {
     std::tie(summary.last_frame, summary.last_time) = end_of("DESC");
     Statement tracks(database_, "SELECT id, label, first_frame, last_frame, measured, filled, predicted FROM track ORDER BY id");
     while (tracks.step()) {
-      const TakeTrack track{TrackId(checked_id(tracks.integer(0), database_.path())), std::string(tracks.text(1))};
+      if (summary.tracks.size() == limits_.tracks)
+        throw Error("{}: has more than {} tracks (the limit tracks)", database_.path(), limits_.tracks);
+      const std::string_view label = tracks.text(1);
+      if (label.size() > limits_.label_bytes) {
+        throw Error("{}: the label of track {} has {} bytes; they have at most {} (the limit label_bytes)", database_.path(),
+                    tracks.integer(0), label.size(), limits_.label_bytes);
+      }
+      const TakeTrack track{TrackId(checked_id(tracks.integer(0), database_.path())), std::string(label)};
       summary.tracks.push_back(
           {track, tracks.integer(2), tracks.integer(3), tracks.integer(4), tracks.integer(5), tracks.integer(6)});
     }
@@ -143,6 +153,16 @@ class TakeReader::Cursor {
     if (version != kTakeSchemaVersion) throw Error("{}: is damaged (schema version {})", database_.path(), version);
     require_tables(database_);
     return kTakeSchemaVersion;
+  }
+
+  /// One frame that is far from all others: who follows the take would walk through all between.
+  void check_numbers() {
+    const auto first = end_of("ASC").first, last = end_of("DESC").first;
+    if (!first || *first < 0 || *last - *first <= FrameNumbers::kMostMissing) return;
+    FrameNumbers numbers;
+    Statement frames(database_, "SELECT frame FROM frame ORDER BY frame");
+    while (frames.step()) numbers.add(frames.integer(0));
+    numbers.check(database_.path());
   }
 
   void fetch() {
@@ -198,6 +218,7 @@ class TakeReader::Cursor {
   int version_;
   Statement value_, frames_;
   bool with_observations_;
+  Limits limits_;
   TakeHeader header_;
   std::vector<TakeFrame> fetched_;
   std::size_t at_ = 0;

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/read_file.h"
 
 namespace marey::format::tracks {
@@ -170,6 +171,9 @@ class Parser {
   void finish() {
     const auto by_frame = [](const LabelledBox& a, const LabelledBox& b) { return a.frame < b.frame; };
     if (!std::is_sorted(table_.boxes.begin(), table_.boxes.end(), by_frame)) sort_by_frame();
+    FrameNumbers numbers;
+    for (const LabelledBox& row : table_.boxes) numbers.add(row.frame + 1);
+    numbers.check(name_);
     if (kind_ != MotKind::detections) refuse_twins();
     table_.warnings = warnings();
   }

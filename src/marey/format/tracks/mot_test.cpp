@@ -172,5 +172,16 @@ TEST(Mot, PiecesNameTheLineThatIsWrong) {
   EXPECT_TRUE(read_piecewise(folder / "empty.txt").empty());
 }
 
+TEST(Mot, OneWildFrameIsNamed) {
+  for (const MotKind kind : {MotKind::truth, MotKind::tracks, MotKind::detections}) {
+    try {
+      parse_mot("1,1,5,5,10,20,1\n2,1,5,5,10,20,1\n999999999,1,5,5,10,20,1\n", "a.txt", kind);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "a.txt: frames 1 to 999999999 are named, of which 3 are there; a number must be wrong");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marey::format::tracks

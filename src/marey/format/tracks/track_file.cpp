@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/format/text_rows.h"
 #include "marey/format/tracks/outline_json.h"
 
 namespace marey::format::tracks {
@@ -25,17 +26,6 @@ std::string_view state_of(const Sample& sample) {
   return sample.measured() ? "observed" : "predicted";
 }
 
-/// A CSV field as RFC 4180 quotes it.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
 void append_mot(std::string& lines, const Instant& instant, const Sample& sample) {
   if (!sample.box) return;
   const Box& box = *sample.box;
@@ -45,7 +35,7 @@ void append_mot(std::string& lines, const Instant& instant, const Sample& sample
 
 void append_csv(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
   auto out = std::back_inserter(lines);
-  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},", instant.index, seconds(instant.time), number(sample.track), quoted(label),
+  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},", instant.index, seconds(instant.time), number(sample.track), quoted_field(label),
                  sample.position.x(), sample.position.y());
   if (sample.velocity) {
     fmt::format_to(out, "{:.2f},{:.2f},", sample.velocity->x(), sample.velocity->y());

@@ -4,10 +4,12 @@
 // trackers count time in frames: a scene at another rate shows the same places.
 #include "marey/simulate/markers/marker_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "marey/core/error.h"
 #include "marey/simulate/markers/discs.h"
 #include "marey/simulate/random.h"
 
@@ -123,6 +125,13 @@ bool stays_inside(const Path& path, const cv::Size& size) {
   return true;
 }
 
+/// How often a motion is drawn anew until it fits, which for some lengths and sizes it never does: at most so many places are
+/// computed.
+int most_draws(int frames) {
+  constexpr int kPlaces = 5'000'000;
+  return std::clamp(kPlaces / std::max(1, frames), 10, 100'000);
+}
+
 struct OcclusionMotion {
   Path path;
   Box barrier;
@@ -135,7 +144,7 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
   const bool bent = random.chance(0.5);
   const double width = kBarrier.draw(random);
   const double height = kBarrier.draw(random) + width / 2;
-  for (;;) {
+  for (int draw = most_draws(frames); draw > 0; --draw) {
     const double speed = kSpeed.draw(random) * size.width / 640;
     const double bend = bent ? (random.chance(0.5) ? 1 : -1) * kBend.draw(random) : 0;
     const Vector<2> centre = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
@@ -143,13 +152,15 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
     Path path = through(centre, random.uniform(0, 2 * kPi), speed, bend, bend_frames, frames);
     if (stays_inside(path, size)) return {std::move(path), Box::from_centre(centre, width, height)};
   }
+  throw Error("no path of {} frames past a barrier stays within {} x {} px; ask for fewer frames or a larger picture", frames,
+              size.width, size.height);
 }
 
 std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& size, Random& random) {
   constexpr Range kSpeed{2, 6};       // px a frame, drawn for each marker
   constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
   constexpr Range kBend{-0.5, 0.5};   // rad
-  for (;;) {
+  for (int draw = most_draws(frames); draw > 0; --draw) {
     const Vector<2> crossing = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
     const double course = random.uniform(0, 2 * kPi);
     const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
@@ -162,6 +173,11 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
       return {std::move(first), std::move(second)};
     }
   }
+  throw Error(
+      "no two markers cross in {} frames within {} x {} px, {:g} px apart at the beginning and at the end; ask for about 80 "
+      "frames, smaller "
+      "markers or a larger picture",
+      frames, size.width, size.height, 8 * radius);
 }
 
 /// A Lissajous curve: smooth, bounded, and another one for every draw.

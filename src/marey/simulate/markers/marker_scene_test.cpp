@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/core/error.h"
+
 namespace marey::simulate::markers {
 namespace {
 
@@ -53,6 +55,19 @@ TEST(MarkerScene, ABarrierHidesTheMarkerForAWhileAndNeverAtTheEnds) {
     EXPECT_TRUE(scene.frames.back()[0].visible) << "seed " << seed;
     EXPECT_LT(visible_frames(scene, 0), std::ssize(scene.frames)) << "seed " << seed;
   }
+}
+
+TEST(MarkerScene, WhereNoMotionFitsItSaysSo) {
+  MarkerSceneOptions options;
+  for (const int frames : {1, 2, 3, 5, 5000, 1'000'000}) {
+    options.frames = frames;
+    EXPECT_THROW(simulate_markers(MarkerSituation::crossing, 1, options), Error) << frames;
+  }
+  EXPECT_THROW(simulate_markers(MarkerSituation::occlusion, 1, options), Error);
+  options.frames = 40;
+  EXPECT_EQ(simulate_markers(MarkerSituation::crossing, 1, options).frames.size(), 40u);
+  options.radius_px = 100;
+  EXPECT_THROW(simulate_markers(MarkerSituation::crossing, 1, options), Error);
 }
 
 TEST(MarkerScene, CrossingMarkersTouch) {

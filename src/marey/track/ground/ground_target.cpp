@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "marey/core/perceived.h"
+#include "marey/core/colour.h"
 #include "marey/geometry/chi_square.h"
 
 namespace marey::track::ground {

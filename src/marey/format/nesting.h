@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace marey::format {
+
+/// How a text nests what it holds.
+enum class Notation {
+  toml,  ///< brackets, and the parts of dotted keys
+  json,  ///< brackets
+  yaml,  ///< brackets, indentation, and keys or dashes behind one another on a line
+  xml,   ///< elements
+};
+
+/// What no file of this kind needs. Parsers and destructors call themselves once or several times a level; the stack bears this
+/// many.
+inline constexpr int kDeepestNesting = 100;
+
+/// Throws Error, `name:line: ...`, where a text is nested deeper than `kDeepestNesting`. To be asked before a parser sees the text:
+/// it does not tell whether the text is right otherwise, and where it is not may count more levels than there are. Time is linear,
+/// memory bounded.
+void check_nesting(std::string_view text, Notation notation, const std::string& name);
+
+}  // namespace marey::format

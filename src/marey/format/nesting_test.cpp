@@ -1,0 +1,86 @@
+#include "marey/format/nesting.h"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+
+namespace marey::format {
+namespace {
+
+std::string times(std::string_view text, int count, std::string before = "") {
+  std::string result = std::move(before);
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+bool passes(const std::string& text, Notation notation) {
+  try {
+    check_nesting(text, notation, "file");
+    return true;
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("file:")) << error.what();
+    return false;
+  }
+}
+
+constexpr int kMany = 200'000;
+
+TEST(Nesting, TheLimitItselfPassesAndOneMoreDoesNot) {
+  for (const int depth : {kDeepestNesting, kDeepestNesting + 1}) {
+    const bool wanted = depth == kDeepestNesting;
+    EXPECT_EQ(passes(times("[", depth) + times("]", depth), Notation::json), wanted) << depth;
+    EXPECT_EQ(passes(times("[", depth, "a = ") + times("]", depth), Notation::toml), wanted) << depth;
+    EXPECT_EQ(passes(times("[", depth, "a: ") + times("]", depth), Notation::yaml), wanted) << depth;
+    EXPECT_EQ(passes(times("<a>", depth) + times("</a>", depth), Notation::xml), wanted) << depth;
+  }
+}
+
+TEST(Nesting, EachWayToNestIsSeen) {
+  EXPECT_FALSE(passes(times(".a", kMany, "a") + " = 1", Notation::toml));
+  EXPECT_FALSE(passes(times(".\"b.c\"", kMany, "[a") + "]", Notation::toml));
+  EXPECT_FALSE(passes(times("{a=", kMany, "x = "), Notation::toml));
+  EXPECT_FALSE(passes(times("{a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a=", 10, "x = "), Notation::toml));
+  EXPECT_FALSE(passes(times("[{\"a\":", kMany), Notation::json));
+  EXPECT_FALSE(passes(times("- ", kMany), Notation::yaml));
+  EXPECT_FALSE(passes(times("a: ", kMany), Notation::yaml));
+  std::string stairs;
+  for (int i = 0; i < 200; ++i) stairs += std::string(static_cast<std::size_t>(i), ' ') + "a:\n";
+  EXPECT_FALSE(passes(stairs, Notation::yaml));
+  EXPECT_FALSE(passes(times("<a b='/>'>", kMany), Notation::xml));
+  EXPECT_FALSE(passes(times("<a", kMany), Notation::xml));
+}
+
+TEST(Nesting, WhatClosesInAStringOrCommentClosesNothing) {
+  EXPECT_FALSE(passes(times("[\"]\",", kMany), Notation::json));
+  EXPECT_FALSE(passes(times("[ # ]\n", kMany, "x = "), Notation::toml));
+  EXPECT_FALSE(passes(times("[ ']', ", kMany, "x = "), Notation::toml));
+  EXPECT_FALSE(passes(times("[ # ]\n", kMany, "x: "), Notation::yaml));
+  EXPECT_FALSE(passes(times("<a><!-- </a> -->", kMany), Notation::xml));
+}
+
+TEST(Nesting, LongFlatTextsPass) {
+  EXPECT_TRUE(passes(times("1.5, ", kMany, "x = [") + "]\n" + times("[[camera]]\nfocal = [1.0, 2.0]\n", 1000), Notation::toml));
+  EXPECT_TRUE(passes(times("[.", kMany, "x = \"") + "\"", Notation::toml));
+  EXPECT_TRUE(passes(times("[.\n", kMany, "x = \"\"\"") + "\"\"\"", Notation::toml));
+  EXPECT_TRUE(passes(times("{\"a\": \"[[\"},", kMany, "[") + "]", Notation::json));
+  EXPECT_TRUE(passes(times("1., -2.e-3,\n       ", kMany, "data: [ ") + times("a: { b: 1 }\n", kMany, "]\n"), Notation::yaml));
+  EXPECT_TRUE(passes(times("<b c='1'/>text<b></b>", kMany, "<a>") + "</a>", Notation::xml));
+}
+
+TEST(Nesting, TheMessageNamesTheLine) {
+  try {
+    check_nesting(times("[", kMany, "a = 1\n\nb = "), Notation::toml, "rig.toml");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), fmt::format("rig.toml:3: is nested more than {} deep, as no file of its kind is; it must be damaged",
+                                           kDeepestNesting)
+                                   .c_str());
+  }
+}
+
+}  // namespace
+}  // namespace marey::format

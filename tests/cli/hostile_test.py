@@ -1,0 +1,174 @@
+"""Files made to do harm, and numbers that are wrong by much: the program ends soon, in little memory, with one sentence.
+
+Usage: hostile_test.py MAREY [unittest options].
+"""
+
+import json
+import os
+import pathlib
+import resource
+import shutil
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.dom.minidom
+import zlib
+
+MAREY = ""
+SECONDS = 30
+MEMORY = 6 << 30  # of addresses; the libraries alone map most of one
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+class Hostile(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_hostile_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_marey(self, *arguments):
+        return subprocess.run([MAREY, *map(str, arguments)], capture_output=True, cwd=self.folder, timeout=SECONDS, preexec_fn=limited)
+
+    def refused(self, *arguments, words=()):
+        done = self.run_marey(*arguments)
+        said = done.stderr.decode(errors="replace")
+        self.assertIn(done.returncode, (1, 2), f"{arguments}\n{said[:2000]}")
+        self.assertEqual(len(said.strip().splitlines()), 1, said[:2000])
+        self.assertLess(len(said), 2000)
+        for word in words:
+            self.assertIn(word, said)
+        for internal in ("exception", "nelems", "cv::", "OpenCV(", "std::", "terminate"):
+            self.assertNotIn(internal, said)
+        return said
+
+    def accepted(self, *arguments):
+        done = self.run_marey(*arguments)
+        self.assertEqual(done.returncode, 0, f"{arguments}\n{done.stderr[:2000]}")
+        return done
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def take(self, name="a.marey"):
+        """Two seconds of two markers."""
+        rows = "".join(f"{i},{i / 100:.2f},{m},{i / 100 + k:.3f},0,1\n" for i in range(200) for k, m in enumerate("ab"))
+        self.write("points.csv", "frame,time,label,x,y,z\n" + rows)
+        self.accepted("convert", "points.csv", name)
+        return self.folder / name
+
+    # --- depth ---
+
+    def test_rigs_that_are_nested_too_deep(self):
+        many = 200_000
+        for name, text in (("a.toml", "a" + ".a" * 50_000 + " = 1\n[[camera]]\n"), ("b.toml", "[[camera]]\nname = " + "[" * many),
+                           ("c.yml", "%YAML:1.0\n---\na: " + "[" * many), ("d.yml", "%YAML:1.0\n---\n" + "- " * many),
+                           ("e.json", '{"camera_matrix": ' + "[" * many), ("f.xml", '<?xml version="1.0"?>\n<opencv_storage>' + "<a>" * many),
+                           ("g.xml", "<calibration><cameras><camera>" + "<a>" * many), ("h.xml", "<Camera><Geometry/>" + "<a>" * many),
+                           ("i.toml", "[cam_0]\nmatrix = [1]\ndistortions" + ".a" * many + " = 1\n")):
+            with self.subTest(name=name):
+                self.write(name, text)
+                self.refused("info", name, words=["nested more than"])
+
+    def test_a_takes_rig_that_is_nested_too_deep(self):
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            database.execute("INSERT OR REPLACE INTO take (key, value) VALUES ('rig', ?)", ("a" + ".a" * 50_000 + " = 1",))
+        self.refused("info", take, words=["nested more than"])
+        self.refused("convert", take, "out.csv", words=["nested more than"])
+
+    def test_a_crossing_that_does_not_fit(self):
+        for frames in (2, 3, 5):
+            with self.subTest(frames=frames):
+                self.refused("simulate", "markers", "crossing", "--frames", frames, "-o", "scene", words=["cross in"])
+
+    # --- one wild number ---
+
+    def test_one_wild_frame_is_named_before_anything_is_followed(self):
+        far, words = 999_999_999, ["999999999 are named, of which", "a number must be wrong"]
+        self.write("boxes.txt", "".join(f"{i},-1,100,100,20,50,0.9\n" for i in (1, 2, 3, far)))
+        self.refused("track", "boxes.txt", "-o", "out.txt", words=words)
+        self.write("tracks.txt", "".join(f"{i},1,100,100,20,50,1\n" for i in (1, 2, 3, far)))
+        self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=words)
+        self.write("points.csv", "frame,time,id,label,x,y,z\n" + "".join(f"{i},{i / 100:.2f},1,a,1,2,3\n" for i in (0, 1, 2, far)))
+        self.refused("convert", "points.csv", "out.c3d", words=words)
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{i / 25:.2f},1,2,3\n" for i in (0, 1, 2, far)))
+        self.refused("measure", "match.csv", words=words)
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            names = [row[1] for row in database.execute("PRAGMA table_info(frame)")]
+            others = ", ".join(names[1:])
+            self.assertEqual(names[0], "frame")
+            database.execute(f"INSERT INTO frame (frame, {others}) SELECT {far}, {others} FROM frame WHERE frame = 199")
+        self.refused("convert", take, "out.csv", words=words)
+
+    def test_a_wild_time_makes_no_wild_rate(self):
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{-5000 if i == 99 else i / 25:.2f},1,2,3\n" for i in range(100)))
+        said = self.accepted("info", "match.csv").stdout.decode()
+        self.assertIn("25 Hz", said)
+
+    # --- foreign bytes ---
+
+    def test_foreign_bytes_in_names(self):
+        head = b"frame,time,id,label,team,x,y\n"
+        row = b"%d,%.2f,%d,a\x01\xff<&,=1+1,%d,3\n"
+        self.write("match.csv", head + b"".join(row % (i, i / 25, k, i % 50 + k) for i in range(60) for k in (1, 2)))
+        said = self.accepted("measure", "match.csv", "--json").stdout
+        json.loads(said.decode())
+        for name in ("out.csv", "out.txt"):
+            self.accepted("convert", "match.csv", name)
+        csv = (self.folder / "out.csv").read_bytes().decode()
+        self.assertIn(",'=1+1,", csv)
+        self.assertNotIn("\x01", csv)
+
+    def test_a_film_with_a_foreign_byte_in_its_name(self):
+        name = os.fsencode(self.folder) + b"/f\xff<m>.txt"
+        with open(name, "wb") as file:
+            file.write(b"".join(b"%d,-1,%d,100,20,50,0.9\n" % (i, 100 + 2 * i) for i in range(1, 60)))
+        done = subprocess.run([MAREY, "track", name, "-o", "out.txt", "--plot", "out.svg"], capture_output=True, cwd=self.folder, timeout=SECONDS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        xml.dom.minidom.parse(str(self.folder / "out.svg"))
+
+    # --- size ---
+
+    def test_labels_and_tracks_without_end(self):
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            database.execute("UPDATE track SET label = ?", ("x" * 20_000_000,))
+        self.refused("info", take, words=["20000000 bytes", "label_bytes"])
+        take = self.take("b.marey")
+        with sqlite3.connect(take) as database:
+            names = [row[1] for row in database.execute("PRAGMA table_info(track)")]
+            values = ", ".join("n" if name == "id" else "''" if name == "label" else "0" for name in names)
+            database.execute(f"WITH RECURSIVE many(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM many LIMIT 200000) "
+                             f"INSERT INTO track ({', '.join(names)}) SELECT {values} FROM many")
+        self.refused("info", take, words=["100000 tracks"])
+
+    def test_a_crowd_beyond_reason(self):
+        self.write("tracks.txt", "".join(f"1,{i},{i % 100},{i // 100},20,50,1\n" for i in range(8000)))
+        self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=["pairs_a_frame"])
+
+    def test_a_picture_beyond_reason(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+        side = 30_000
+        body = zlib.compressobj(9)
+        rows = b"".join(body.compress(bytes(side + 1) * 100) for _ in range(side // 100)) + body.flush()
+        png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0)) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+        pictures = self.folder / "pictures"
+        pictures.mkdir()
+        for i in range(2):
+            (pictures / f"{i:03}.png").write_bytes(png)
+        self.refused("track", pictures, "-o", "out.txt", words=["picture_px"])
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,94 @@
+"""That script/check-names and script/check-layers catch what they are for: each fault is planted in a small house of its own.
+
+Usage: checks_test.py PROJECT [unittest options].
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROJECT = pathlib.Path()
+
+
+class Checks(unittest.TestCase):
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp(prefix="marey_house_"))
+        self.addCleanup(shutil.rmtree, self.root)
+        self.plant("src/marey/core/ids.h", "namespace marey {\nenum class TrackId : int {};\nnamespace {\nint local() { return 1; }\n}\n}\n")
+        self.plant("src/marey/track/tracker.h", '#include "marey/core/ids.h"\nnamespace marey::track {\nclass Tracker { int step(); };\nint join(int);\n}\n')
+        self.plant("src/marey/track/ground/mht.h", '#include "marey/track/tracker.h"\nnamespace marey::track::ground {\nint join(int);\nnamespace rules {\nint age();\n}\n}\n')
+        self.plant("src/marey/detect/blob.cpp", "namespace marey::detect {\nnamespace {\nstruct Tracker {};\n}\nint blob() { return 2; }\n}\n")
+        self.plant("apps/cli/main.cpp", '#include "marey/track/tracker.h"\nnamespace marey::cli {\nint run() { return 0; }\n}\nint main() { return 0; }\n')
+
+    def plant(self, path, text):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    def check(self, script, expected, *words):
+        done = subprocess.run([PROJECT / "script" / script, self.root], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, expected, done.stdout + done.stderr)
+        for word in words:
+            self.assertIn(word, done.stdout)
+
+    def test_a_house_in_order_passes(self):
+        self.check("check-names", 0)
+        self.check("check-layers", 0)
+
+    def test_a_class_that_two_rooms_define_in_one_namespace(self):
+        self.plant("src/marey/detect/tracker.h", "namespace marey::track {\nstruct Tracker {};\n}\n")
+        self.check("check-names", 1, "marey::track::Tracker is defined in", "its folder is marey::detect")
+
+    def test_a_class_that_two_sources_of_one_room_define(self):
+        self.plant("src/marey/track/other.cpp", "namespace marey::track {\nstruct Tracker { double x; };\n}\n")
+        self.check("check-names", 1, "marey::track::Tracker is defined in")
+
+    def test_a_free_function_in_headers_of_two_rooms(self):
+        self.plant("src/marey/detect/join.h", "namespace marey::track {\nint join(double);\n}\n")
+        self.check("check-names", 1, "marey::track::join() stands in headers of two folders")
+
+    def test_a_type_in_plain_marey_outside_core(self):
+        self.plant("src/marey/detect/blob.h", "namespace marey {\nstruct Blob {};\n}\n")
+        self.check("check-names", 1, "Blob is defined in marey; its folder is marey::detect")
+
+    def test_an_inner_room_in_its_parents_namespace_and_the_other_way_round(self):
+        self.plant("src/marey/track/ground/a.h", "namespace marey::track {\nstruct InnerAsOuter {};\n}\n")
+        self.plant("src/marey/track/b.h", "namespace marey::track {\nnamespace ground {\nstruct OuterAsInner {};\n}\n}\n")
+        self.check("check-names", 1, "InnerAsOuter is defined in marey::track;", "OuterAsInner is defined in marey::track::ground;")
+
+    def test_a_type_in_the_global_namespace_and_one_in_an_inl(self):
+        self.plant("src/marey/detect/blob.h", "struct Blob {};\n")
+        self.plant("src/marey/detect/kernel.inl", "namespace marey {\nstruct Kernel {};\n}\n")
+        self.check("check-names", 1, "Blob is defined in the global namespace", "Kernel is defined in marey;")
+
+    def test_a_program_that_adds_to_a_room(self):
+        self.plant("apps/cli/more.cpp", "namespace marey::track {\nstruct More {};\n}\n")
+        self.check("check-names", 1, "More is defined in marey::track, which is a room of the library")
+
+    def test_an_include_up_the_house_of_each_kind(self):
+        for file in ("a.h", "a.cpp", "a.inl", "a.inc", "inner/a.h"):
+            with self.subTest(file=file):
+                self.plant(f"src/marey/detect/{file}", '#include "marey/track/tracker.h"\n')
+                self.check("check-layers", 1, f"src/marey/detect/{file}: detect may not include track")
+                (self.root / "src/marey/detect" / file).unlink()
+
+    def test_an_include_of_an_inner_room_of_another_step(self):
+        self.plant("src/marey/detect/a.h", '#include "marey/track/ground/mht.h"\n')
+        self.check("check-layers", 1, "detect may not include track")
+
+    def test_a_library_that_includes_experiments(self):
+        self.plant("src/marey/pipeline/a.h", '#include "experiments/trackers.h"\n')
+        self.check("check-layers", 1, 'the library may not include "experiments/trackers.h"')
+
+    def test_an_include_of_what_is_not_there_and_an_unknown_room(self):
+        self.plant("experiments/a.cpp", '#include "marey/track/gone.h"\n')
+        self.plant("src/marey/attic/a.h", "")
+        self.check("check-layers", 1, '"marey/track/gone.h" is not there', "attic is not a room")
+
+
+if __name__ == "__main__":
+    PROJECT = pathlib.Path(sys.argv.pop(1))
+    unittest.main()
