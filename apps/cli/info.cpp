@@ -115,8 +115,9 @@ void print_tracks(const RecordingSummary& summary) {
     const std::int64_t present = count.samples();
     const std::string first = count.first_index ? fmt::format("{}", *count.first_index) : "-";
     const std::string last = count.last_index ? fmt::format("{}", *count.last_index) : "-";
-    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.name.id), count.name.label.substr(0, 32),
-               width, percent(present, frames), percent(count.of(Provenance::filled), frames), percent(count.of(Provenance::predicted), frames), first, last);
+    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.name.id), count.name.label.substr(0, 32), width,
+               percent(present, frames), percent(count.of(Provenance::filled), frames),
+               percent(count.of(Provenance::predicted), frames), first, last);
   }
 }
 
@@ -129,8 +130,9 @@ void print_motion(const std::string& path, format::motion::MotionFormat format, 
   row("recorded", info.header.recorded_at);
   const std::int64_t frames = span_of(summary);
   const double length_s = summary.first_time ? seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz : 0;
-  row("length", fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
-                            summary.instants < frames ? fmt::format(", {} of them left out", counted(frames - summary.instants)) : ""));
+  row("length",
+      fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
+                  summary.instants < frames ? fmt::format(", {} of them left out", counted(frames - summary.instants)) : ""));
   if (summary.first_index) row("frames", fmt::format("{} to {}, counted from 0", *summary.first_index, *summary.last_index));
   const auto labelled =
       std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.name.label.empty(); });
@@ -210,8 +212,8 @@ Json as_json(format::motion::MotionFormat format, const format::motion::MotionIn
 
 void report_motion(const InfoOptions& options, format::motion::MotionFormat format) {
   const auto reader = format::motion::open_motion(options.file, format);
-  const RecordingSummary summary = format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary()
-                                                                           : summary_of(*reader);
+  const RecordingSummary summary =
+      format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary() : summary_of(*reader);
   for (const std::string& sentence : reader->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {
     print(as_json(format, reader->info(), summary));

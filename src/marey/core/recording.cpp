@@ -277,13 +277,14 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
 }
 
 bool has_velocities(const Recording& recording) {
-  return std::any_of(recording.tracks().begin(), recording.tracks().end(), [](const TrackColumns& t) { return t.has_velocities(); });
+  return std::any_of(recording.tracks().begin(), recording.tracks().end(),
+                     [](const TrackColumns& t) { return t.has_velocities(); });
 }
 
 void require_metric(const RecordingHeader& header, std::string_view what) {
   if (header.frame.metric()) return;
-  throw Error("{}: {} needs metres, and these positions are {}; track with a calibrated rig (marey track RIG --ground)", header.name,
-              what, to_string(header.frame));
+  throw Error("{}: {} needs metres, and these positions are {}; track with a calibrated rig (marey track RIG --ground)",
+              header.name, what, to_string(header.frame));
 }
 
 void require_ground(const RecordingHeader& header, std::string_view what) {

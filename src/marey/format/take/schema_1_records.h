@@ -10,7 +10,8 @@
 
 namespace marey::format::take {
 
-// How a frame lay in takes of schema 1: fixed records, little-endian, one behind the other. Such takes are read, and no longer written.
+// How a frame lay in takes of schema 1: fixed records, little-endian, one behind the other. Such takes are read, and no longer
+// written.
 
 struct ObservationRecord {
   double x, y;  // px

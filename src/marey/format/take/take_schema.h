@@ -11,12 +11,16 @@ namespace marey::format::take {
 constexpr int kTakeSchemaVersion = 2;
 constexpr int kTakeApplicationId = 0x4D524559;  // "MREY"
 
-constexpr const char* kTakeSchema = R"(
+/// Before anything is in the file.
+constexpr const char* kTakePragmas = R"(
   PRAGMA page_size = 8192;
   PRAGMA auto_vacuum = INCREMENTAL;
   PRAGMA journal_mode = DELETE;
   PRAGMA synchronous = NORMAL;
   PRAGMA cache_size = -24000;
+)";
+
+constexpr const char* kTakeSchema = R"(
   PRAGMA application_id = 0x4D524559;
   PRAGMA user_version = 2;
   CREATE TABLE take (key TEXT PRIMARY KEY, value) WITHOUT ROWID;

@@ -71,7 +71,8 @@ class TakeWriter::Recorder {
         set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         add_edit_(database_, "INSERT INTO edit VALUES (?, ?, ?, ?)"),
         chunks_(database_) {
-    begin();
+    open_ = true;
+    began_ = Clock::now();
     set("name", header.name.empty() ? fs::path(path).stem().string() : header.name);
     set("recorded_at", header.recorded_at);
     set("rate_hz", header.rate_hz);
@@ -130,9 +131,14 @@ class TakeWriter::Recorder {
   }
 
   void finish() {
-    flush();
-    join_chunks();
+    cut();
     begin();
+    write_counts();
+    if (has_groups()) {
+      commit();
+      join_chunks();
+      begin();
+    }
     set("complete", std::int64_t{1});
     commit();
     if (open_) throw Error("{}: another program keeps reading it, so its end could not be written; close that program", path_);
@@ -150,6 +156,8 @@ class TakeWriter::Recorder {
   };
 
   int prepare_schema() {
+    database_.run(kTakePragmas);
+    database_.run("BEGIN IMMEDIATE");  // what the constructor writes goes with it
     database_.run(kTakeSchema);
     return kTakeSchemaVersion;
   }
@@ -314,6 +322,14 @@ class TakeWriter::Recorder {
       database_.roll_back();
       open_ = false;
     }
+  }
+
+  bool has_groups() const {
+    for (std::size_t first = 0, end = 0; first < chunks_written_.size(); first = end) {
+      end = end_of_group(first);
+      if (end - first > 1) return true;
+    }
+    return false;
   }
 
   std::size_t end_of_group(std::size_t first) const {
