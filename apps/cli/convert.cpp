@@ -68,9 +68,9 @@ format::motion::MotionFormat format_to_read(const ConvertOptions& options) {
 }
 
 /// `tracks` by id.
-void leave_out_others(TakeFrame& frame, const std::vector<TakeTrack>& tracks) {
-  std::erase_if(frame.points, [&](const TakePoint& point) {
-    const auto by_id = [](const TakeTrack& track, TrackId id) { return track.id < id; };
+void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
+  std::erase_if(instant.samples, [&](const Sample& point) {
+    const auto by_id = [](const TrackName& track, TrackId id) { return track.id < id; };
     const auto found = std::lower_bound(tracks.begin(), tracks.end(), point.track, by_id);
     return found == tracks.end() || found->id != point.track;
   });
@@ -110,17 +110,19 @@ Written convert_motion(const ConvertOptions& options) {
     fmt::print(stderr, "marey: warning: {}: says that y is up; {} turns it so that z is\n", options.from,
                to == format::motion::MotionFormat::take ? "--up y" : "--from-up y");
   }
-  if (options.labelled) std::erase_if(plan.info.tracks, [](const TakeTrack& track) { return track.label.empty(); });
+  if (options.labelled) std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
   const auto reader = format::motion::open_motion(options.from, from, from_up);
-  const auto writer = format::motion::create_motion(options.to, to, plan, to_up);
+  const auto sink = format::motion::create_motion(options.to, to, plan, to_up);
+  sink->begin(plan.info.header);
   ProgressBar progress(options.quiet);
   std::int64_t done = 0;
-  while (auto frame = reader->next()) {
-    if (options.labelled) leave_out_others(*frame, plan.info.tracks);
-    writer->write(*frame);
+  while (auto instant = reader->next()) {
+    if (options.labelled) leave_out_others(*instant, plan.info.tracks);
+    if (done == 0) instant->named = plan.info.tracks;
+    sink->write(*instant);
     progress.show("converting", ++done, plan.info.frame_count);
   }
-  writer->finish();
+  sink->finish();
   return {std::string(format::motion::motion_format_name(to)), done, "frames"};
 }
 

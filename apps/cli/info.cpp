@@ -68,8 +68,8 @@ std::string percent(std::int64_t part, std::int64_t whole) {
 }
 
 /// All frames between the first and the last, those that are left out too.
-std::int64_t span_of(const TakeSummary& summary) {
-  return summary.first_frame ? *summary.last_frame - *summary.first_frame + 1 : 0;
+std::int64_t span_of(const RecordingSummary& summary) {
+  return summary.first_index ? *summary.last_index - *summary.first_index + 1 : 0;
 }
 
 void row(const char* name, const std::string& value) {
@@ -104,48 +104,51 @@ void print_calibration(const Rig& rig) {
   row("calibration", words);
 }
 
-void print_tracks(const TakeSummary& summary) {
+void print_tracks(const RecordingSummary& summary) {
   if (summary.tracks.empty()) return;
   const std::int64_t frames = span_of(summary);
   std::size_t width = 5;
-  for (const auto& count : summary.tracks) width = std::max(width, std::min<std::size_t>(count.track.label.size(), 32));
+  for (const auto& count : summary.tracks) width = std::max(width, std::min<std::size_t>(count.name.label.size(), 32));
   fmt::print("\n  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", "id", "label", width, "present", "filled", "predicted",
              "first", "last");
   for (const auto& count : summary.tracks) {
-    const std::int64_t present = count.measured + count.filled + count.predicted;
-    const std::string first = present > 0 ? fmt::format("{}", count.first_frame) : "-";
-    const std::string last = present > 0 ? fmt::format("{}", count.last_frame) : "-";
-    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.track.id), count.track.label.substr(0, 32),
-               width, percent(present, frames), percent(count.filled, frames), percent(count.predicted, frames), first, last);
+    const std::int64_t present = count.samples();
+    const std::string first = count.first_index ? fmt::format("{}", *count.first_index) : "-";
+    const std::string last = count.last_index ? fmt::format("{}", *count.last_index) : "-";
+    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.name.id), count.name.label.substr(0, 32), width,
+               percent(present, frames), percent(count.of(Provenance::filled), frames),
+               percent(count.of(Provenance::predicted), frames), first, last);
   }
 }
 
 void print_motion(const std::string& path, format::motion::MotionFormat format, const format::motion::MotionInfo& info,
-                  const TakeSummary& summary) {
+                  const RecordingSummary& summary) {
   fmt::print("{}: {}{}\n", path, words_of(format),
              summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
   row("name", info.header.name);
-  row("made by", info.header.made_by);
+  row("made by", info.header.made_by.program);
   row("recorded", info.header.recorded_at);
   const std::int64_t frames = span_of(summary);
   const double length_s = summary.first_time ? seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz : 0;
-  row("length", fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
-                            summary.frames < frames ? fmt::format(", {} of them left out", counted(frames - summary.frames)) : ""));
-  if (summary.first_frame) row("frames", fmt::format("{} to {}, counted from 0", *summary.first_frame, *summary.last_frame));
+  row("length",
+      fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
+                  summary.instants < frames ? fmt::format(", {} of them left out", counted(frames - summary.instants)) : ""));
+  if (summary.first_index) row("frames", fmt::format("{} to {}, counted from 0", *summary.first_index, *summary.last_index));
   const auto labelled =
-      std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.track.label.empty(); });
+      std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.name.label.empty(); });
   row("tracks", fmt::format("{}, {} with a label", summary.tracks.size(), labelled));
   std::int64_t filled = 0, predicted = 0;
   for (const auto& count : summary.tracks) {
-    filled += count.filled;
-    predicted += count.predicted;
+    filled += count.of(Provenance::filled);
+    predicted += count.of(Provenance::predicted);
   }
-  row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.points),
-                            percent(summary.points - filled - predicted, summary.points), percent(filled, summary.points),
-                            percent(predicted, summary.points)));
-  if (format == format::motion::MotionFormat::take) row("observations", counted(summary.observations));
+  row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.samples),
+                            percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
+                            percent(predicted, summary.samples)));
+  if (format == format::motion::MotionFormat::take) row("observations", counted(summary.seen));
+  row("positions", to_string(info.header.frame));
   if (info.up) row("up", *info.up == format::motion::UpAxis::y ? "y" : "z");
-  for (const TakeEdit& edit : info.edits) row("edit", edit.time.empty() ? edit.what : edit.time + ": " + edit.what);
+  for (const Edit& edit : info.edits) row("edit", fmt::format("{} {}", edit.operation, edit.payload));
   if (info.header.rig) {
     row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
     print_calibration(*info.header.rig);
@@ -169,47 +172,48 @@ Json as_json(const Rig& rig) {
   return cameras;
 }
 
-Json as_json(format::motion::MotionFormat format, const format::motion::MotionInfo& info, const TakeSummary& summary) {
+Json as_json(format::motion::MotionFormat format, const format::motion::MotionInfo& info, const RecordingSummary& summary) {
   Json tracks = Json::array();
   for (const auto& count : summary.tracks) {
-    Json entry{{"id", number(count.track.id)},
-               {"label", count.track.label},
-               {"measured", count.measured},
-               {"filled", count.filled},
-               {"predicted", count.predicted}};
-    if (count.measured + count.filled + count.predicted > 0) {
-      entry["first_frame"] = count.first_frame;
-      entry["last_frame"] = count.last_frame;
+    Json entry{{"id", number(count.name.id)},
+               {"label", count.name.label},
+               {"measured", count.of(Provenance::measured)},
+               {"filled", count.of(Provenance::filled)},
+               {"predicted", count.of(Provenance::predicted)}};
+    if (count.first_index && count.last_index) {
+      entry["first_frame"] = *count.first_index;
+      entry["last_frame"] = *count.last_index;
     }
     tracks.push_back(std::move(entry));
   }
   Json result{{"format", format::motion::motion_format_name(format)},
               {"complete", summary.complete},
               {"name", info.header.name},
-              {"made_by", info.header.made_by},
+              {"made_by", info.header.made_by.program},
               {"rate_hz", info.header.rate_hz},
-              {"frames", summary.frames},
-              {"points", summary.points},
-              {"observations", summary.observations},
+              {"frames", summary.instants},
+              {"points", summary.samples},
+              {"observations", summary.seen},
               {"tracks", std::move(tracks)}};
-  if (summary.first_frame) {
-    result["first_frame"] = *summary.first_frame;
-    result["last_frame"] = *summary.last_frame;
+  if (summary.first_index) {
+    result["first_frame"] = *summary.first_index;
+    result["last_frame"] = *summary.last_index;
     result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
   }
+  result["frame"] = to_string(info.header.frame);
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::motion::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = as_json(*info.header.rig);
   Json edits = Json::array();
-  for (const TakeEdit& edit : info.edits) edits.push_back({{"time", edit.time}, {"what", edit.what}});
+  for (const Edit& edit : info.edits) edits.push_back({{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}});
   if (!edits.empty()) result["edits"] = std::move(edits);
   return result;
 }
 
 void report_motion(const InfoOptions& options, format::motion::MotionFormat format) {
   const auto reader = format::motion::open_motion(options.file, format);
-  const TakeSummary summary = format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary()
-                                                                           : format::motion::summary_of(*reader);
+  const RecordingSummary summary =
+      format == format::motion::MotionFormat::take ? format::take::TakeReader(options.file).summary() : summary_of(*reader);
   for (const std::string& sentence : reader->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
   if (options.json) {
     print(as_json(format, reader->info(), summary));

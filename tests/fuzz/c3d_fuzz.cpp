@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (const auto frame = reader->next()) {
       check(frame->index > last);
       last = frame->index;
-      for (const marey::TakePoint& point : frame->points) check(point.position.allFinite());
+      for (const marey::Sample& point : frame->samples) check(point.position.allFinite());
     }
   } catch (const marey::Error& error) {
     const std::string_view message = error.what();

@@ -23,7 +23,7 @@ void walk(marey::format::motion::MotionReader& reader) {
     check(frame->index > last);
     last = frame->index;
     std::set<marey::TrackId> seen;
-    for (const marey::TakePoint& point : frame->points) {
+    for (const marey::Sample& point : frame->samples) {
       check(point.position.allFinite() && marey::number(point.track) > 0 && seen.insert(point.track).second);
     }
   }

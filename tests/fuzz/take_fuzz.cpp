@@ -17,13 +17,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     marey::format::take::TakeReader reader(path);
     check(reader.header().rate_hz > 0);
-    reader.summary();
+    const auto summary = reader.summary();
     reader.edits();
+    reader.warnings();
+    reader.moments();
     for (int frames = 0; frames < 10'000; ++frames) {
       const auto frame = reader.next();
       if (!frame) break;
-      for (const marey::TakePoint& point : frame->points) check(point.position.allFinite());
+      for (const marey::Sample& sample : frame->samples) check(sample.position.allFinite());
     }
+    for (std::size_t i = 0; i < summary.tracks.size() && i < 10; ++i) reader.read_track(summary.tracks[i].name.id);
   } catch (const marey::Error& error) {
     check(std::string_view(error.what()).starts_with(path));
   }

@@ -34,25 +34,45 @@ std::string to_string(const FrameOfReference& frame) {
 void OptionalColumn::set(std::size_t row, std::span<const double> values) {
   const auto width = static_cast<std::size_t>(width_);
   if (values_.size() == values_.capacity()) values_.reserve(std::max(rows_, row + 1) * width);
-  known_.resize(row, false);
+  if (known_.empty() && rows_ > row) known_.reserve(rows_), values_.reserve(rows_ * width);
+  if (known_.size() < row) {
+    unknown_ += row - known_.size();
+    known_.resize(row, false);
+    values_.resize(row * width);
+  }
   known_.push_back(true);
-  values_.resize(row * width);
   values_.insert(values_.end(), values.begin(), values.end());
+}
+
+void OptionalColumn::add_rows(std::size_t first, std::span<const double> values, const std::vector<bool>& known) {
+  unknown_ += first - known_.size();
+  known_.resize(first, false);
+  values_.resize(first * static_cast<std::size_t>(width_));
+  values_.insert(values_.end(), values.begin(), values.end());
+  if (known.empty()) {
+    known_.resize(first + values.size() / static_cast<std::size_t>(width_), true);
+  } else {
+    known_.insert(known_.end(), known.begin(), known.end());
+    unknown_ += static_cast<std::size_t>(std::count(known.begin(), known.end(), false));
+  }
+}
+
+void OptionalColumn::clear() {
+  values_.clear();
+  known_.clear();
+  unknown_ = 0;
 }
 
 TrackColumns::TrackColumns(TrackName of, int dimensions)
     : name(std::move(of)),
       dimensions_(dimensions),
-      velocity_(dimensions),
-      covariance_(dimensions * (dimensions + 1) / 2),
-      score_(1),
-      box_(4),
-      residual_px_(1),
-      residual_m_(1) {}
+      optional_{OptionalColumn(dimensions), OptionalColumn(dimensions * (dimensions + 1) / 2),
+                OptionalColumn(1),          OptionalColumn(4),
+                OptionalColumn(1),          OptionalColumn(1)} {}
 
 std::optional<Vector<3>> TrackColumns::velocity(std::size_t row) const {
-  if (!velocity_.known(row)) return std::nullopt;
-  const double* value = velocity_.values(row);
+  if (!column(Optional::velocity).known(row)) return std::nullopt;
+  const double* value = column(Optional::velocity).values(row);
   return Vector<3>(value[0], value[1], dimensions_ == 3 ? value[2] : 0);
 }
 
@@ -67,21 +87,21 @@ Sample TrackColumns::sample(std::size_t row) const {
                 .box = {},
                 .residual_px = {},
                 .residual_m = {}};
-  if (covariance_.known(row)) {
-    const double* value = covariance_.values(row);
+  if (column(Optional::covariance).known(row)) {
+    const double* value = column(Optional::covariance).values(row);
     Matrix<3> covariance = Matrix<3>::Zero();
     for (int i = 0; i < dimensions_; ++i) {
       for (int k = i; k < dimensions_; ++k) covariance(i, k) = covariance(k, i) = *value++;
     }
     sample.covariance = covariance;
   }
-  if (score_.known(row)) sample.score = *score_.values(row);
-  if (box_.known(row)) {
-    const double* value = box_.values(row);
+  if (column(Optional::score).known(row)) sample.score = *column(Optional::score).values(row);
+  if (column(Optional::box).known(row)) {
+    const double* value = column(Optional::box).values(row);
     sample.box = Box{value[0], value[1], value[2], value[3]};
   }
-  if (residual_px_.known(row)) sample.residual_px = *residual_px_.values(row);
-  if (residual_m_.known(row)) sample.residual_m = *residual_m_.values(row);
+  if (column(Optional::residual_px).known(row)) sample.residual_px = *column(Optional::residual_px).values(row);
+  if (column(Optional::residual_m).known(row)) sample.residual_m = *column(Optional::residual_m).values(row);
   if (const auto outline = outlines_.find(row); outline != outlines_.end()) sample.outline = outline->second;
   return sample;
 }
@@ -102,26 +122,52 @@ void TrackColumns::add(std::int32_t instant, const Sample& sample) {
   if (dimensions_ == 3) z_.push_back(sample.position.z());
   provenance_.push_back(sample.provenance);
   cameras_.push_back(sample.cameras);
-  if (sample.velocity) velocity_.set(row, {sample.velocity->data(), static_cast<std::size_t>(dimensions_)});
+  if (sample.velocity) column(Optional::velocity).set(row, {sample.velocity->data(), static_cast<std::size_t>(dimensions_)});
   if (sample.covariance) {
     std::array<double, 6> upper{};
     std::size_t count = 0;
     for (int i = 0; i < dimensions_; ++i) {
       for (int k = i; k < dimensions_; ++k) upper[count++] = (*sample.covariance)(i, k);
     }
-    covariance_.set(row, {upper.data(), count});
+    column(Optional::covariance).set(row, {upper.data(), count});
   }
-  if (sample.score) score_.set(row, {&*sample.score, 1});
-  if (sample.box) box_.set(row, std::array{sample.box->left, sample.box->top, sample.box->width, sample.box->height});
-  if (sample.residual_px) residual_px_.set(row, {&*sample.residual_px, 1});
-  if (sample.residual_m) residual_m_.set(row, {&*sample.residual_m, 1});
+  if (sample.score) column(Optional::score).set(row, {&*sample.score, 1});
+  if (sample.box)
+    column(Optional::box).set(row, std::array{sample.box->left, sample.box->top, sample.box->width, sample.box->height});
+  if (sample.residual_px) column(Optional::residual_px).set(row, {&*sample.residual_px, 1});
+  if (sample.residual_m) column(Optional::residual_m).set(row, {&*sample.residual_m, 1});
   if (sample.outline) outlines_.emplace(row, sample.outline);
 }
 
 void TrackColumns::reserve(std::size_t rows) {
   at_.reserve(rows), x_.reserve(rows), y_.reserve(rows), provenance_.reserve(rows), cameras_.reserve(rows);
   if (dimensions_ == 3) z_.reserve(rows);
-  for (OptionalColumn* column : {&velocity_, &covariance_, &score_, &box_, &residual_px_, &residual_m_}) column->reserve(rows);
+  for (OptionalColumn& column : optional_) column.reserve(rows);
+}
+
+void TrackColumns::add_rows(const Rows& rows) {
+  for (std::size_t i = 0; i < rows.at.size(); ++i) {
+    if (i == 0 ? !is_new(at_, rows.at[0]) : rows.at[i] <= rows.at[i - 1])
+      throw Error("track {} has two samples at one instant", number(name.id));
+  }
+  const auto put = [](auto& column, const auto& more) { column.insert(column.end(), more.begin(), more.end()); };
+  put(at_, rows.at);
+  put(x_, rows.x);
+  put(y_, rows.y);
+  if (dimensions_ == 3) put(z_, rows.z);
+  put(provenance_, rows.provenance);
+  put(cameras_, rows.cameras);
+}
+
+void TrackColumns::clear() {
+  at_.clear();
+  x_.clear();
+  y_.clear();
+  z_.clear();
+  provenance_.clear();
+  cameras_.clear();
+  for (OptionalColumn& column : optional_) column.clear();
+  outlines_.clear();
 }
 
 void TrackColumns::set_at(std::vector<std::int32_t> instants) {

@@ -1,6 +1,7 @@
 // The one result of every job: where everything was, when, how well that is known, and how it was found out.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -79,25 +80,48 @@ class OptionalColumn {
  public:
   explicit OptionalColumn(int width) : width_(width) {}
 
+  int width() const { return width_; }
   bool empty() const { return known_.empty(); }  ///< no row is known
+  /// Up to the last row that is known.
+  std::size_t size() const { return known_.size(); }
   bool known(std::size_t row) const { return row < known_.size() && known_[row]; }
+  bool all_known(std::size_t rows) const { return known_.size() == rows && unknown_ == 0; }
   /// `width` numbers; only where the row is known.
   const double* values(std::size_t row) const { return values_.data() + row * static_cast<std::size_t>(width_); }
+  /// Of all rows up to the last one known; 0 in those that are not.
+  std::span<const double> values() const { return values_; }
   /// Rows before `row` that were never set are unknown. Rows come in growing order.
   void set(std::size_t row, std::span<const double> values);
   /// So many rows will come: where any is known, no more is taken than they need.
   void reserve(std::size_t rows) { rows_ = rows; }
+  /// Rows from `first` on, as a file has them. `known` has a value for each of them, or none at all where all are known.
+  void add_rows(std::size_t first, std::span<const double> values, const std::vector<bool>& known);
+  void clear();
 
  private:
   int width_;
   std::size_t rows_ = 0;
   std::vector<double> values_;
   std::vector<bool> known_;
+  std::size_t unknown_ = 0;  // of the rows in known_
 };
 
 /// One track over the whole recording, in columns, by growing instant. Optional columns exist only where a step filled them.
 class TrackColumns {
  public:
+  /// The columns that not every step fills.
+  enum class Optional { velocity, covariance, score, box, residual_px, residual_m };
+  static constexpr int kOptionals = 6;
+  using Outlines = std::map<std::size_t, std::shared_ptr<const Outline>>;
+
+  /// The columns that every row has. `z` is empty in two dimensions.
+  struct Rows {
+    std::span<const std::int32_t> at;
+    std::span<const double> x, y, z;
+    std::span<const Provenance> provenance;
+    std::span<const CameraMask> cameras;
+  };
+
   TrackColumns(TrackName name, int dimensions);
 
   TrackName name;
@@ -113,7 +137,11 @@ class TrackColumns {
   std::span<const double> z() const { return z_; }  ///< empty in two dimensions
   std::span<const Provenance> provenance() const { return provenance_; }
   std::span<const CameraMask> cameras() const { return cameras_; }
-  bool has_velocities() const { return !velocity_.empty(); }
+  bool has_velocities() const { return !column(Optional::velocity).empty(); }
+  /// A covariance is its upper triangle, row by row; a box left, top, width, height.
+  const OptionalColumn& column(Optional which) const { return optional_[static_cast<std::size_t>(which)]; }
+  OptionalColumn& column(Optional which) { return optional_[static_cast<std::size_t>(which)]; }
+  const Outlines& outlines() const { return outlines_; }  ///< by row
 
   Vector<2> place(std::size_t row) const { return {x_[row], y_[row]}; }
   Vector<3> position(std::size_t row) const { return {x_[row], y_[row], z_.empty() ? 0 : z_[row]}; }
@@ -129,7 +157,12 @@ class TrackColumns {
   void reserve(std::size_t rows);
   /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
   void set_at(std::vector<std::int32_t> instants);
-  void forget_velocities() { velocity_ = OptionalColumn(dimensions_); }
+  void forget_velocities();
+  /// Many rows at once, later than those that are there; what they have in optional columns is put into those afterwards.
+  void add_rows(const Rows& rows);
+  void set_outline(std::size_t row, std::shared_ptr<const Outline> outline) { outlines_[row] = std::move(outline); }
+  /// Leaves no row, and the memory for the next ones.
+  void clear();
 
  private:
   int dimensions_;
@@ -137,8 +170,8 @@ class TrackColumns {
   std::vector<double> x_, y_, z_;
   std::vector<Provenance> provenance_;
   std::vector<CameraMask> cameras_;
-  OptionalColumn velocity_, covariance_, score_, box_, residual_px_, residual_m_;
-  std::map<std::size_t, std::shared_ptr<const Outline>> outlines_;  // by row
+  std::array<OptionalColumn, kOptionals> optional_;
+  Outlines outlines_;
 };
 
 /// A whole recording in memory. What may be long and is only passed on is better streamed, instant by instant.

@@ -45,6 +45,7 @@ class MarkersInSpace final : public Stage {
         labels_(options.set),
         filler_(frames_in(options.fill_s, rate_hz), frames_in(std::min(options.predict_s, options.fill_s), rate_hz)) {
     header_.name = "the rig";
+    header_.made_by.program = "marey reconstruct";
     header_.frame.kind = FrameOfReference::Kind::space;
     header_.rate_hz = rate_hz;
     header_.rig = rig;

@@ -24,40 +24,11 @@ struct ForAWhile {
   }
 };
 
-class TakeSink final : public Sink {
- public:
-  explicit TakeSink(const std::string& path) : path_(path) {}
-  std::string name() const override { return path_; }
-  Wants begin(const RecordingHeader& header) override {
-    writer_.emplace(
-        path_,
-        TakeHeader{.name = path_, .made_by = "marey reconstruct", .recorded_at = {}, .rate_hz = header.rate_hz, .rig = header.rig});
-    return {.seen = true};
-  }
-  void write(const Instant& instant) override {
-    for (const TrackName& name : instant.named) writer_->set_label(name.id, name.label);
-    TakeFrame frame{.index = instant.index, .time = instant.time, .observations = {}, .points = {}};
-    for (const SeenPoint& seen : instant.seen)
-      frame.observations.push_back({seen.camera, seen.pixel, seen.sigma.value_or(0), seen.area.value_or(0), seen.track});
-    for (const Sample& sample : instant.samples)
-      frame.points.push_back({sample.track, sample.position, sample.covariance, sample.provenance, sample.cameras,
-                              sample.residual_px, sample.residual_m});
-    writer_->write(frame);
-  }
-  void finish() override { writer_->finish(); }
-
- private:
-  std::string path_;
-  std::optional<format::take::TakeWriter> writer_;
-};
-
 /// Most formats begin with what is known only at the end: the take is read twice.
 void rewrite(const std::string& take, const std::string& out, format::motion::MotionFormat format) {
   const format::motion::MotionPlan plan = plan_of(*open_motion(take, format::motion::MotionFormat::take), take);
   const auto reader = open_motion(take, format::motion::MotionFormat::take);
-  const auto writer = create_motion(out, format, plan);
-  while (const auto frame = reader->next()) writer->write(*frame);
-  writer->finish();
+  replay(*reader, *create_motion(out, format, plan));
 }
 
 Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInSpaceOptions& options) {
@@ -96,7 +67,7 @@ Summary record(const Rig& rig, const std::string& observations, const std::strin
   for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
   const auto stage = markers_in_space(fitted, clock.rate_hz(), options);
   Sinks sinks;
-  sinks.add(std::make_unique<TakeSink>(take));
+  sinks.add(std::make_unique<format::take::TakeWriter>(take));
   Summary summary = run(*stage, clock, sinks, hooks);
   report_cameras(clock, fitted, summary);
   return summary;

@@ -45,7 +45,7 @@ Score score_of(const std::string& path, const simulate::room::RoomScene& scene) 
   format::take::TakeReader reader(path);
   while (const auto frame = reader.next()) {
     const auto truth = scene.points(seconds(frame->time));
-    for (const TakePoint& point : frame->points) {
+    for (const Sample& point : frame->samples) {
       int nearest = 0;
       for (int m = 0; m < std::ssize(truth); ++m) {
         if ((truth[m] - point.position).norm() < (truth[nearest] - point.position).norm()) nearest = m;
@@ -134,8 +134,8 @@ TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
   const auto frame = reader.next().value();
   const auto tracks = reader.tracks();
   const auto truth = scene.points(0);
-  for (const TakePoint& point : frame.points) {
-    const auto track = std::find_if(tracks.begin(), tracks.end(), [&](const TakeTrack& one) { return one.id == point.track; });
+  for (const Sample& point : frame.samples) {
+    const auto track = std::find_if(tracks.begin(), tracks.end(), [&](const TrackName& one) { return one.id == point.track; });
     ASSERT_NE(track, tracks.end());
     const auto label = std::find(scene.labels().begin(), scene.labels().end(), track->label);
     ASSERT_NE(label, scene.labels().end()) << track->label;
@@ -245,7 +245,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
 
   format::take::TakeReader reader(folder / "wing.marey");
   std::map<TrackId, int> marker_of;
-  for (const TakeTrack& track : reader.tracks()) {
+  for (const TrackName& track : reader.tracks()) {
     if (!track.label.empty()) marker_of[track.id] = std::stoi(track.label) - 1;
   }
   Spread pixels, places;
@@ -254,12 +254,12 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   while (const auto frame = reader.next()) {
     std::vector<Vector<3>> from, to;
     std::vector<int> markers;
-    for (const TakePoint& point : frame->points) {
+    for (const Sample& point : frame->samples) {
       if (!marker_of.contains(point.track)) continue;
       markers.push_back(marker_of[point.track]);
       from.push_back(options.set.places[static_cast<std::size_t>(markers.back())]);
       to.push_back(point.position);
-      for (const TakeObservation& seen : frame->observations) {
+      for (const SeenPoint& seen : frame->seen) {
         if (seen.track != point.track) continue;
         const int camera = number(seen.camera);
         const Vector<2> error =

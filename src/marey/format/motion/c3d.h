@@ -17,6 +17,6 @@ std::unique_ptr<MotionReader> open_c3d(const std::string& path);
 std::unique_ptr<MotionReader> read_c3d(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writes points as a PC's floats, in mm. A track without label is called by its id. `up` is only said, nothing is turned.
-std::unique_ptr<MotionWriter> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up);
+std::unique_ptr<Sink> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up);
 
 }  // namespace marey::format::motion

@@ -176,7 +176,7 @@ class C3dReader : public MotionReader {
       for (const std::string& sentence : *sentences) warnings_.push_back(name + ": " + sentence);
     }
     tells_measured_ = any_point_tells();
-    info_.header.made_by = maker();
+    info_.header.made_by.program = maker();
     info_.header.rate_hz = rate(name);
     info_.frame_count = static_cast<std::int64_t>(layout_.frames);
     const std::string screen = head_.text("POINT:Y_SCREEN");
@@ -187,13 +187,13 @@ class C3dReader : public MotionReader {
   const MotionInfo& info() const override { return info_; }
   std::vector<std::string> warnings() const override { return warnings_; }
 
-  std::optional<TakeFrame> next() override {
+  std::optional<Instant> next() override {
     if (at_ == layout_.frames) return std::nullopt;
-    TakeFrame frame;
+    Instant frame;
     frame.index = layout_.first_index + static_cast<std::int64_t>(at_);
     frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / info_.header.rate_hz);
     for (std::size_t i = 0; i < layout_.points; ++i) {
-      if (auto point = point_at(at_, i)) frame.points.push_back(*point);
+      if (auto point = point_at(at_, i)) frame.samples.push_back(*point);
     }
     ++at_;
     return frame;
@@ -220,11 +220,11 @@ class C3dReader : public MotionReader {
     return false;
   }
 
-  std::optional<TakePoint> point_at(std::size_t frame, std::size_t i) const {
+  std::optional<Sample> point_at(std::size_t frame, std::size_t i) const {
     const std::size_t at = offset(frame, i);
     const int word = fourth_word(at);
     if (word < 0) return std::nullopt;
-    TakePoint point;
+    Sample point;
     point.track = TrackId(static_cast<int>(i) + 1);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value =
@@ -264,7 +264,7 @@ class C3dReader : public MotionReader {
     }
     labels.resize(layout_.points);
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      info_.tracks.push_back({TrackId(static_cast<int>(i) + 1), std::move(labels[i])});
+      info_.tracks.push_back({TrackId(static_cast<int>(i) + 1), std::move(labels[i]), {}});
     }
   }
 

@@ -90,38 +90,42 @@ class ParameterSection {
   int group_ = 0;
 };
 
-class C3dWriter : public MotionWriter {
+class C3dWriter : public MotionSink {
  public:
   C3dWriter(const std::string& path, const MotionPlan& plan, UpAxis up)
-      : path_(path), plan_(plan), file_(path), points_(plan.info.tracks.size()), next_(plan.first_frame) {
+      : MotionSink(path), plan_(plan), up_(up), points_(plan.info.tracks.size()), next_(plan.first_frame) {
     if (points_ > kMostPoints) {
       throw Error("{}: {} tracks, and a C3D file has room for {}; write fewer", path, points_, kMostPoints);
     }
     // What integers of 16 bits would need, and fine enough that a residual, 255 steps at most, says something.
     scale_mm_ = std::max(plan.farthest_m * 1000 / 32000, 0.01);
     for (std::size_t i = 0; i < points_; ++i) column_[plan.info.tracks[i].id] = i;
-    write_head(up);
   }
 
-  void write(const TakeFrame& frame) override {
+  void write(const Instant& frame) override {
     if (frame.index < next_ || frame.index > plan_.last_frame) {
-      throw Error("{}: frame {} comes out of order, or beyond what was planned", path_, frame.index);
+      throw Error("{}: frame {} comes out of order, or beyond what was planned", path(), frame.index);
     }
     while (next_ < frame.index) put_frame({});
-    put_frame(frame.points);
+    put_frame(frame.samples);
   }
 
   void finish() override {
     while (next_ <= plan_.last_frame) put_frame({});
-    file_.finish();
+    file_->finish();
   }
 
  private:
-  void put_frame(std::span<const TakePoint> points) {
+  void start(const RecordingHeader&) override {
+    file_.emplace(path());
+    write_head(up_);
+  }
+
+  void put_frame(std::span<const Sample> points) {
     row_.clear();
     row_.resize(points_ * 4, 0.0F);
     for (std::size_t i = 0; i < points_; ++i) row_[4 * i + 3] = -1;
-    for (const TakePoint& point : points) {
+    for (const Sample& point : points) {
       const auto column = column_.find(point.track);
       if (column == column_.end()) continue;
       float* out = row_.data() + 4 * column->second;
@@ -129,12 +133,12 @@ class C3dWriter : public MotionWriter {
       out[3] = static_cast<float>(fourth_word(point));
     }
     static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
-    file_.write({reinterpret_cast<const char*>(row_.data()), row_.size() * sizeof(float)});
+    file_->write({reinterpret_cast<const char*>(row_.data()), row_.size() * sizeof(float)});
     ++next_;
   }
 
   /// 0 says "not measured", so that what was measured must say something else.
-  int fourth_word(const TakePoint& point) const {
+  int fourth_word(const Sample& point) const {
     if (!plan_.tells_measured || point.provenance != Provenance::measured) return 0;
     const double steps = point.residual_m.value_or(0) * 1000 / scale_mm_;
     const int residual = static_cast<int>(std::clamp(std::round(steps), 0.0, 255.0));
@@ -144,7 +148,7 @@ class C3dWriter : public MotionWriter {
 
   std::vector<std::string> names() const {
     std::vector<std::string> names;
-    for (const TakeTrack& track : plan_.info.tracks) {
+    for (const TrackName& track : plan_.info.tracks) {
       names.push_back(track.label.empty() ? fmt::format("*{}", number(track.id)) : plain_text(track.label).substr(0, kLongestName));
     }
     return names;
@@ -153,7 +157,7 @@ class C3dWriter : public MotionWriter {
   void write_head(UpAxis up) {
     const std::int64_t frames = plan_.last_frame - plan_.first_frame + 1;
     const std::int64_t first = plan_.first_frame + 1, last = plan_.last_frame + 1;
-    const std::string section = parameters(up, frames, first, last, 0).blocks(path_);
+    const std::string section = parameters(up, frames, first, last, 0).blocks(path());
     const std::size_t data_block = 2 + section.size() / kBlock;
     std::string head("\x02\x50", 2);
     put_word(head, static_cast<std::int64_t>(points_));
@@ -166,8 +170,8 @@ class C3dWriter : public MotionWriter {
     put_word(head, 0);
     put_real(head, plan_.info.header.rate_hz);
     head.resize(kBlock, '\0');
-    file_.write(head);
-    file_.write(parameters(up, frames, first, last, data_block).blocks(path_));
+    file_->write(head);
+    file_->write(parameters(up, frames, first, last, data_block).blocks(path()));
   }
 
   ParameterSection parameters(UpAxis up, std::int64_t frames, std::int64_t first, std::int64_t last, std::size_t data_block) const {
@@ -207,9 +211,9 @@ class C3dWriter : public MotionWriter {
     }
   }
 
-  std::string path_;
   MotionPlan plan_;
-  WholeFile file_;
+  UpAxis up_;
+  std::optional<WholeFile> file_;
   std::size_t points_;
   std::int64_t next_;
   double scale_mm_ = 1;
@@ -219,7 +223,7 @@ class C3dWriter : public MotionWriter {
 
 }  // namespace
 
-std::unique_ptr<MotionWriter> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up) {
+std::unique_ptr<Sink> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up) {
   return std::make_unique<C3dWriter>(path, plan, up);
 }
 

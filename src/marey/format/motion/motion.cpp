@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,36 +33,54 @@ constexpr std::array kFormats{NamedFormat{MotionFormat::take, "take", ".marey"},
 class TakeMotionReader : public MotionReader {
  public:
   explicit TakeMotionReader(const std::string& path) : reader_(path) {
-    const TakeSummary summary = reader_.summary();
     info_.header = reader_.header();
-    for (const auto& count : summary.tracks) info_.tracks.push_back(count.track);
-    info_.frame_count = summary.first_frame ? *summary.last_frame - *summary.first_frame + 1 : 0;
+    info_.tracks = reader_.tracks();
+    info_.frame_count = reader_.instant_count();
     info_.edits = reader_.edits();
-    info_.up = UpAxis::z;
-    if (!summary.complete) warnings_.push_back(path + ": its recording was cut off, or still goes on; what there is was read");
+    info_.head = reader_.head();
+    if (info_.header.frame.kind == FrameOfReference::Kind::space) info_.up = UpAxis::z;
   }
   const MotionInfo& info() const override { return info_; }
-  std::optional<TakeFrame> next() override { return reader_.next(); }
-  std::vector<std::string> warnings() const override { return warnings_; }
+  std::optional<Instant> next() override { return reader_.next(); }
+  std::vector<std::string> warnings() const override { return reader_.warnings(); }
 
  private:
   take::TakeReader reader_;
   MotionInfo info_;
-  std::vector<std::string> warnings_;
 };
 
-class TakeMotionWriter : public MotionWriter {
+/// A take with the edits of the one it is a copy of.
+class TakeSink : public Sink {
  public:
-  TakeMotionWriter(const std::string& path, const MotionPlan& plan) : writer_(path, plan.info.header) {
-    for (const TakeTrack& track : plan.info.tracks) writer_.set_label(track.id, track.label);
-    for (const TakeEdit& edit : plan.info.edits) writer_.add_edit(edit);
+  TakeSink(const std::string& path, const MotionPlan& plan) : writer_(path), info_(plan.info) {}
+  std::string name() const override { return writer_.name(); }
+  Wants begin(const RecordingHeader& header) override {
+    const Wants wants = writer_.begin(header);
+    for (const TrackName& track : info_.tracks) writer_.set_name(track);
+    for (const Edit& edit : info_.edits) writer_.add_edit(edit);
+    writer_.set_head(info_.head);
+    return wants;
   }
-  void write(const TakeFrame& frame) override { writer_.write(frame); }
+  void write(const Instant& instant) override { writer_.write(instant); }
   void finish() override { writer_.finish(); }
 
  private:
   take::TakeWriter writer_;
+  MotionInfo info_;
 };
+
+/// (x, y, z) with y up, where z is up: (x, −z, y).
+Matrix<3> z_up_from_y_up() {
+  return Matrix<3>{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+}
+
+void turn(Instant& instant, const Matrix<3>& rotation) {
+  for (Sample& sample : instant.samples) {
+    sample.position = (rotation * sample.position).eval();
+    if (sample.velocity) sample.velocity = (rotation * *sample.velocity).eval();
+    if (sample.covariance) sample.covariance = (rotation * *sample.covariance * rotation.transpose()).eval();
+  }
+}
 
 /// Turns a world whose y is up so that its z is, or back.
 class TurningReader : public MotionReader {
@@ -71,29 +88,30 @@ class TurningReader : public MotionReader {
   explicit TurningReader(std::unique_ptr<MotionReader> reader) : reader_(std::move(reader)) {}
   const MotionInfo& info() const override { return reader_->info(); }
   std::vector<std::string> warnings() const override { return reader_->warnings(); }
-  std::optional<TakeFrame> next() override {
-    auto frame = reader_->next();
-    if (!frame) return frame;
-    for (TakePoint& point : frame->points) point.position = {point.position.x(), -point.position.z(), point.position.y()};
-    return frame;
+  std::optional<Instant> next() override {
+    auto instant = reader_->next();
+    if (instant) turn(*instant, z_up_from_y_up());
+    return instant;
   }
 
  private:
   std::unique_ptr<MotionReader> reader_;
 };
 
-class TurningWriter : public MotionWriter {
+class TurningSink : public Sink {
  public:
-  explicit TurningWriter(std::unique_ptr<MotionWriter> writer) : writer_(std::move(writer)) {}
-  void write(const TakeFrame& frame) override {
-    TakeFrame turned = frame;
-    for (TakePoint& point : turned.points) point.position = {point.position.x(), point.position.z(), -point.position.y()};
-    writer_->write(turned);
+  explicit TurningSink(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) {}
+  std::string name() const override { return sink_->name(); }
+  Wants begin(const RecordingHeader& header) override { return sink_->begin(header); }
+  void write(const Instant& instant) override {
+    Instant turned = instant;
+    turn(turned, z_up_from_y_up().transpose());
+    sink_->write(turned);
   }
-  void finish() override { writer_->finish(); }
+  void finish() override { sink_->finish(); }
 
  private:
-  std::unique_ptr<MotionWriter> writer_;
+  std::unique_ptr<Sink> sink_;
 };
 
 std::unique_ptr<MotionReader> open_plainly(const std::string& path, MotionFormat format) {
@@ -114,16 +132,16 @@ std::unique_ptr<MotionReader> open_plainly(const std::string& path, MotionFormat
   throw Error("{}: cannot be read", path);
 }
 
-std::unique_ptr<MotionWriter> create_plainly(const std::string& path, MotionFormat format, const MotionPlan& plan, UpAxis up) {
+std::unique_ptr<Sink> create_plainly(const std::string& path, MotionFormat format, const MotionPlan& plan, UpAxis up) {
   switch (format) {
     case MotionFormat::take:
-      return std::make_unique<TakeMotionWriter>(path, plan);
+      return std::make_unique<TakeSink>(path, plan);
     case MotionFormat::c3d:
       return create_c3d(path, plan, up);
     case MotionFormat::trc:
       return create_trc(path, plan);
     case MotionFormat::csv:
-      return create_tidy_csv(path, plan);
+      return create_tidy_csv(path);
     case MotionFormat::motive:
       return create_motive_csv(path, plan);
     case MotionFormat::nexus:
@@ -153,17 +171,24 @@ std::string beginning_of(const std::string& path) {
 
 }  // namespace
 
-MotionPlan plan_of(MotionReader& reader, const std::string& name) {
+Sink::Wants MotionSink::begin(const RecordingHeader& header) {
+  if (header.frame.kind != FrameOfReference::Kind::space)
+    throw Error("{}: such a file holds points in space, and these positions are {}", path_, to_string(header.frame));
+  start(header);
+  return {};
+}
+
+MotionPlan plan_of(const MotionInfo& info, RecordingReader& reader, const std::string& name) {
   MotionPlan plan;
-  plan.info = reader.info();
+  plan.info = info;
   FrameNumbers numbers;
-  while (const auto frame = reader.next()) {
-    if (numbers.count() == 0) plan.first_frame = frame->index;
-    numbers.add(frame->index);
-    plan.last_frame = frame->index;
-    for (const TakePoint& point : frame->points) {
-      plan.farthest_m = std::max(plan.farthest_m, point.position.cwiseAbs().maxCoeff());
-      plan.tells_measured |= point.provenance != Provenance::measured || point.cameras != 0 || point.residual_m.has_value();
+  while (const auto instant = reader.next()) {
+    if (numbers.count() == 0) plan.first_frame = instant->index;
+    numbers.add(instant->index);
+    plan.last_frame = instant->index;
+    for (const Sample& sample : instant->samples) {
+      plan.farthest_m = std::max(plan.farthest_m, sample.position.cwiseAbs().maxCoeff());
+      plan.tells_measured |= !sample.measured() || sample.cameras != 0 || sample.residual_m.has_value();
     }
   }
   numbers.check(name);
@@ -171,31 +196,8 @@ MotionPlan plan_of(MotionReader& reader, const std::string& name) {
   return plan;
 }
 
-TakeSummary summary_of(MotionReader& reader) {
-  TakeSummary summary;
-  summary.complete = true;
-  std::map<TrackId, TakeSummary::TrackCount> counts;
-  for (const TakeTrack& track : reader.info().tracks) counts[track.id].track = track;
-  while (const auto frame = reader.next()) {
-    if (summary.frames++ == 0) {
-      summary.first_frame = frame->index;
-      summary.first_time = frame->time;
-    }
-    summary.last_frame = frame->index;
-    summary.last_time = frame->time;
-    summary.observations += static_cast<std::int64_t>(frame->observations.size());
-    summary.points += static_cast<std::int64_t>(frame->points.size());
-    for (const TakePoint& point : frame->points) {
-      TakeSummary::TrackCount& count = counts[point.track];
-      if (count.measured + count.filled + count.predicted == 0) count.first_frame = frame->index;
-      count.last_frame = frame->index;
-      ++(point.provenance == Provenance::measured ? count.measured
-         : point.provenance == Provenance::filled ? count.filled
-                                                  : count.predicted);
-    }
-  }
-  for (auto& [id, count] : counts) summary.tracks.push_back(std::move(count));
-  return summary;
+MotionPlan plan_of(MotionReader& reader, const std::string& name) {
+  return plan_of(reader.info(), reader, name);
 }
 
 std::string motion_format_names() {
@@ -247,10 +249,26 @@ std::unique_ptr<MotionReader> open_motion(const std::string& path, MotionFormat 
   return std::make_unique<TurningReader>(std::move(reader));
 }
 
-std::unique_ptr<MotionWriter> create_motion(const std::string& path, MotionFormat format, const MotionPlan& plan, UpAxis up) {
-  auto writer = create_plainly(path, format, plan, up);
-  if (up == UpAxis::z || format == MotionFormat::take) return writer;
-  return std::make_unique<TurningWriter>(std::move(writer));
+bool written_while_recording(MotionFormat format) {
+  return format == MotionFormat::take || format == MotionFormat::csv;
+}
+
+std::unique_ptr<Sink> create_motion(const std::string& path, MotionFormat format, const MotionPlan& plan, UpAxis up) {
+  auto sink = create_plainly(path, format, plan, up);
+  if (up == UpAxis::z || format == MotionFormat::take) return sink;
+  return std::make_unique<TurningSink>(std::move(sink));
+}
+
+void write_motion(const std::string& path, MotionFormat format, const Recording& recording, UpAxis up) {
+  MemoryReader first(recording), second(recording);
+  const MotionInfo info{.header = recording.header,
+                        .tracks = first.tracks(),
+                        .edits = recording.edits,
+                        .head = recording.head,
+                        .frame_count = first.instant_count(),
+                        .up = {}};
+  const auto sink = create_motion(path, format, plan_of(info, first, recording.header.name), up);
+  replay(second, *sink);
 }
 
 }  // namespace marey::format::motion

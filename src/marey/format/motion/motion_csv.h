@@ -16,13 +16,13 @@ namespace marey::format::motion {
 std::unique_ptr<MotionReader> open_tidy_csv(const std::string& path);
 std::unique_ptr<MotionReader> read_tidy_csv(std::string_view text, const std::string& name);
 /// `frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm`: one row a point.
-std::unique_ptr<MotionWriter> create_tidy_csv(const std::string& path, const MotionPlan& plan);
+std::unique_ptr<Sink> create_tidy_csv(const std::string& path);
 
 /// As OptiTrack's Motive exports: markers' positions are read, rotations and errors passed over.
 std::unique_ptr<MotionReader> open_motive_csv(const std::string& path);
 std::unique_ptr<MotionReader> read_motive_csv(std::string_view text, const std::string& name);
 /// The same layout, in m as Motive's default is.
-std::unique_ptr<MotionWriter> create_motive_csv(const std::string& path, const MotionPlan& plan);
+std::unique_ptr<Sink> create_motive_csv(const std::string& path, const MotionPlan& plan);
 
 /// As Vicon's Nexus exports: the part that begins with "Trajectories".
 std::unique_ptr<MotionReader> open_nexus_csv(const std::string& path);

@@ -32,36 +32,37 @@ std::string error_of(const std::function<void()>& action) {
   return "no error";
 }
 
-/// A take with gaps, whose values are floats of whole micrometres.
-Take walk(int markers = 5, int frames = 40, int first = 3) {
-  Take take;
-  take.header.name = "walk";
-  take.header.rate_hz = 120;
-  for (int m = 1; m <= markers; ++m) take.tracks.push_back({TrackId(m), fmt::format("marker, \"{}\"", m)});
+/// A recording with gaps, whose values are floats of whole micrometres.
+Recording walk(int markers = 5, int frames = 40, int first = 3) {
+  RecordingHeader header;
+  header.name = "walk";
+  header.rate_hz = 120;
+  Recording recording(header);
+  for (int m = 1; m <= markers; ++m) recording.set_name({TrackId(m), fmt::format("marker, \"{}\"", m), {}});
   for (int i = 0; i < frames; ++i) {
-    TakeFrame frame;
-    frame.index = first + i;
-    frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / 120);
+    Instant instant;
+    instant.index = first + i;
+    instant.time = timestamp_from_seconds(static_cast<double>(instant.index) / 120);
     for (int m = 1; m <= markers; ++m) {
       if ((i + m) % 7 == 0) continue;
-      TakePoint point;
-      point.track = TrackId(m);
-      point.position = {0.25 * m, -0.5 + 0.015625 * i, 1.0 / 1024 * (i * m)};
-      point.provenance = (i + m) % 5 == 0 ? Provenance::filled : Provenance::measured;
-      if (point.provenance == Provenance::measured) {
-        point.cameras = static_cast<CameraMask>(1 + (i + m) % 127);
-        point.residual_m = 0.0005;
+      Sample sample;
+      sample.track = TrackId(m);
+      sample.position = {0.25 * m, -0.5 + 0.015625 * i, 1.0 / 1024 * (i * m)};
+      sample.provenance = (i + m) % 5 == 0 ? Provenance::filled : Provenance::measured;
+      if (sample.measured()) {
+        sample.cameras = static_cast<CameraMask>(1 + (i + m) % 127);
+        sample.residual_m = 0.0005;
       }
-      frame.points.push_back(point);
+      instant.samples.push_back(sample);
     }
-    take.frames.push_back(frame);
+    recording.add(instant);
   }
-  return take;
+  return recording;
 }
 
 struct Read {
   MotionInfo info;
-  std::vector<TakeFrame> frames;
+  std::vector<Instant> frames;
   std::vector<std::string> warnings;
 };
 
@@ -82,18 +83,16 @@ void convert(const std::string& from, const std::string& to, MotionFormat format
   const MotionFormat from_format = motion_format_of_content(from).value();
   const MotionPlan plan = plan_of(*open_motion(from, from_format, from_up), from);
   const auto reader = open_motion(from, from_format, from_up);
-  const auto writer = create_motion(to, format, plan, to_up);
-  while (const auto frame = reader->next()) writer->write(*frame);
-  writer->finish();
+  replay(*reader, *create_motion(to, format, plan, to_up));
 }
 
 using Place = std::pair<std::int64_t, std::string>;
-std::map<Place, TakePoint> by_label(const Read& read) {
+std::map<Place, Sample> by_label(const Read& read) {
   std::map<TrackId, std::string> labels;
-  for (const TakeTrack& track : read.info.tracks) labels[track.id] = track.label;
-  std::map<Place, TakePoint> points;
-  for (const TakeFrame& frame : read.frames) {
-    for (const TakePoint& point : frame.points) points[{frame.index, labels[point.track]}] = point;
+  for (const TrackName& track : read.info.tracks) labels[track.id] = track.label;
+  std::map<Place, Sample> points;
+  for (const Instant& frame : read.frames) {
+    for (const Sample& point : frame.samples) points[{frame.index, labels[point.track]}] = point;
   }
   return points;
 }
@@ -117,7 +116,7 @@ class Motion : public testing::Test {
 
 TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
   const std::string take = folder_ / "walk.marey";
-  take::write_take(take, walk());
+  take::write_recording(take, walk());
   const Read truth = read_all(take);
   const std::pair<MotionFormat, const char*> formats[] = {{MotionFormat::c3d, "walk.c3d"},
                                                           {MotionFormat::trc, "walk.trc"},
@@ -142,8 +141,8 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
     const std::string turned = folder_ / (std::string("turned_") + name), back = folder_ / "back.csv";
     if (format == MotionFormat::take) continue;
     convert(path, turned, format, UpAxis::z, UpAxis::y);
-    const auto first = read_all(turned).frames.front().points.front().position;
-    const auto plain = read.frames.front().points.front().position;
+    const auto first = read_all(turned).frames.front().samples.front().position;
+    const auto plain = read.frames.front().samples.front().position;
     EXPECT_NEAR(first.y(), plain.z(), 1e-9) << "what was up is y now";
     EXPECT_NEAR(first.z(), -plain.y(), 1e-9);
     convert(turned, back, MotionFormat::csv, UpAxis::y, UpAxis::z);
@@ -153,11 +152,11 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
 
 TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
   const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
-  take::write_take(take, walk());
+  take::write_recording(take, walk());
   convert(take, path, MotionFormat::c3d);
   const auto truth = by_label(read_all(take)), read = by_label(read_all(path));
   for (const auto& [place, point] : truth) {
-    const TakePoint& found = read.at(place);
+    const Sample& found = read.at(place);
     EXPECT_EQ(found.provenance, point.provenance);
     EXPECT_EQ(found.cameras, point.cameras);
     ASSERT_EQ(found.residual_m.has_value(), point.residual_m.has_value());
@@ -167,7 +166,7 @@ TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
 
 TEST_F(Motion, C3dHoldsMoreThan255Markers) {
   const std::string take = folder_ / "many.marey", path = folder_ / "many.c3d";
-  take::write_take(take, walk(600, 5));
+  take::write_recording(take, walk(600, 5));
   convert(take, path, MotionFormat::c3d);
   const Read read = read_all(path);
   ASSERT_EQ(read.info.tracks.size(), 600U);
@@ -178,7 +177,7 @@ TEST_F(Motion, C3dHoldsMoreThan255Markers) {
 TEST_F(Motion, C3dHoldsMoreThan65535Frames) {
   const std::string take = folder_ / "long.marey", path = folder_ / "long.c3d";
   for (const int first : {0, 70'000}) {
-    take::write_take(take, walk(1, 70'001, first));
+    take::write_recording(take, walk(1, 70'001, first));
     convert(take, path, MotionFormat::c3d);
     const Read read = read_all(path);
     EXPECT_EQ(read.frames.size(), 70'001U);
@@ -189,7 +188,7 @@ TEST_F(Motion, C3dHoldsMoreThan65535Frames) {
 
 TEST_F(Motion, C3dThatIsCutOffIsRefused) {
   const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
-  take::write_take(take, walk());
+  take::write_recording(take, walk());
   convert(take, path, MotionFormat::c3d);
   const std::string whole = test::read_file(path);
   for (const double share : {0.0, 0.01, 0.2, 0.5, 0.99}) {
@@ -201,14 +200,63 @@ TEST_F(Motion, C3dThatIsCutOffIsRefused) {
 
 TEST_F(Motion, EmptyTakesCanBeWritten) {
   const std::string take = folder_ / "empty.marey";
-  Take empty;
+  Recording empty;
   empty.header.rate_hz = 50;
-  take::write_take(take, empty);
+  take::write_recording(take, empty);
   for (const char* name : {"empty.c3d", "empty.trc", "empty.csv"}) {
     const std::string path = folder_ / name;
     convert(take, path, motion_format_of_name(name).value());
     EXPECT_TRUE(read_all(path).frames.empty()) << name;
   }
+}
+
+TEST_F(Motion, FinishedRecordingsAreWrittenAsTheyAre) {
+  const Recording recording = walk();
+  take::write_recording(folder_ / "walk.marey", recording);
+  for (const MotionFormat format : {MotionFormat::c3d, MotionFormat::trc, MotionFormat::csv, MotionFormat::motive}) {
+    convert(folder_ / "walk.marey", folder_ / "converted", format);
+    write_motion(folder_ / "written", format, recording);
+    if (format == MotionFormat::trc) continue;  // says its own name
+    EXPECT_EQ(test::read_file(folder_ / "written"), test::read_file(folder_ / "converted")) << motion_format_name(format);
+  }
+}
+
+TEST_F(Motion, TidyCsvIsWrittenWhileRecording) {
+  EXPECT_TRUE(written_while_recording(MotionFormat::csv));
+  EXPECT_FALSE(written_while_recording(MotionFormat::c3d));
+  const Recording recording = walk();
+  const auto sink = create_motion(folder_ / "live.csv", MotionFormat::csv, {});
+  sink->begin(recording.header);
+  InstantsOf instants(recording);
+  while (const auto instant = instants.next()) sink->write(*instant);
+  sink->finish();
+  write_motion(folder_ / "whole.csv", MotionFormat::csv, recording);
+  EXPECT_EQ(test::read_file(folder_ / "live.csv"), test::read_file(folder_ / "whole.csv"));
+}
+
+TEST_F(Motion, WhatIsNotInSpaceIsRefused) {
+  Recording recording = walk();
+  recording.header.frame.kind = FrameOfReference::Kind::ground;
+  for (const MotionFormat format : {MotionFormat::c3d, MotionFormat::trc, MotionFormat::csv, MotionFormat::motive}) {
+    const std::string path = folder_ / "ground";
+    EXPECT_NE(error_of([&] { write_motion(path, format, recording); }).find("points in space"), std::string::npos);
+    EXPECT_FALSE(fs::exists(path));
+  }
+}
+
+TEST_F(Motion, TakesAreNeverTurned) {
+  Recording recording(walk().header);
+  Instant instant;
+  Sample& sample = instant.samples.emplace_back();
+  sample.track = TrackId{1};
+  sample.position = {1, 2, 3};
+  recording.add(instant);
+  const auto take = folder_ / "walk.marey", csv = folder_ / "walk.csv";
+  write_motion(take, MotionFormat::take, recording, UpAxis::y);
+  EXPECT_EQ(take::read_recording(take).tracks().at(0).position(0), Vector<3>(1, 2, 3)) << "a take is never turned";
+  write_motion(csv, MotionFormat::csv, recording, UpAxis::y);
+  EXPECT_EQ(read_all(csv).frames.at(0).samples.at(0).position, Vector<3>(1, 3, -2));
+  EXPECT_EQ(read_all(csv, UpAxis::y).frames.at(0).samples.at(0).position, Vector<3>(1, 2, 3));
 }
 
 TEST_F(Motion, GapsOfMillionsOfFramesAreAMistake) {
@@ -229,10 +277,10 @@ TEST(Trc, ReadsWhatProgramsWrite) {
   const Read read = read_all(*read_trc(text + "\t7\t8\t9", "a.trc"));
   EXPECT_TRUE(read.warnings.empty());
   ASSERT_EQ(read.frames.size(), 3U);
-  ASSERT_EQ(read.frames[0].points.size(), 1U);
-  EXPECT_EQ(read.frames[0].points[0].position, Vector<3>(1, 2, 3));
-  ASSERT_EQ(read.frames[2].points.size(), 1U);
-  EXPECT_EQ(read.frames[2].points[0].track, TrackId(2));
+  ASSERT_EQ(read.frames[0].samples.size(), 1U);
+  EXPECT_EQ(read.frames[0].samples[0].position, Vector<3>(1, 2, 3));
+  ASSERT_EQ(read.frames[2].samples.size(), 1U);
+  EXPECT_EQ(read.frames[2].samples[0].track, TrackId(2));
   EXPECT_NEAR(seconds(read.frames[1].time), 0.02, 1e-12);
   EXPECT_NE(error_of([&] { read_all(*read_trc(text, "a.trc")); }).find("a.trc:9: ends within its row"), std::string::npos);
 }
@@ -255,8 +303,8 @@ TEST(Trc, SaysWhatIsWrongAndWhere) {
 TEST(TidyCsv, TakesRowsInAnyOrderAndColumnsInAnyOrder) {
   const Read read = read_all(*read_tidy_csv("label,z,y,x,frame,note\nb,3,2,1,1,?\na,3,2,1,0,?\nb,6,5,4,0,\"x, y\"\n", "t"));
   ASSERT_EQ(read.frames.size(), 2U);
-  EXPECT_EQ(read.frames[0].points.size(), 2U);
-  EXPECT_EQ(read.frames[1].points[0].position, Vector<3>(1, 2, 3));
+  EXPECT_EQ(read.frames[0].samples.size(), 2U);
+  EXPECT_EQ(read.frames[1].samples[0].position, Vector<3>(1, 2, 3));
   ASSERT_EQ(read.info.tracks.size(), 2U);
 }
 
@@ -280,8 +328,8 @@ TEST(MotiveCsv, PassesOverBodiesAndRotations) {
   ASSERT_EQ(read.info.tracks.size(), 1U);
   EXPECT_EQ(read.info.tracks[0].label, "a");
   ASSERT_EQ(read.frames.size(), 2U);
-  EXPECT_EQ(read.frames[0].points[0].position, Vector<3>(1, 2, 3));
-  EXPECT_TRUE(read.frames[1].points.empty());
+  EXPECT_EQ(read.frames[0].samples[0].position, Vector<3>(1, 2, 3));
+  EXPECT_TRUE(read.frames[1].samples.empty());
 }
 
 // ----- files of other systems

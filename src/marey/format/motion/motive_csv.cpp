@@ -51,7 +51,7 @@ class MotiveHead {
     if (!rate || *rate <= 1e-6 || *rate > 1e9) fail("does not say its Export Frame Rate in frames per second");
     info_.header.rate_hz = *rate;
     info_.header.name = by_key["Take Name"];
-    info_.header.made_by = "Motive";
+    info_.header.made_by.program = "Motive";
     info_.frame_count = whole_number_of(by_key["Total Exported Frames"]);
     const std::string& unit = by_key["Length Units"];
     const auto metres = metres_of_unit(unit);
@@ -87,7 +87,7 @@ class MotiveHead {
       if (axes_[i] != "X" || axes_[i + 1] != "Y" || axes_[i + 2] != "Z") continue;
       if (cell(kinds_, i) == "Rotation" || !is_marker(cell(types_, i))) continue;
       const auto id = static_cast<int>(info_.tracks.size()) + 1;
-      info_.tracks.push_back({TrackId(id), cell(names_, i)});
+      info_.tracks.push_back({TrackId(id), cell(names_, i), {}});
       table_.x_columns.push_back(i);
     }
     if (table_.x_columns.empty()) warnings_.push_back(name_ + ": holds no marker");
@@ -112,19 +112,31 @@ class MotiveHead {
   std::vector<std::string> warnings_;
 };
 
-class MotiveWriter : public MotionWriter {
+class MotiveWriter : public MotionSink {
  public:
-  MotiveWriter(const std::string& path, const MotionPlan& plan) : file_(path), row_(plan.info.tracks.size()) {
-    const TakeHeader& header = plan.info.header;
-    const std::int64_t frames = plan.last_frame - plan.first_frame + 1;
-    file_.write(
+  MotiveWriter(const std::string& path, const MotionPlan& plan) : MotionSink(path), plan_(plan), row_(plan.info.tracks.size()) {}
+
+  void write(const Instant& frame) override {
+    while (next_ < frame.index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+    put(frame.index, frame.time, frame.samples);
+  }
+  void finish() override {
+    while (next_ <= plan_.last_frame) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+    file_->finish();
+  }
+
+ private:
+  void start(const RecordingHeader& header) override {
+    file_.emplace(path());
+    const std::int64_t frames = plan_.last_frame - plan_.first_frame + 1;
+    file_->write(
         fmt::format("Format Version,1.23,Take Name,{},Take Notes,,Capture Frame Rate,{:.6f},Export Frame Rate,{:.6f},"
                     "Capture Start Time,,Capture Start Frame,{},Total Frames in Take,{},Total Exported Frames,{},"
                     "Rotation Type,Quaternion,Length Units,Meters,Coordinate Space,Global\n\n",
-                    quoted_field(header.name), header.rate_hz, header.rate_hz, plan.first_frame, frames, frames));
+                    quoted_field(header.name), header.rate_hz, header.rate_hz, plan_.first_frame, frames, frames));
     std::string types = ",Type", names = ",Name", ids = ",ID", kinds = ",", axes = "Frame,Time (Seconds)";
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      const TakeTrack& track = plan.info.tracks[i];
+      const TrackName& track = plan_.info.tracks[i];
       column_[track.id] = i;
       const std::string name = quoted_field(track.label.empty() ? fmt::format("Unlabeled {}", number(track.id)) : track.label);
       for (const char* axis : {",X", ",Y", ",Z"}) {
@@ -135,32 +147,21 @@ class MotiveWriter : public MotionWriter {
         axes += axis;
       }
     }
-    for (const std::string* line : {&types, &names, &ids, &kinds, &axes}) file_.write(*line + "\n");
+    for (const std::string* line : {&types, &names, &ids, &kinds, &axes}) file_->write(*line + "\n");
     rate_hz_ = header.rate_hz;
-    next_ = plan.first_frame;
-    last_ = plan.last_frame;
+    next_ = plan_.first_frame;
   }
 
-  void write(const TakeFrame& frame) override {
-    while (next_ < frame.index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
-    put(frame.index, frame.time, frame.points);
-  }
-  void finish() override {
-    while (next_ <= last_) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
-    file_.finish();
-  }
-
- private:
-  void put(std::int64_t index, Timestamp time, std::span<const TakePoint> points) {
+  void put(std::int64_t index, Timestamp time, std::span<const Sample> points) {
     std::fill(row_.begin(), row_.end(), nullptr);
-    for (const TakePoint& point : points) {
+    for (const Sample& point : points) {
       const auto column = column_.find(point.track);
       if (column != column_.end()) row_[column->second] = &point;
     }
     line_.clear();
     auto out = std::back_inserter(line_);
     fmt::format_to(out, "{},{:.9g}", index, seconds(time));
-    for (const TakePoint* point : row_) {
+    for (const Sample* point : row_) {
       if (point == nullptr) {
         line_ += ",,,";
       } else {
@@ -168,15 +169,16 @@ class MotiveWriter : public MotionWriter {
       }
     }
     line_ += '\n';
-    file_.write(line_);
+    file_->write(line_);
     next_ = index + 1;
   }
 
-  WholeFile file_;
-  std::vector<const TakePoint*> row_;
+  MotionPlan plan_;
+  std::optional<WholeFile> file_;
+  std::vector<const Sample*> row_;
   std::map<TrackId, std::size_t> column_;
   double rate_hz_ = 1;
-  std::int64_t next_ = 0, last_ = -1;
+  std::int64_t next_ = 0;
   std::string line_;
 };
 
@@ -189,7 +191,7 @@ std::unique_ptr<MotionReader> open_motive_csv(const std::string& path) {
 std::unique_ptr<MotionReader> read_motive_csv(std::string_view text, const std::string& name) {
   return MotiveHead(text, name).reader(nullptr);
 }
-std::unique_ptr<MotionWriter> create_motive_csv(const std::string& path, const MotionPlan& plan) {
+std::unique_ptr<Sink> create_motive_csv(const std::string& path, const MotionPlan& plan) {
   return std::make_unique<MotiveWriter>(path, plan);
 }
 

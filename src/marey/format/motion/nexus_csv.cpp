@@ -24,7 +24,7 @@ class NexusHead {
     const auto rate = number_of(fields_.front());
     if (!rate || *rate <= 1e-6 || *rate > 1e9) fail(fmt::format("{} is no rate in frames per second", shown(fields_.front())));
     info_.header.rate_hz = *rate;
-    info_.header.made_by = "Nexus";
+    info_.header.made_by.program = "Nexus";
     next_line("the names of its markers");
     const std::vector<std::string_view> names = fields_;
     next_line("its line of axes");
@@ -35,7 +35,7 @@ class NexusHead {
       if (axes[i] != "X" || axes[i + 1] != "Y" || axes[i + 2] != "Z") break;
       table_.x_columns.push_back(i);
       const auto id = static_cast<int>(info_.tracks.size()) + 1;
-      info_.tracks.push_back({TrackId(id), i < names.size() ? unquoted(names[i]) : std::string()});
+      info_.tracks.push_back({TrackId(id), i < names.size() ? unquoted(names[i]) : std::string(), {}});
     }
     const auto unit = fields_.size() > 2 ? metres_of_unit(fields_[2]) : std::nullopt;
     table_.unit_m = unit.value_or(0.001);

@@ -24,7 +24,7 @@ namespace {
 enum Column { frame, time, id, label, x, y, z, state, cameras, residual_px, residual_mm, column_count };
 constexpr std::array<std::string_view, column_count> kColumns{"frame", "time",  "id",      "label",       "x",          "y",
                                                               "z",     "state", "cameras", "residual_px", "residual_mm"};
-constexpr std::array<std::string_view, 3> kStates{"measured", "filled", "predicted"};
+constexpr std::array<std::string_view, 4> kStates{"measured", "filled", "predicted", "solved"};
 constexpr double kLargest = 1e9;
 
 class TidyReader : public MotionReader {
@@ -39,8 +39,8 @@ class TidyReader : public MotionReader {
 
   const MotionInfo& info() const override { return info_; }
 
-  std::optional<TakeFrame> next() override {
-    TakeFrame result;
+  std::optional<Instant> next() override {
+    Instant result;
     bool begun = false;
     for (; pending_ || next_row(); pending_ = false) {
       const std::int64_t index = frame_index();
@@ -53,7 +53,7 @@ class TidyReader : public MotionReader {
         result.time = timestamp_from_seconds(time_of_row(index));
         begun = true;
       }
-      result.points.push_back(point());
+      result.samples.push_back(point());
     }
     if (!begun) return std::nullopt;
     check_once(result);
@@ -135,8 +135,8 @@ class TidyReader : public MotionReader {
     return entry->second;
   }
 
-  TakePoint point() {
-    TakePoint result;
+  Sample point() {
+    Sample result;
     result.track = track_of_row();
     result.position = {number_in(x), number_in(y), number_in(z)};
     result.residual_px = number_if_any(residual_px);
@@ -144,7 +144,7 @@ class TidyReader : public MotionReader {
     const std::string_view told = field(state);
     if (!told.empty()) {
       const auto known = std::find(kStates.begin(), kStates.end(), told);
-      if (known == kStates.end()) fail(fmt::format("state is {}; it must be measured, filled or predicted", shown(told)));
+      if (known == kStates.end()) fail(fmt::format("state is {}; it must be measured, filled, predicted or solved", shown(told)));
       result.provenance = static_cast<Provenance>(known - kStates.begin());
     }
     result.cameras = camera_mask();
@@ -182,7 +182,7 @@ class TidyReader : public MotionReader {
     numbers.check(name_);
     info_.header.rate_hz = plain(numbers.rate_hz().value_or(100));
     if (first) info_.frame_count = *last - *first + 1;
-    for (const auto& [track, text] : labels_) info_.tracks.push_back({track, text});
+    for (const auto& [track, text] : labels_) info_.tracks.push_back({track, text, {}});
     if (!in_order) sort_rows();
   }
 
@@ -201,9 +201,9 @@ class TidyReader : public MotionReader {
     return std::abs(rate - rounded) < 1e-4 * rounded ? rounded : rate;
   }
 
-  void check_once(const TakeFrame& result) const {
+  void check_once(const Instant& result) const {
     std::set<TrackId> seen;
-    for (const TakePoint& each : result.points) {
+    for (const Sample& each : result.samples) {
       if (!seen.insert(each.track).second) {
         throw Error("{}: id {} stands twice in frame {}; it may stand once", name_, number(each.track), result.index);
       }
@@ -230,32 +230,33 @@ class TidyReader : public MotionReader {
   MotionInfo info_;
 };
 
-class TidyWriter : public MotionWriter {
+class TidyWriter : public MotionSink {
  public:
-  TidyWriter(const std::string& path, const MotionPlan& plan) : file_(path) {
-    for (const TakeTrack& track : plan.info.tracks) labels_[track.id] = quoted_field(track.label);
-    file_.write("frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm\n");
-  }
+  using MotionSink::MotionSink;
 
-  void write(const TakeFrame& frame) override {
+  void write(const Instant& frame) override {
+    for (const TrackName& track : frame.named) labels_[track.id] = quoted_field(track.label);
     lines_.clear();
     auto out = std::back_inserter(lines_);
-    for (const TakePoint& point : frame.points) {
-      const auto label = labels_.find(point.track);
-      if (label == labels_.end()) continue;
+    for (const Sample& point : frame.samples) {
       fmt::format_to(out, "{},{:.6f},{},{},{:.10g},{:.10g},{:.10g},{},{},", frame.index, seconds(frame.time), number(point.track),
-                     label->second, point.position.x(), point.position.y(), point.position.z(),
+                     labels_[point.track], point.position.x(), point.position.y(), point.position.z(),
                      kStates[static_cast<std::size_t>(point.provenance)], numbers(point.cameras));
       if (point.residual_px) fmt::format_to(out, "{:.6g}", *point.residual_px);
       lines_ += ',';
       if (point.residual_m) fmt::format_to(out, "{:.6g}", *point.residual_m * 1000);
       lines_ += '\n';
     }
-    file_.write(lines_);
+    file_->write(lines_);
   }
-  void finish() override { file_.finish(); }
+  void finish() override { file_->finish(); }
 
  private:
+  void start(const RecordingHeader&) override {
+    file_.emplace(path());
+    file_->write("frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm\n");
+  }
+
   static std::string numbers(CameraMask mask) {
     std::string text;
     for (int camera = 0; camera < 64; ++camera) {
@@ -264,7 +265,7 @@ class TidyWriter : public MotionWriter {
     return text;
   }
 
-  WholeFile file_;
+  std::optional<WholeFile> file_;
   std::map<TrackId, std::string> labels_;
   std::string lines_;
 };
@@ -279,8 +280,8 @@ std::unique_ptr<MotionReader> open_tidy_csv(const std::string& path) {
 std::unique_ptr<MotionReader> read_tidy_csv(std::string_view text, const std::string& name) {
   return std::make_unique<TidyReader>(nullptr, text, name);
 }
-std::unique_ptr<MotionWriter> create_tidy_csv(const std::string& path, const MotionPlan& plan) {
-  return std::make_unique<TidyWriter>(path, plan);
+std::unique_ptr<Sink> create_tidy_csv(const std::string& path) {
+  return std::make_unique<TidyWriter>(path);
 }
 
 }  // namespace marey::format::motion

@@ -75,7 +75,7 @@ class TrcHead {
     const std::size_t step = side_by_side ? 1 : 3;
     for (std::size_t i = 0; i < fields.size(); i += step) {
       const auto track = static_cast<int>(info_.tracks.size());
-      info_.tracks.push_back({TrackId(track + 1), unquoted(fields[i])});
+      info_.tracks.push_back({TrackId(track + 1), unquoted(fields[i]), {}});
       table_.x_columns.push_back(2 + 3 * static_cast<std::size_t>(track));
     }
     if (markers_ && *markers_ != static_cast<std::int64_t>(info_.tracks.size())) {
@@ -94,39 +94,40 @@ class TrcHead {
   std::vector<std::string> warnings_;
 };
 
-class TrcWriter : public MotionWriter {
+class TrcWriter : public MotionSink {
  public:
-  TrcWriter(const std::string& path, const MotionPlan& plan) : file_(path), row_(plan.info.tracks.size()) {
-    const TakeHeader& header = plan.info.header;
-    const std::int64_t frames = plan.last_frame - plan.first_frame + 1;
-    std::string head = fmt::format("PathFileType\t4\t(X/Y/Z)\t{}\n", std::filesystem::path(path).filename().string());
+  TrcWriter(const std::string& path, const MotionPlan& plan) : MotionSink(path), plan_(plan), row_(plan.info.tracks.size()) {}
+
+  void write(const Instant& frame) override {
+    while (next_ < frame.index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+    put(frame.index, frame.time, frame.samples);
+  }
+
+  void finish() override {
+    while (next_ <= plan_.last_frame) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+    file_->finish();
+  }
+
+ private:
+  void start(const RecordingHeader& header) override {
+    file_.emplace(path());
+    const std::int64_t frames = plan_.last_frame - plan_.first_frame + 1;
+    std::string head = fmt::format("PathFileType\t4\t(X/Y/Z)\t{}\n", std::filesystem::path(path()).filename().string());
     head += "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n";
-    head += fmt::format("{0}\t{0}\t{1}\t{2}\tmm\t{0}\t{3}\t{1}\n", header.rate_hz, frames, row_.size(), plan.first_frame + 1);
+    head += fmt::format("{0}\t{0}\t{1}\t{2}\tmm\t{0}\t{3}\t{1}\n", header.rate_hz, frames, row_.size(), plan_.first_frame + 1);
     head += "Frame#\tTime";
     std::string axes = "\t";
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      const TakeTrack& track = plan.info.tracks[i];
+      const TrackName& track = plan_.info.tracks[i];
       column_[track.id] = i;
       head += fmt::format("\t{}\t\t", track.label.empty() ? fmt::format("unnamed_{}", number(track.id)) : one_word(track.label));
       axes += fmt::format("\tX{0}\tY{0}\tZ{0}", i + 1);
     }
-    file_.write(head + "\n" + axes + "\n\n");
-    next_ = plan.first_frame;
-    last_ = plan.last_frame;
+    file_->write(head + "\n" + axes + "\n\n");
+    next_ = plan_.first_frame;
     rate_hz_ = header.rate_hz;
   }
 
-  void write(const TakeFrame& frame) override {
-    while (next_ < frame.index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
-    put(frame.index, frame.time, frame.points);
-  }
-
-  void finish() override {
-    while (next_ <= last_) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
-    file_.finish();
-  }
-
- private:
   /// Readers cut at tabs, and some at blanks too.
   static std::string one_word(std::string label) {
     label = plain_text(label);
@@ -136,16 +137,16 @@ class TrcWriter : public MotionWriter {
     return label;
   }
 
-  void put(std::int64_t index, Timestamp time, std::span<const TakePoint> points) {
+  void put(std::int64_t index, Timestamp time, std::span<const Sample> points) {
     std::fill(row_.begin(), row_.end(), nullptr);
-    for (const TakePoint& point : points) {
+    for (const Sample& point : points) {
       const auto column = column_.find(point.track);
       if (column != column_.end()) row_[column->second] = &point;
     }
     line_.clear();
     auto out = std::back_inserter(line_);
     fmt::format_to(out, "{}\t{:.9g}", index + 1, seconds(time));
-    for (const TakePoint* point : row_) {
+    for (const Sample* point : row_) {
       if (point == nullptr) {
         line_ += "\t\t\t";
       } else {
@@ -154,14 +155,15 @@ class TrcWriter : public MotionWriter {
       }
     }
     line_ += "\t\n";  // OpenSim loses a last cell that is blank, and writes its own rows so
-    file_.write(line_);
+    file_->write(line_);
     next_ = index + 1;
   }
 
-  WholeFile file_;
-  std::vector<const TakePoint*> row_;
+  MotionPlan plan_;
+  std::optional<WholeFile> file_;
+  std::vector<const Sample*> row_;
   std::map<TrackId, std::size_t> column_;
-  std::int64_t next_ = 0, last_ = -1;
+  std::int64_t next_ = 0;
   double rate_hz_ = 1;
   std::string line_;
 };
@@ -177,7 +179,7 @@ std::unique_ptr<MotionReader> read_trc(std::string_view text, const std::string&
   return TrcHead(text, name).reader(nullptr);
 }
 
-std::unique_ptr<MotionWriter> create_trc(const std::string& path, const MotionPlan& plan) {
+std::unique_ptr<Sink> create_trc(const std::string& path, const MotionPlan& plan) {
   return std::make_unique<TrcWriter>(path, plan);
 }
 

@@ -15,6 +15,6 @@ std::unique_ptr<MotionReader> open_trc(const std::string& path);
 std::unique_ptr<MotionReader> read_trc(std::string_view text, const std::string& name);
 
 /// Writes a TRC file as OpenSim reads it: tabs, mm, frames from 1. A track without label is called by its id.
-std::unique_ptr<MotionWriter> create_trc(const std::string& path, const MotionPlan& plan);
+std::unique_ptr<Sink> create_trc(const std::string& path, const MotionPlan& plan);
 
 }  // namespace marey::format::motion

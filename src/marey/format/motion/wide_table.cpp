@@ -28,12 +28,12 @@ WideTableReader::WideTableReader(std::unique_ptr<MappedFile> file, std::string n
   lines_.go_to(table_.rows, table_.first_line);
 }
 
-std::optional<TakeFrame> WideTableReader::next() {
+std::optional<Instant> WideTableReader::next() {
   std::string_view line;
   while (lines_.next(line)) {
     split_fields(line, table_.separator, fields_);
     if (std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) { return field.empty(); })) continue;
-    TakeFrame frame = frame_of(fields_);
+    Instant frame = frame_of(fields_);
     last_index_ = frame.index;
     ++read_;
     return frame;
@@ -45,12 +45,12 @@ std::optional<TakeFrame> WideTableReader::next() {
   return std::nullopt;
 }
 
-TakeFrame WideTableReader::frame_of(const std::vector<std::string_view>& fields) {
+Instant WideTableReader::frame_of(const std::vector<std::string_view>& fields) {
   const std::size_t needed = table_.x_columns.empty() ? 1 : table_.x_columns.back() + 3;
   if (!lines_.ended() && fields.size() < needed) {
     fail(fmt::format("ends within its row ({} of {} columns); the file is cut off", fields.size(), needed));
   }
-  TakeFrame frame;
+  Instant frame;
   const auto number = table_.frame_column < fields.size() ? whole_number_of(fields[table_.frame_column]) : std::nullopt;
   if (!number) fail(fmt::format("{} is no number of a frame", shown(fields.front())));
   if (*number < table_.first_frame_number && !last_index_) table_.first_frame_number = *number;
@@ -68,14 +68,14 @@ TakeFrame WideTableReader::frame_of(const std::vector<std::string_view>& fields)
   if (!(std::abs(time) <= kLargestSeconds)) fail(fmt::format("frame {} is too far from the first", *number));
   frame.time = timestamp_from_seconds(time);
   for (std::size_t track = 0; track < table_.x_columns.size(); ++track) {
-    if (auto point = point_at(fields, track)) frame.points.push_back(*point);
+    if (auto point = point_at(fields, track)) frame.samples.push_back(*point);
   }
   return frame;
 }
 
-std::optional<TakePoint> WideTableReader::point_at(const std::vector<std::string_view>& fields, std::size_t track) const {
+std::optional<Sample> WideTableReader::point_at(const std::vector<std::string_view>& fields, std::size_t track) const {
   const std::size_t column = table_.x_columns[track];
-  TakePoint point;
+  Sample point;
   point.track = info_.tracks[track].id;
   int missing = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -32,11 +32,11 @@ class WideTableReader : public MotionReader {
 
   const MotionInfo& info() const override { return info_; }
   std::vector<std::string> warnings() const override { return warnings_; }
-  std::optional<TakeFrame> next() override;
+  std::optional<Instant> next() override;
 
  private:
-  TakeFrame frame_of(const std::vector<std::string_view>& fields);
-  std::optional<TakePoint> point_at(const std::vector<std::string_view>& fields, std::size_t track) const;
+  Instant frame_of(const std::vector<std::string_view>& fields);
+  std::optional<Sample> point_at(const std::vector<std::string_view>& fields, std::size_t track) const;
   [[noreturn]] void fail(const std::string& what) const;
 
   std::unique_ptr<MappedFile> file_;

@@ -82,6 +82,10 @@ bool Database::commit() {
   fail();
 }
 
+void Database::roll_back() {
+  sqlite3_exec(handle_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
@@ -109,6 +113,10 @@ void Statement::bind(int parameter, std::span<const std::byte> blob) {
   } else {
     sqlite3_bind_blob64(statement_.get(), parameter + 1, blob.data(), blob.size(), SQLITE_STATIC);
   }
+}
+
+void Statement::bind_null(int parameter) {
+  sqlite3_bind_null(statement_.get(), parameter + 1);
 }
 
 bool Statement::step() {

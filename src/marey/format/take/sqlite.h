@@ -28,6 +28,8 @@ class Database {
   std::int64_t number(const std::string& sql);
   /// False where the lock that it needs stayed with another connection; to be tried again.
   bool commit();
+  /// Undoes what the open transaction did; nothing where none is open.
+  void roll_back();
 
   sqlite3* handle() const { return handle_.get(); }
   /// Throws what the last call failed with.
@@ -41,6 +43,18 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
+/// While it lives, what is read is of one moment, whatever another program writes meanwhile.
+class ReadTransaction {
+ public:
+  explicit ReadTransaction(Database& database) : database_(&database) { database.run("BEGIN"); }
+  ~ReadTransaction() { database_->roll_back(); }
+  ReadTransaction(const ReadTransaction&) = delete;
+  ReadTransaction& operator=(const ReadTransaction&) = delete;
+
+ private:
+  Database* database_;
+};
+
 /// A prepared statement: bind, step, read columns; columns and parameters count from 0.
 class Statement {
  public:
@@ -51,6 +65,7 @@ class Statement {
   /// Text and blobs must live until the statement is reset.
   void bind(int parameter, std::string_view text);
   void bind(int parameter, std::span<const std::byte> blob);
+  void bind_null(int parameter);
 
   /// True where there is a row.
   bool step();

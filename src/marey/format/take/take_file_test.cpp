@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
+#include "marey/format/take/take_testing.h"
 
 #include "support/files.h"
 
@@ -20,50 +21,66 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TakeFrame frame_of(std::int64_t index, int markers = 3) {
-  TakeFrame frame;
-  frame.index = index;
-  frame.time = timestamp_from_seconds(static_cast<double>(index) / 120);
+Instant instant_of(std::int64_t index, int markers = 3) {
+  Instant instant;
+  instant.index = index;
+  instant.time = timestamp_from_seconds(static_cast<double>(index) / 120);
+  instant.seen.push_back({CameraId(0), {1, 2}, {}, {}, std::nullopt});
   for (int m = 1; m <= markers; ++m) {
-    TakePoint point;
-    point.track = TrackId(m);
-    point.position = {0.1 * m, static_cast<double>(index) / 7, -1.0 / m};
-    point.cameras = CameraMask{0b101} << m;
-    point.provenance = static_cast<Provenance>((index + m) % 3);
-    if (m % 2 == 1) point.covariance = Matrix<3>{{4, 1, 0.5}, {1, 3, 0.25}, {0.5, 0.25, 2}};
-    if (m % 3 == 0) point.residual_px = 0.125;
-    if (m % 3 == 1) point.residual_m = 0.0625;
-    frame.points.push_back(point);
-    frame.observations.push_back({CameraId(m), {100.0 / m, static_cast<double>(index)}, 0.0625, 12.5, TrackId(m)});
+    Sample sample;
+    sample.track = TrackId(m);
+    sample.position = {0.1 * m, static_cast<double>(index) / 7, -1.0 / m};
+    sample.cameras = CameraMask{0b101} << m;
+    sample.provenance = static_cast<Provenance>((index + m) % 3);
+    if (m % 2 == 1) sample.covariance = Matrix<3>{{4, 1, 0.5}, {1, 3, 0.25}, {0.5, 0.25, 2}};
+    if (m % 3 == 0) sample.residual_px = 0.125;
+    if (m % 3 == 1) sample.residual_m = 0.0625;
+    instant.samples.push_back(sample);
+    instant.seen.push_back({CameraId(m), {100.0 / m, static_cast<double>(index)}, 0.0625, 12.5, TrackId(m)});
   }
-  frame.observations.push_back({CameraId(0), {1, 2}, 0, 0, std::nullopt});
-  return frame;
+  return instant;
 }
 
-TakeHeader header() {
-  TakeHeader header;
+RecordingHeader header() {
+  RecordingHeader header;
   header.name = "walk";
-  header.made_by = "test";
+  header.made_by = {.program = "test 1.0", .options = {{"noise", "0.1"}, {"tracker", "roster"}}, .inputs = {{"a.mp4", "12ab"}}};
   header.recorded_at = "2026-01-01T00:00:00Z";
   header.rate_hz = 120;
   return header;
 }
 
-/// Runs `body` in a process of its own; returns how it ended, as waitpid says.
+Recording recording_of(std::vector<std::int64_t> indices, int markers = 3) {
+  Recording recording(header());
+  for (const std::int64_t index : indices) recording.add(instant_of(index, markers));
+  return recording;
+}
+
+std::vector<std::int64_t> every(std::int64_t from, std::int64_t to, std::int64_t step = 1) {
+  std::vector<std::int64_t> indices;
+  for (std::int64_t i = from; i < to; i += step) indices.push_back(i);
+  return indices;
+}
+
+/// Runs `body` in a process of its own; returns how it ended, as waitpid says. `until_killed` runs meanwhile, and ends it.
 template <typename Body>
-int in_child(Body body, int kill_after_ms = 0) {
+int in_child(Body body, const std::function<void()>& until_killed = {}) {
   const pid_t child = fork();
   if (child == 0) {
     body();
     _exit(0);
   }
-  if (kill_after_ms > 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(kill_after_ms));
+  if (until_killed) {
+    until_killed();
     kill(child, SIGKILL);
   }
   int status = 0;
   waitpid(child, &status, 0);
   return status;
+}
+
+bool has_instants(const std::string& path) {
+  return is_take(path) && TakeReader(path).next().has_value();
 }
 
 class TakeFile : public testing::Test {
@@ -82,120 +99,165 @@ class TakeFile : public testing::Test {
 };
 
 TEST_F(TakeFile, ComesBackAsItWasWritten) {
-  Take take;
-  take.header = header();
-  take.tracks = {{TrackId(1), "head"}, {TrackId(2), ""}, {TrackId(3), "left \"knee\""}, {TrackId(9), "never seen"}};
+  Recording take = recording_of({0, 1, 2, 100, 1000});
+  for (const TrackName& name : {TrackName{TrackId(1), "head", "red"}, TrackName{TrackId(2), "", ""},
+                                TrackName{TrackId(3), "left \"knee\"", ""}, TrackName{TrackId(9), "never seen", "blue"}}) {
+    take.set_name(name);
+  }
   take.header.rig = Rig{};
   take.header.rig->cameras.emplace_back();
   take.header.rig->cameras.back().name = "left";
   take.header.rig->cameras.back().source = "left.mp4";
-  for (const int i : {0, 1, 2, 100, 1000}) take.frames.push_back(frame_of(i));
-  take.edits = {{"2026-01-02T00:00:00Z", "head renamed"}};
-  write_take(path_, take);
-  const Take read = read_take(path_);
+  take.edits = {{1, {}, "rename", R"({"track":1})"}, {2, 1, "note", "{}"}, {3, 1, "swap", "{}"}};
+  take.head = 3;
+  write_recording(path_, take);
+  const Recording read = read_recording(path_);
   EXPECT_EQ(read.header.name, "walk");
-  EXPECT_EQ(read.header.made_by, "test");
+  EXPECT_EQ(read.header.made_by, take.header.made_by);
   EXPECT_EQ(read.header.recorded_at, "2026-01-01T00:00:00Z");
   EXPECT_EQ(read.header.rate_hz, 120);
+  EXPECT_EQ(read.header.frame, take.header.frame);
   ASSERT_TRUE(read.header.rig);
   ASSERT_EQ(read.header.rig->cameras.size(), 1U);
   EXPECT_EQ(read.header.rig->cameras[0].source, "left.mp4");
-  EXPECT_EQ(read.tracks, take.tracks);
   EXPECT_EQ(read.edits, take.edits);
-  EXPECT_EQ(read.frames, take.frames);
+  EXPECT_EQ(read.head, take.head);
+  testing_take::expect_same(read, take);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "a take is one file";
 }
 
+TEST_F(TakeFile, SaysWhichEditsItCannotDoAndKeepsThem) {
+  Recording take = recording_of({0});
+  take.edits = {{1, {}, "note", "{}"}, {2, 1, "paint", R"({"colour":"red"})"}};
+  write_recording(path_, take);
+  const TakeReader reader(path_);
+  ASSERT_EQ(reader.warnings().size(), 1U);
+  EXPECT_NE(reader.warnings()[0].find("\"paint\""), std::string::npos);
+  EXPECT_EQ(reader.edits(), take.edits);
+}
+
 TEST_F(TakeFile, SummaryCountsWhatIsThere) {
-  Take take;
-  take.header = header();
-  for (int i = 10; i < 19; ++i) take.frames.push_back(frame_of(i));
-  write_take(path_, take);
-  const TakeSummary summary = TakeReader(path_).summary();
+  write_recording(path_, recording_of(every(10, 19)));
+  const RecordingSummary summary = TakeReader(path_).summary();
   EXPECT_TRUE(summary.complete);
-  EXPECT_EQ(summary.frames, 9);
-  EXPECT_EQ(summary.points, 27);
-  EXPECT_EQ(summary.observations, 36);
-  EXPECT_EQ(summary.first_frame, 10);
-  EXPECT_EQ(summary.last_frame, 18);
+  EXPECT_EQ(summary.instants, 9);
+  EXPECT_EQ(summary.samples, 27);
+  EXPECT_EQ(summary.seen, 36);
+  EXPECT_EQ(summary.first_index, 10);
+  EXPECT_EQ(summary.last_index, 18);
   ASSERT_EQ(summary.tracks.size(), 3U);
   for (const auto& track : summary.tracks) {
-    EXPECT_EQ(track.measured, 3);
-    EXPECT_EQ(track.filled, 3);
-    EXPECT_EQ(track.predicted, 3);
-    EXPECT_EQ(track.first_frame, 10);
-    EXPECT_EQ(track.last_frame, 18);
+    EXPECT_EQ(track.of(Provenance::measured), 3);
+    EXPECT_EQ(track.of(Provenance::filled), 3);
+    EXPECT_EQ(track.of(Provenance::predicted), 3);
+    EXPECT_EQ(track.first_index, 10);
+    EXPECT_EQ(track.last_index, 18);
   }
 }
 
-TEST_F(TakeFile, SeeksAndLeavesObservationsOut) {
-  Take take;
-  take.header = header();
-  for (int i = 0; i < 500; i += 2) take.frames.push_back(frame_of(i));
-  write_take(path_, take);
-  TakeReader reader(path_, {.observations = false});
-  reader.seek(301);
-  const auto frame = reader.next();
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->index, 302);
-  EXPECT_EQ(frame->points, frame_of(302).points);
-  EXPECT_TRUE(frame->observations.empty());
+TEST_F(TakeFile, SeeksAndLeavesOutWhatWasSeen) {
+  write_recording(path_, recording_of(every(0, 500, 2)));
+  TakeReader reader(path_, {.seen = false});
+  for (const std::int64_t index : {301, 7, 498, 0}) {
+    reader.seek(index);
+    const auto instant = reader.next();
+    ASSERT_TRUE(instant);
+    Instant expected = instant_of(index + index % 2);
+    expected.seen.clear();
+    testing_take::expect_same(*instant, expected);
+  }
+  reader.seek(499);
+  EXPECT_FALSE(reader.next());
 }
 
 TEST_F(TakeFile, IsReadWhileItIsWritten) {
-  TakeWriter writer(path_, header());
+  TakeWriter writer(path_);
+  writer.begin(header());
   TakeReader reader(path_);
   EXPECT_FALSE(reader.next());
-  for (int i = 0; i < 200; ++i) writer.write(frame_of(i));
+  for (int i = 0; i < 200; ++i) writer.write(instant_of(i));
   writer.flush();
   for (int i = 0; i < 200; ++i) ASSERT_EQ(reader.next()->index, i);
   EXPECT_FALSE(reader.next());
   EXPECT_FALSE(reader.summary().complete);
-  writer.write(frame_of(200));
+  writer.write(instant_of(200));
+  writer.flush();
+  writer.write(instant_of(201));
   writer.finish();
-  EXPECT_EQ(reader.next()->index, 200);
+  for (int i = 200; i < 202; ++i) testing_take::expect_same(reader.next().value(), instant_of(i));
   EXPECT_TRUE(reader.summary().complete);
 }
 
-TEST_F(TakeFile, TakesOneWriter) {
-  TakeWriter writer(path_, header());
-  writer.write(frame_of(0));
-  EXPECT_NE(error_of([&] { TakeWriter second(path_, header()); }).find("is being written by another run"), std::string::npos);
-  const int status =
-      in_child([&] { _exit(error_of([&] { TakeWriter third(path_, header()); }).find("recorded") != std::string::npos); });
-  EXPECT_EQ(WEXITSTATUS(status), 1);
+TEST_F(TakeFile, ShortChunksAreJoinedWhenItIsFinished) {
+  TakeWriter writer(path_);
+  writer.begin(header());
+  for (int i = 0; i < 9000; ++i) {  // 75 s: a chunk of a minute, and the rest
+    writer.write(instant_of(i));
+    if (i % 60 == 59) writer.flush();
+  }
+  EXPECT_EQ(testing_take::number_in(path_, "SELECT count(*) FROM chunk"), 150);
+  const Recording before = read_recording(path_);
+  const TrackColumns path_before = TakeReader(path_).read_track(TrackId(2));
   writer.finish();
-  EXPECT_EQ(read_take(path_).frames.size(), 1U);
-  TakeWriter(path_, header()).finish();
-  EXPECT_EQ(read_take(path_).frames.size(), 0U) << "the second replaces the first";
+  EXPECT_EQ(testing_take::number_in(path_, "SELECT count(*) FROM chunk"), 2);
+  EXPECT_EQ(testing_take::number_in(path_, "SELECT count(*) FROM samples"), 6);
+  EXPECT_EQ(testing_take::number_in(path_, "PRAGMA freelist_count"), 0) << "the pages of the short ones are given back";
+  testing_take::expect_same(read_recording(path_), before);
+  testing_take::expect_same(TakeReader(path_).read_track(TrackId(2)), path_before);
+  testing_take::expect_same(before, recording_of(every(0, 9000)));
 }
 
-// At 2,000 frames a second, so that several transactions end before the kill.
+TEST_F(TakeFile, TakesOneWriter) {
+  TakeWriter writer(path_);
+  writer.begin(header());
+  writer.write(instant_of(0));
+  EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is being recorded by another program"), std::string::npos);
+  const int status =
+      in_child([&] { _exit(error_of([&] { TakeWriter(path_).begin(header()); }).find("recorded") != std::string::npos); });
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  writer.finish();
+  EXPECT_EQ(read_recording(path_).instants().size(), 1U);
+  TakeWriter second(path_);
+  second.begin(header());
+  second.finish();
+  EXPECT_EQ(read_recording(path_).instants().size(), 0U) << "the second replaces the first";
+}
+
+// At 2,000 frames a second, so that several transactions end before the kill. What was written before is in the file.
 TEST_F(TakeFile, SurvivesSigkillAndLosesLessThanASecond) {
-  for (const int after_ms : {900, 1350, 1600}) {
+  using namespace std::chrono_literals;
+  for (const auto after : {0ms, 350ms, 600ms}) {
+    fs::remove(path_);
     const std::string ticks = folder_ / "ticks";
+    std::uintmax_t written = 0;
     const int status = in_child(
         [&] {
-          TakeWriter writer(path_, header());
-          writer.set_label(TrackId(1), "head");
+          TakeWriter writer(path_);
+          writer.begin(header());
+          writer.set_name({TrackId(1), "head", ""});
           std::ofstream count(ticks, std::ios::binary);
           for (int i = 0;; ++i) {
-            writer.write(frame_of(i));
+            writer.write(instant_of(i));
             count << '.' << std::flush;
-            std::this_thread::sleep_for(std::chrono::microseconds(500));
+            std::this_thread::sleep_for(500us);
           }
         },
-        after_ms);
+        [&] {
+          for (int tries = 0; tries < 1000 && !has_instants(path_); ++tries) std::this_thread::sleep_for(20ms);
+          std::this_thread::sleep_for(after);
+          written = fs::file_size(ticks);
+          std::this_thread::sleep_for(2s);  // of which one is for a machine that is busy
+        });
     ASSERT_TRUE(WIFSIGNALED(status));
-    const auto written = static_cast<double>(fs::file_size(ticks));
     TakeReader reader(path_);
-    const TakeSummary summary = reader.summary();
+    const RecordingSummary summary = reader.summary();
     EXPECT_FALSE(summary.complete);
     std::int64_t next = 0;
-    while (const auto frame = reader.next()) ASSERT_EQ(*frame, frame_of(next++));
-    EXPECT_EQ(summary.frames, next);
+    while (const auto instant = reader.next()) testing_take::expect_same(*instant, instant_of(next++));
+    EXPECT_EQ(summary.instants, next);
+    ASSERT_FALSE(reader.tracks().empty());
     EXPECT_EQ(reader.tracks().front().label, "head");
-    EXPECT_GE(static_cast<double>(next), written * (1 - 1000.0 / after_ms));
+    EXPECT_GE(next, static_cast<std::int64_t>(written));
     EXPECT_GT(next, 0);
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2) << "the take and the ticks";
@@ -208,9 +270,10 @@ TEST_F(TakeFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
     const rlimit limit{2 << 20, 2 << 20};
     setrlimit(RLIMIT_FSIZE, &limit);
     const std::string error = error_of([&] {
-      TakeWriter writer(path_, header());
+      TakeWriter writer(path_);
+      writer.begin(header());
       for (int i = 0; i < 100'000; ++i) {
-        writer.write(frame_of(i, 50));
+        writer.write(instant_of(i, 50));
         if (i % 50 == 0) writer.flush();
       }
     });
@@ -218,47 +281,45 @@ TEST_F(TakeFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
   });
   EXPECT_NE(test::read_file(said).find("cannot be written to the end"), std::string::npos) << test::read_file(said);
   TakeReader reader(path_);
-  const TakeSummary summary = reader.summary();
+  const RecordingSummary summary = reader.summary();
   std::int64_t next = 0;
-  while (const auto frame = reader.next()) ASSERT_EQ(*frame, frame_of(next++, 50));
-  EXPECT_EQ(summary.frames, next);
+  while (const auto frame = reader.next()) testing_take::expect_same(*frame, instant_of(next++, 50));
+  EXPECT_EQ(summary.instants, next);
   EXPECT_GT(next, 200) << "2 MB hold more";
 }
 
 TEST_F(TakeFile, RefusesWhatIsNotATake) {
   test::write_file(path_, "name,x,y\n");
   EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is no take"), std::string::npos);
-  EXPECT_NE(error_of([&] { TakeWriter writer(path_, header()); }).find("is not overwritten"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is not overwritten"), std::string::npos);
   EXPECT_EQ(test::read_file(path_), "name,x,y\n");
   EXPECT_NE(error_of([&] { TakeReader reader(folder_ / "none"); }).find("no such file"), std::string::npos);
   EXPECT_NE(error_of([&] { TakeReader reader(folder_.path()); }).find("is no file"), std::string::npos);
 }
 
 TEST_F(TakeFile, RefusesFramesThatCannotBe) {
-  TakeWriter writer(path_, header());
-  writer.write(frame_of(5));
-  EXPECT_NE(error_of([&] { writer.write(frame_of(5)); }).find("out of order"), std::string::npos);
-  TakeFrame twins = frame_of(6);
-  twins.points[1].track = twins.points[0].track;
-  EXPECT_NE(error_of([&] { writer.write(twins); }).find("two points"), std::string::npos);
-  TakeFrame nowhere = frame_of(7);
-  nowhere.points[0].position.x() = std::nan("");
+  TakeWriter writer(path_);
+  writer.begin(header());
+  writer.write(instant_of(5));
+  EXPECT_NE(error_of([&] { writer.write(instant_of(5)); }).find("out of order"), std::string::npos);
+  Instant twins = instant_of(6);
+  twins.samples[1].track = twins.samples[0].track;
+  EXPECT_NE(error_of([&] { writer.write(twins); }).find("two samples"), std::string::npos);
+  Instant nowhere = instant_of(7);
+  nowhere.samples[0].position.x() = std::nan("");
   EXPECT_NE(error_of([&] { writer.write(nowhere); }).find("nowhere"), std::string::npos);
-  writer.write(frame_of(8));
+  writer.write(instant_of(8));
   writer.finish();
-  EXPECT_EQ(read_take(path_).frames.size(), 2U);
+  EXPECT_EQ(read_recording(path_).instants().size(), 2U);
 }
 
 TEST_F(TakeFile, DamagedTakesAreRefused) {
-  Take take;
-  take.header = header();
-  for (int i = 0; i < 300; ++i) take.frames.push_back(frame_of(i));
-  write_take(path_, take);
+  write_recording(path_, recording_of(every(0, 300)));
   const std::string whole = test::read_file(path_);
   for (const double share : {0.001, 0.1, 0.5, 0.9, 0.999}) {
     test::write_file(path_, whole);
     test::cut_file(path_, share);
-    EXPECT_THROW(read_take(path_), Error) << share;
+    EXPECT_THROW(read_recording(path_), Error) << share;
   }
 }
 

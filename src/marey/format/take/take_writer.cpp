@@ -1,21 +1,26 @@
-// A take grows at its end only: frames are rows of one table in the order of their indices, so each transaction adds pages and
-// touches few. SQLite's rollback journal then holds next to nothing, the file is one and complete after each transaction, and a
-// program killed between two leaves a journal that the next reader rolls back. (A write-ahead log would write everything twice, and
-// leave two files more beside the take.) A transaction ends after half a second, or when it has grown to some megabytes.
+// A take grows at its end only: what is recorded is gathered in columns for half a second, then written as one chunk in one
+// transaction, which adds pages and touches few. SQLite's rollback journal then holds next to nothing, the file is one and complete
+// after each transaction, and a program killed between two leaves a journal that the next reader rolls back. (A write-ahead log
+// would write everything twice, and leave two files more beside the take.) When the take is finished, short chunks are joined to
+// one of about a minute, so that a track's path lies in few places. What comes faster than real time comes in long chunks by
+// itself.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/frame_names.h"
 #include "marey/format/take/sqlite.h"
+#include "marey/format/take/take_chunk.h"
 #include "marey/format/take/take_file.h"
-#include "marey/format/take/take_records.h"
+#include "marey/format/take/take_schema.h"
 
 namespace marey::format::take {
 namespace {
@@ -24,21 +29,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
-constexpr std::size_t kLargestTransaction = std::size_t{16} << 20;
-
-constexpr const char* kSchema = R"(
-  PRAGMA page_size = 8192;
-  PRAGMA journal_mode = DELETE;
-  PRAGMA synchronous = NORMAL;
-  PRAGMA cache_size = -24000;
-  PRAGMA application_id = 0x4D524559;
-  PRAGMA user_version = 1;
-  CREATE TABLE take (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
-  CREATE TABLE track (id INTEGER PRIMARY KEY, label TEXT NOT NULL, first_frame INTEGER, last_frame INTEGER,
-                      measured INTEGER NOT NULL, filled INTEGER NOT NULL, predicted INTEGER NOT NULL);
-  CREATE TABLE frame (frame INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, points BLOB NOT NULL, observations BLOB NOT NULL);
-  CREATE TABLE edit (id INTEGER PRIMARY KEY, time TEXT NOT NULL, what TEXT NOT NULL);
-)";
+constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
+constexpr Duration kLongestChunk = std::chrono::seconds(60);
 
 /// Clears the way for a new take. What is no take is somebody's work, named by mistake.
 std::string place_for(const std::string& path) {
@@ -59,7 +51,7 @@ void remove_old(const std::string& path) {
   if (error) throw Error("{}: cannot be replaced ({})", path, error.message());
 }
 
-void check(const TakeHeader& header, const std::string& path) {
+void require_valid(const RecordingHeader& header, const std::string& path) {
   if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
     throw Error("{}: a rate of {} frames a second; it must be positive", path, header.rate_hz);
   }
@@ -69,90 +61,146 @@ void check(const TakeHeader& header, const std::string& path) {
 
 class TakeWriter::Recorder {
  public:
-  Recorder(const std::string& path, const TakeHeader& header)
+  Recorder(const std::string& path, const RecordingHeader& header)
       : path_(place_for(path)),
         lock_(path_),
-        database_((check(header, path), remove_old(path_), path_), Database::Mode::create),
+        database_((require_valid(header, path), remove_old(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
+        dimensions_(header.frame.dimensions()),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
-        add_frame_(database_, "INSERT INTO frame VALUES (?, ?, ?, ?)"),
-        set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?)"),
-        add_edit_(database_, "INSERT INTO edit (time, what) VALUES (?, ?)") {
-    begin();
+        set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        add_edit_(database_, "INSERT INTO edit VALUES (?, ?, ?, ?)"),
+        chunks_(database_) {
+    open_ = true;
+    began_ = Clock::now();
     set("name", header.name.empty() ? fs::path(path).stem().string() : header.name);
-    set("made_by", header.made_by);
     set("recorded_at", header.recorded_at);
     set("rate_hz", header.rate_hz);
+    set("frame", name_of(header.frame.kind));
+    if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
+    set("smoothed", std::int64_t{header.smoothed});
     if (header.rig) set("rig", rig::rig_text(*header.rig));
     set("complete", std::int64_t{0});
+    set_made_by(header.made_by);
     flush();
   }
 
-  void set_label(TrackId id, std::string_view label) {
-    if (number(id) <= 0) throw Error("{}: track {} cannot be; ids are positive", path_, number(id));
-    begin();
-    counts_of(id).track.label = label;
-    commit_when_due();
+  void set_name(const TrackName& name) {
+    if (number(name.id) <= 0) throw Error("{}: track {} cannot be; ids are positive", path_, number(name.id));
+    Counts& counts = tracks_[name.id];
+    counts.count.name = name;
+    counts.changed = true;
+    gathered();
   }
 
-  void write(const TakeFrame& frame) {
-    pack(frame);
-    begin();
-    count(frame);
-    add_frame_.bind(0, frame.index);
-    add_frame_.bind(1, std::int64_t{frame.time.time_since_epoch().count()});
-    add_frame_.bind(2, std::span<const std::byte>(points_));
-    add_frame_.bind(3, std::span<const std::byte>(observations_));
-    run(add_frame_);
-    written_ += points_.size() + observations_.size();
-    commit_when_due();
+  void write(const Instant& instant) {
+    check(instant);
+    for (const TrackName& name : instant.named) set_name(name);
+    if (!chunk_.empty() && !fits(instant)) cut();
+    chunk_.add(instant, dimensions_);
+    last_index_ = instant.index;
+    if (!first_index_) first_index_ = instant.index;
+    gathered();
+    if (chunk_.bytes + written_ >= kLargestChunk || Clock::now() - began_ >= kLongestTransaction) flush();
   }
 
-  void add_edit(const TakeEdit& edit) {
+  void add_edit(const Edit& edit) {
     begin();
-    add_edit_.bind(0, std::string_view(edit.time));
-    add_edit_.bind(1, std::string_view(edit.what));
+    add_edit_.bind(0, edit.id);
+    if (edit.parent) {
+      add_edit_.bind(1, *edit.parent);
+    } else {
+      add_edit_.bind_null(1);
+    }
+    add_edit_.bind(2, std::string_view(edit.operation));
+    add_edit_.bind(3, std::string_view(edit.payload));
     run(add_edit_);
-    commit_when_due();
+  }
+
+  void set_head(std::optional<std::int64_t> head) {
+    begin();
+    set("head", head.value_or(0));
   }
 
   void flush() {
-    if (!open_ || broken_) return;
+    if (broken_ || (!open_ && !waiting_)) return;
+    cut();
+    begin();
     write_counts();
-    const FailureMark mark(broken_);
-    if (database_.commit()) open_ = false;  // else a reader holds on to the file, and the next write tries again
+    commit();
   }
 
   void finish() {
+    cut();
     begin();
+    write_counts();
+    if (has_groups()) {
+      commit();
+      join_chunks();
+      begin();
+    }
     set("complete", std::int64_t{1});
-    flush();
+    commit();
     if (open_) throw Error("{}: another program keeps reading it, so its end could not be written; close that program", path_);
   }
 
  private:
+  struct Written {
+    std::int64_t id;
+    Timestamp begin, end;
+    std::size_t bytes;
+  };
+  struct Counts {
+    RecordingSummary::TrackCount count;
+    bool changed = true;
+  };
+
   int prepare_schema() {
-    database_.run(kSchema);
+    database_.run(kTakePragmas);
+    database_.run("BEGIN IMMEDIATE");  // what the constructor writes goes with it
+    database_.run(kTakeSchema);
     return kTakeSchemaVersion;
   }
 
-  /// Refuses here what reading would refuse.
-  void pack(const TakeFrame& frame) {
-    if (frame.index < 0 || (summary_.last_frame && frame.index <= *summary_.last_frame)) {
-      throw Error("{}: frame {} comes out of order; frames come in growing order from 0", path_, frame.index);
+  void set_made_by(const MadeBy& made_by) {
+    set("program", made_by.program);
+    Statement add_option(database_, "INSERT INTO option VALUES (?, ?)");
+    for (const auto& [name, value] : made_by.options) {
+      add_option.bind(0, std::string_view(name));
+      add_option.bind(1, std::string_view(value));
+      run(add_option);
     }
-    points_.clear();
-    observations_.clear();
-    append_records(points_, frame.points);
-    append_records(observations_, frame.observations);
-    points_of(points_, path_);
-    observations_of(observations_, path_);
+    Statement add_input(database_, "INSERT INTO input (name, hash) VALUES (?, ?)");
+    for (const MadeBy::Input& input : made_by.inputs) {
+      add_input.bind(0, std::string_view(input.name));
+      add_input.bind(1, std::string_view(input.hash));
+      run(add_input);
+    }
+  }
+
+  /// Refuses here what reading would refuse.
+  void check(const Instant& instant) {
+    if (broken_) throw Error("{}: cannot be written any more, since an earlier write failed", path_);
+    if (instant.index < 0 || (last_index_ && instant.index <= *last_index_)) {
+      throw Error("{}: frame {} comes out of order; frames come in growing order from 0", path_, instant.index);
+    }
     ids_.clear();
-    for (const TakePoint& point : frame.points) ids_.push_back(point.track);
+    for (const Sample& sample : instant.samples) {
+      if (const auto problem = problem_of(sample)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
+      ids_.push_back(sample.track);
+    }
+    for (const SeenPoint& point : instant.seen) {
+      if (const auto problem = problem_of(point)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
+    }
     std::sort(ids_.begin(), ids_.end());
     const auto twin = std::adjacent_find(ids_.begin(), ids_.end());
     if (twin != ids_.end())
-      throw Error("{}: track {} has two points in frame {}; it may have one", path_, number(*twin), frame.index);
+      throw Error("{}: track {} has two samples in frame {}; it may have one", path_, number(*twin), instant.index);
+  }
+
+  bool fits(const Instant& instant) const {
+    const Recording::Moment& first = chunk_.moments.front();
+    return instant.time - first.time < kLongestChunk && instant.index - first.index < std::numeric_limits<std::uint32_t>::max();
   }
 
   /// Marks what a failure passes through.
@@ -171,17 +219,55 @@ class TakeWriter::Recorder {
     statement.run();
   }
 
+  /// Something waits in memory; the file is to have it soon.
+  void gathered() {
+    if (waiting_ || open_) return;
+    waiting_ = true;
+    began_ = Clock::now();
+  }
+
   void begin() {
     if (broken_) throw Error("{}: cannot be written any more, since an earlier write failed", path_);
     if (open_) return;
     database_.run("BEGIN IMMEDIATE");
     open_ = true;
-    began_ = Clock::now();
+    if (!waiting_) began_ = Clock::now();
+    waiting_ = false;
     written_ = 0;
   }
 
-  void commit_when_due() {
-    if (written_ >= kLargestTransaction || Clock::now() - began_ >= kLongestTransaction) flush();
+  void commit() {
+    const FailureMark mark(broken_);
+    if (!database_.commit()) return;  // a reader holds on to the file, and the next write tries again
+    open_ = false;
+    written_ = 0;
+  }
+
+  /// What is gathered becomes a chunk of the file.
+  void cut() {
+    if (chunk_.empty()) return;
+    begin();
+    count();
+    if (next_id_ == kMostChunks) throw Error("{}: is too long to go on; begin another take", path_);
+    const FailureMark mark(broken_);
+    chunks_.write(next_id_, chunk_);
+    chunks_written_.push_back({next_id_++, chunk_.moments.front().time, chunk_.moments.back().time, chunk_.bytes});
+    written_ += chunk_.bytes;
+    chunk_.clear();
+  }
+
+  void count() {
+    instants_ += static_cast<std::int64_t>(chunk_.moments.size());
+    for (const auto& [id, columns] : chunk_.tracks) {
+      if (columns.empty()) continue;
+      Counts& counts = tracks_[id];
+      counts.count.name.id = id;
+      counts.changed = true;
+      for (std::size_t row = 0; row < columns.size(); ++row)
+        counts.count.add(chunk_.moments[static_cast<std::size_t>(columns.at()[row])].index, columns.provenance()[row]);
+      samples_ += static_cast<std::int64_t>(columns.size());
+    }
+    for (const auto& [camera, columns] : chunk_.seen) seen_ += static_cast<std::int64_t>(columns.size());
   }
 
   template <typename Value>
@@ -195,103 +281,151 @@ class TakeWriter::Recorder {
     run(set_key_);
   }
 
-  struct Counts {
-    TakeTrack track;
-    std::optional<std::int64_t> first_frame;
-    std::int64_t last_frame = 0;
-    std::array<std::int64_t, 3> by_provenance{};
-    bool changed = true;
-  };
-
-  Counts& counts_of(TrackId id) {
-    Counts& counts = tracks_[id];
-    counts.track.id = id;
-    counts.changed = true;
-    return counts;
-  }
-
-  void count(const TakeFrame& frame) {
-    for (const TakePoint& point : frame.points) {
-      Counts& counts = counts_of(point.track);
-      if (!counts.first_frame) counts.first_frame = frame.index;
-      counts.last_frame = frame.index;
-      ++counts.by_provenance[static_cast<std::size_t>(point.provenance)];
-    }
-    if (!summary_.first_frame) {
-      summary_.first_frame = frame.index;
-      summary_.first_time = frame.time;
-    }
-    summary_.last_frame = frame.index;
-    summary_.last_time = frame.time;
-    ++summary_.frames;
-    summary_.points += static_cast<std::int64_t>(frame.points.size());
-    summary_.observations += static_cast<std::int64_t>(frame.observations.size());
-  }
-
   void write_counts() {
-    set("frames", summary_.frames);
-    set("points", summary_.points);
-    set("observations", summary_.observations);
+    set("instants", instants_);
+    set("samples", samples_);
+    set("seen", seen_);
     for (auto& [id, counts] : tracks_) {
       if (!counts.changed) continue;
+      const RecordingSummary::TrackCount& count = counts.count;
       set_track_.bind(0, std::int64_t{number(id)});
-      set_track_.bind(1, std::string_view(counts.track.label));
-      set_track_.bind(2, counts.first_frame.value_or(0));
-      set_track_.bind(3, counts.last_frame);
-      for (int i = 0; i < 3; ++i) set_track_.bind(4 + i, counts.by_provenance[static_cast<std::size_t>(i)]);
+      set_track_.bind(1, std::string_view(count.name.label));
+      set_track_.bind(2, std::string_view(count.name.team));
+      set_track_.bind_null(3);
+      set_track_.bind_null(4);
+      if (count.first_index) set_track_.bind(3, *count.first_index);
+      if (count.last_index) set_track_.bind(4, *count.last_index);
+      for (int i = 0; i < 4; ++i) set_track_.bind(5 + i, count.by_provenance[static_cast<std::size_t>(i)]);
       run(set_track_);
       counts.changed = false;
     }
+  }
+
+  /// A take is whole without this: where it fails (a full disk), the short chunks stay.
+  void join_chunks() {
+    if (open_) return;
+    try {
+      ChunkReader reader(database_, dimensions_);
+      bool joined = false;
+      for (std::size_t first = 0, end = 0; first < chunks_written_.size(); first = end) {
+        end = end_of_group(first);
+        if (end - first < 2) continue;
+        join(reader, first, end);
+        joined = true;
+        if (!database_.commit()) return;
+        open_ = false;
+      }
+      if (!joined) return;
+      begin();
+      database_.run("PRAGMA incremental_vacuum");
+    } catch (const Error&) {
+      database_.roll_back();
+      open_ = false;
+    }
+  }
+
+  bool has_groups() const {
+    for (std::size_t first = 0, end = 0; first < chunks_written_.size(); first = end) {
+      end = end_of_group(first);
+      if (end - first > 1) return true;
+    }
+    return false;
+  }
+
+  std::size_t end_of_group(std::size_t first) const {
+    std::size_t bytes = 0, end = first;
+    while (end < chunks_written_.size()) {
+      const Written& next = chunks_written_[end];
+      bytes += next.bytes;
+      if (end > first && (bytes > kLargestChunk || next.end - chunks_written_[first].begin > kLongestChunk)) break;
+      ++end;
+    }
+    return end;
+  }
+
+  /// The new rows come before the old ones go, so that they take the pages that the group before has left.
+  void join(ChunkReader& reader, std::size_t first, std::size_t end) {
+    begin();
+    chunk_.clear();
+    for (std::size_t i = first; i < end; ++i) {
+      const auto row = reader.find_by_id(chunks_written_[i].id);
+      reader.read(row, true, chunk_);
+    }
+    for (std::size_t i = first; i < end; ++i) chunks_.remove_instants(chunks_written_[i].id);
+    chunks_.write(next_id_++, chunk_);
+    for (std::size_t i = first; i < end; ++i) chunks_.remove_rows(chunks_written_[i].id);
+    chunk_.clear();
   }
 
   std::string path_;
   FileLock lock_;
   Database database_;
   int schema_;
-  Statement set_key_, add_frame_, set_track_, add_edit_;
-  bool open_ = false;    // within a transaction
-  bool broken_ = false;  // a write failed, and its transaction with it
+  int dimensions_;
+  Statement set_key_, set_track_, add_edit_;
+  ChunkWriter chunks_;
+  bool open_ = false;     // within a transaction
+  bool waiting_ = false;  // something in memory, and no transaction yet
+  bool broken_ = false;   // a write failed, and its transaction with it
   Clock::time_point began_;
-  std::size_t written_ = 0;
-  TakeSummary summary_;
+  std::size_t written_ = 0;  // within the transaction
+  Chunk chunk_;
+  std::int64_t next_id_ = 1;
+  std::vector<Written> chunks_written_;
+  std::int64_t instants_ = 0, samples_ = 0, seen_ = 0;
+  std::optional<std::int64_t> first_index_, last_index_;
   std::map<TrackId, Counts> tracks_;
-  std::vector<std::byte> points_, observations_;
   std::vector<TrackId> ids_;
 };
 
-TakeWriter::TakeWriter(const std::string& path, const TakeHeader& header) : recorder_(std::make_unique<Recorder>(path, header)) {}
+TakeWriter::TakeWriter(std::string path) : path_(std::move(path)) {}
 
 TakeWriter::~TakeWriter() {
   if (!recorder_) return;
   try {
     recorder_->flush();
   } catch (const Error&) {
-    // Said already by the write that failed; what came before it is in the file.
+    // The write that failed has thrown it already; what came before it is in the file.
   }
 }
 
-void TakeWriter::set_label(TrackId track, std::string_view label) {
-  recorder_->set_label(track, label);
-}
-void TakeWriter::write(const TakeFrame& frame) {
-  recorder_->write(frame);
-}
-void TakeWriter::add_edit(const TakeEdit& edit) {
-  recorder_->add_edit(edit);
-}
-void TakeWriter::flush() {
-  recorder_->flush();
-}
-void TakeWriter::finish() {
-  recorder_->finish();
-  recorder_.reset();
+TakeWriter::Recorder& TakeWriter::recorder() {
+  if (!recorder_) throw Error("{}: is written before it was begun, or after it was finished", path_);
+  return *recorder_;
 }
 
-void write_take(const std::string& path, const Take& take) {
-  TakeWriter writer(path, take.header);
-  for (const TakeTrack& track : take.tracks) writer.set_label(track.id, track.label);
-  for (const TakeFrame& frame : take.frames) writer.write(frame);
-  for (const TakeEdit& edit : take.edits) writer.add_edit(edit);
+Sink::Wants TakeWriter::begin(const RecordingHeader& header) {
+  recorder_ = std::make_unique<Recorder>(path_, header);
+  return {.pictures = false, .seen = true};
+}
+void TakeWriter::write(const Instant& instant) {
+  recorder().write(instant);
+}
+void TakeWriter::finish() {
+  recorder().finish();
+  recorder_.reset();
+}
+void TakeWriter::set_name(const TrackName& name) {
+  recorder().set_name(name);
+}
+void TakeWriter::add_edit(const Edit& edit) {
+  recorder().add_edit(edit);
+}
+void TakeWriter::set_head(std::optional<std::int64_t> head) {
+  recorder().set_head(head);
+}
+void TakeWriter::flush() {
+  recorder().flush();
+}
+
+void write_recording(const std::string& path, const Recording& recording) {
+  TakeWriter writer(path);
+  writer.begin(recording.header);
+  for (const TrackColumns& track : recording.tracks()) writer.set_name(track.name);
+  InstantsOf instants(recording);
+  while (const auto instant = instants.next()) writer.write(*instant);
+  for (const Edit& edit : recording.edits) writer.add_edit(edit);
+  writer.set_head(recording.head);
   writer.finish();
 }
 

@@ -6,15 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/core/take.h"
+#include "marey/core/instant.h"
 
 namespace marey::format::take {
 
-// How a take's frames lie in the file: fixed records, little-endian, one behind the other (docs/take.md). A change here is a new
-// schema version.
-
-constexpr int kTakeSchemaVersion = 1;
-constexpr int kTakeApplicationId = 0x4D524559;  // "MREY"
+// How a frame lay in takes of schema 1: fixed records, little-endian, one behind the other. Such takes are read, and no longer
+// written.
 
 struct ObservationRecord {
   double x, y;  // px
@@ -39,11 +36,8 @@ struct PointRecord {
 };
 static_assert(sizeof(PointRecord) == 72);
 
-void append_records(std::vector<std::byte>& blob, std::span<const TakeObservation> observations);
-void append_records(std::vector<std::byte>& blob, std::span<const TakePoint> points);
-
 /// Throw Error, `where: what is wrong`, for a blob that is none of ours.
-std::vector<TakeObservation> observations_of(std::span<const std::byte> blob, std::string_view where);
-std::vector<TakePoint> points_of(std::span<const std::byte> blob, std::string_view where);
+std::vector<SeenPoint> seen_of_schema_1(std::span<const std::byte> blob, std::string_view where);
+std::vector<Sample> samples_of_schema_1(std::span<const std::byte> blob, std::string_view where);
 
 }  // namespace marey::format::take

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/format/take/column_codec.h"
+#include "marey/format/take/sqlite.h"
+#include "marey/format/take/take_chunk.h"
+
+namespace marey::format::take {
+
+/// Writes chunks into a take's tables, and takes them out again.
+class ChunkWriter {
+ public:
+  explicit ChunkWriter(const Database& database);
+
+  /// `id` is above those of all that are there.
+  void write(std::int64_t id, const Chunk& chunk);
+  /// From here on its instants may come in another chunk; then its rows are to be removed too.
+  void remove_instants(std::int64_t id);
+  void remove_rows(std::int64_t id);
+
+ private:
+  void write_instants(std::int64_t id, const Chunk& chunk);
+  void write_samples(std::int64_t id, const TrackColumns& track);
+  void write_seen(std::int64_t id, const SeenColumns& seen);
+
+  Statement add_instants_, add_samples_, add_seen_, remove_instants_, remove_samples_, remove_seen_;
+  std::vector<Bytes> blobs_;
+  std::vector<std::uint64_t> integers_;
+};
+
+/// Reads them.
+class ChunkReader {
+ public:
+  struct Row {
+    std::int64_t id = 0, first_index = 0, last_index = 0, instants = 0;
+  };
+
+  ChunkReader(const Database& database, int dimensions);
+
+  /// All chunks by growing index, without what is in them.
+  std::vector<Row> rows();
+  /// The first chunk that ends at this index or later.
+  std::optional<Row> find(std::int64_t index);
+  /// Throws Error where it is not there.
+  Row find_by_id(std::int64_t id);
+  /// These append to what is there; `at` goes on counting from the instants that are there.
+  void read(const Row& row, bool with_seen, Chunk& chunk);
+  void read_moments(const Row& row, std::vector<Recording::Moment>& moments);
+  /// False where the track has nothing there. `offset` is that of the chunk's first instant.
+  bool read_track(const Row& row, std::int64_t offset, TrackColumns& track);
+
+ private:
+  Row checked_row(const Statement& statement) const;
+  void decode_samples(const Statement& row, const Row& chunk, std::int64_t offset, TrackColumns& track);
+  void decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen);
+  std::size_t checked_count(std::int64_t rows) const;
+  void decode_places(const Statement& row, int column, const Row& chunk, std::int64_t offset, ColumnDecoder& decoder);
+
+  const Database* database_;
+  int dimensions_;
+  Statement find_, moments_, samples_, seen_, one_track_;
+  std::vector<std::int32_t> at_;
+  std::vector<double> x_, y_, z_;
+  std::vector<Provenance> provenance_;
+  std::vector<std::uint64_t> integers_;
+};
+
+}  // namespace marey::format::take

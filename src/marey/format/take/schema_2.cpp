@@ -1,0 +1,192 @@
+// A chunk is read at once, in one transaction: between two nothing is locked, so that a slow reader does not hold up the program
+// that writes the take, and what it has written since is found by the next query.
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/frame_names.h"
+#include "marey/format/take/take_cursor.h"
+#include "marey/format/take/take_schema.h"
+
+namespace marey::format::take {
+namespace {
+
+constexpr const char* kTables = "'take', 'option', 'input', 'track', 'chunk', 'samples', 'seen', 'body', 'poses', 'edit'";
+
+/// Where reading stands within the columns of the chunk at hand.
+template <typename Columns>
+struct Place {
+  const Columns* columns;
+  std::size_t row;
+};
+
+class CursorOfSchema2 : public TakeCursor {
+ public:
+  CursorOfSchema2(std::unique_ptr<Database> database, TakeReaderOptions options)
+      : database_(std::move(database)),
+        values_((require_tables(*database_, kTables, kTakeTables), *database_)),
+        options_(options),
+        header_(read_header()),
+        chunks_(*database_, header_.frame.dimensions()) {}
+
+  const RecordingHeader& header() const override { return header_; }
+
+  RecordingSummary summary() override {
+    const ReadTransaction transaction(*database_);
+    RecordingSummary summary;
+    summary.instants = values_.integer("instants");
+    summary.samples = values_.integer("samples");
+    summary.seen = values_.integer("seen");
+    summary.complete = values_.integer("complete") != 0;
+    Statement tracks(*database_,
+                     "SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved FROM track ORDER BY id");
+    while (tracks.step()) {
+      RecordingSummary::TrackCount count;
+      count.name = {checked_track(tracks.integer(0), *database_), std::string(tracks.text(1)), std::string(tracks.text(2))};
+      if (tracks.is_number(3)) count.first_index = tracks.integer(3);
+      if (tracks.is_number(4)) count.last_index = tracks.integer(4);
+      for (int i = 0; i < 4; ++i) count.by_provenance[static_cast<std::size_t>(i)] = tracks.integer(5 + i);
+      summary.tracks.push_back(std::move(count));
+    }
+    const auto rows = chunks_.rows();
+    if (rows.empty()) return summary;
+    std::vector<Recording::Moment> first, last;
+    chunks_.read_moments(rows.front(), first);
+    chunks_.read_moments(rows.back(), last);
+    summary.first_index = first.front().index;
+    summary.first_time = first.front().time;
+    summary.last_index = last.back().index;
+    summary.last_time = last.back().time;
+    return summary;
+  }
+
+  std::vector<Edit> edits() override {
+    std::vector<Edit> edits;
+    Statement rows(*database_, "SELECT id, parent, operation, payload FROM edit ORDER BY id");
+    while (rows.step()) {
+      Edit edit{.id = rows.integer(0), .parent = {}, .operation = std::string(rows.text(2)), .payload = std::string(rows.text(3))};
+      if (rows.is_number(1)) edit.parent = rows.integer(1);
+      edits.push_back(std::move(edit));
+    }
+    return edits;
+  }
+  std::optional<std::int64_t> head() override {
+    const std::int64_t head = values_.integer("head");
+    return head > 0 ? std::optional(head) : std::nullopt;
+  }
+
+  std::optional<Instant> next() override {
+    if (at_ == chunk_.moments.size() && !fetch()) return std::nullopt;
+    Instant instant;
+    instant.index = chunk_.moments[at_].index;
+    instant.time = chunk_.moments[at_].time;
+    const auto at = static_cast<std::int32_t>(at_++);
+    for (auto& [track, row] : tracks_) {
+      if (row < track->size() && track->at()[row] == at) instant.samples.push_back(track->sample(row++));
+    }
+    for (auto& [camera, place] : seen_) {
+      for (; place.row < place.columns->size() && place.columns->at[place.row] == at; ++place.row)
+        instant.seen.push_back(place.columns->point(camera, place.row));
+    }
+    next_index_ = instant.index + 1;
+    return instant;
+  }
+
+  void seek(std::int64_t index) override {
+    leave_chunk();
+    next_index_ = index;
+  }
+
+  std::vector<Recording::Moment> moments() override {
+    const ReadTransaction transaction(*database_);
+    std::vector<Recording::Moment> moments;
+    for (const ChunkReader::Row& row : chunks_.rows()) chunks_.read_moments(row, moments);
+    return moments;
+  }
+
+  TrackColumns read_track(const TrackName& name) override {
+    const ReadTransaction transaction(*database_);
+    TrackColumns track(name, header_.frame.dimensions());
+    std::int64_t offset = 0;
+    for (const ChunkReader::Row& row : chunks_.rows()) {
+      chunks_.read_track(row, offset, track);
+      offset += row.instants;
+    }
+    return track;
+  }
+
+ private:
+  RecordingHeader read_header() {
+    RecordingHeader header = common_header(*database_, values_);
+    const std::string frame = values_.text("frame");
+    const auto kind = frame_kind_of(frame);
+    if (!kind) throw Error("{}: is damaged (its frame of reference is \"{}\")", database_->path(), frame.substr(0, 40));
+    header.frame.kind = *kind;
+    if (values_.has("camera")) {
+      const std::int64_t camera = values_.integer("camera");
+      if (camera < 0 || camera > 63) throw Error("{}: is damaged (its camera is {})", database_->path(), camera);
+      header.frame.camera = CameraId{static_cast<int>(camera)};
+    }
+    header.smoothed = values_.integer("smoothed") != 0;
+    header.made_by.program = values_.text("program");
+    Statement options(*database_, "SELECT name, value FROM option ORDER BY name");
+    while (options.step()) header.made_by.options.emplace(options.text(0), options.text(1));
+    Statement inputs(*database_, "SELECT name, hash FROM input ORDER BY id");
+    while (inputs.step()) header.made_by.inputs.push_back({std::string(inputs.text(0)), std::string(inputs.text(1))});
+    return header;
+  }
+
+  void leave_chunk() {
+    chunk_.clear();
+    tracks_.clear();
+    seen_.clear();
+    at_ = 0;
+  }
+
+  /// The chunk in which the next instant is; false where there is none yet.
+  bool fetch() {
+    leave_chunk();
+    const ReadTransaction transaction(*database_);
+    const auto row = chunks_.find(std::max(next_index_, std::int64_t{0}));
+    if (!row) return false;
+    try {
+      chunks_.read(*row, options_.seen, chunk_);
+    } catch (const Error&) {
+      leave_chunk();
+      throw;
+    }
+    const auto first = std::lower_bound(chunk_.moments.begin(), chunk_.moments.end(), next_index_,
+                                        [](const Recording::Moment& moment, std::int64_t index) { return moment.index < index; });
+    at_ = static_cast<std::size_t>(first - chunk_.moments.begin());
+    const auto begin = static_cast<std::int32_t>(at_);
+    const auto row_of = [begin](const auto& at) {
+      return static_cast<std::size_t>(std::lower_bound(at.begin(), at.end(), begin) - at.begin());
+    };
+    for (const auto& [id, columns] : chunk_.tracks) tracks_.push_back({&columns, row_of(columns.at())});
+    for (const auto& [camera, columns] : chunk_.seen) seen_.emplace_back(camera, Place<SeenColumns>{&columns, row_of(columns.at)});
+    return true;
+  }
+
+  std::unique_ptr<Database> database_;
+  TakeValues values_;
+  TakeReaderOptions options_;
+  RecordingHeader header_;
+  ChunkReader chunks_;
+  Chunk chunk_;
+  std::size_t at_ = 0;  // the chunk's instants: the next
+  std::vector<Place<TrackColumns>> tracks_;
+  std::vector<std::pair<CameraId, Place<SeenColumns>>> seen_;
+  std::int64_t next_index_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<TakeCursor> open_schema_2(std::unique_ptr<Database> database, TakeReaderOptions options) {
+  return std::make_unique<CursorOfSchema2>(std::move(database), options);
+}
+
+}  // namespace marey::format::take

@@ -1,0 +1,123 @@
+#include "marey/format/take/take_chunk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace marey::format::take {
+namespace {
+
+bool is_number(double value) {
+  return std::abs(value) <= std::numeric_limits<float>::max();
+}
+bool is_number(const std::optional<double>& value) {
+  return !value || is_number(*value);
+}
+
+bool is_sound(const Outline& outline) {
+  const auto known = [](const Vector<2>& pair) { return is_number(pair.x()) && is_number(pair.y()); };
+  return outline.order >= 0 && outline.order <= 255 && outline.control_points.size() <= 65535 &&
+         std::all_of(outline.control_points.begin(), outline.control_points.end(), known) &&
+         std::all_of(outline.deviations.begin(), outline.deviations.end(), known) && known(outline.centre) &&
+         known(outline.velocity) && known(outline.centre_deviation) && known(outline.velocity_deviation) &&
+         is_number(outline.scale_rate) && is_number(outline.scale_rate_deviation) &&
+         (!outline.silhouette || known(*outline.silhouette));
+}
+
+/// The entry of `key`, found soonest where keys are asked for in growing order.
+template <typename Map, typename Make>
+typename Map::mapped_type& entry_of(Map& map, typename Map::iterator& hint, const typename Map::key_type& key, const Make& make) {
+  if (hint == map.end() || hint->first != key) {
+    hint = map.lower_bound(key);
+    if (hint == map.end() || hint->first != key) hint = map.emplace_hint(hint, key, make());
+  }
+  return (hint++)->second;
+}
+
+}  // namespace
+
+void SeenColumns::add(std::int32_t instant, const SeenPoint& point) {
+  const std::size_t row = at.size();
+  at.push_back(instant);
+  x.push_back(point.pixel.x());
+  y.push_back(point.pixel.y());
+  if (point.sigma) sigma.set(row, {&*point.sigma, 1});
+  if (point.area) area.set(row, {&*point.area, 1});
+  track.push_back(point.track ? static_cast<std::uint64_t>(number(*point.track)) : 0);
+}
+
+SeenPoint SeenColumns::point(CameraId camera, std::size_t row) const {
+  SeenPoint point{.camera = camera, .pixel = {x[row], y[row]}, .sigma = {}, .area = {}, .track = {}};
+  if (sigma.known(row)) point.sigma = *sigma.values(row);
+  if (area.known(row)) point.area = *area.values(row);
+  if (track[row] != 0) point.track = TrackId{static_cast<int>(track[row])};
+  return point;
+}
+
+void SeenColumns::clear() {
+  at.clear();
+  x.clear();
+  y.clear();
+  sigma.clear();
+  area.clear();
+  track.clear();
+}
+
+TrackColumns& Chunk::track(TrackId id, int dimensions) {
+  return tracks.try_emplace(id, TrackName{.id = id, .label = {}, .team = {}}, dimensions).first->second;
+}
+
+void Chunk::add(const Instant& instant, int dimensions) {
+  const auto at = static_cast<std::int32_t>(moments.size());
+  moments.push_back({instant.index, instant.time});
+  auto column = tracks.begin();
+  for (const Sample& sample : instant.samples) {
+    const auto make = [&] { return TrackColumns({.id = sample.track, .label = {}, .team = {}}, dimensions); };
+    entry_of(tracks, column, sample.track, make).add(at, sample);
+    bytes += 28 + (sample.velocity ? 12 : 0) + (sample.covariance ? 24 : 0) + (sample.box ? 32 : 0);
+    if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();
+  }
+  SeenColumns* seen_by = nullptr;
+  std::optional<CameraId> camera;
+  for (const SeenPoint& point : instant.seen) {
+    if (camera != point.camera) seen_by = &seen[point.camera];
+    camera = point.camera;
+    seen_by->add(at, point);
+  }
+  bytes += 16 + 32 * instant.seen.size();
+}
+
+void Chunk::clear() {
+  moments.clear();
+  bytes = 0;
+  // Who was not there this time is gone for good, most likely.
+  std::erase_if(tracks, [](const auto& entry) { return entry.second.empty(); });
+  for (auto& [id, columns] : tracks) columns.clear();
+  for (auto& [camera, columns] : seen) columns.clear();
+}
+
+std::optional<std::string> problem_of(const Sample& sample) {
+  const auto nowhere = [&] { return fmt::format("track {} is nowhere", number(sample.track)); };
+  if (number(sample.track) <= 0) return fmt::format("track {} cannot be; ids are positive", number(sample.track));
+  if (!sample.position.allFinite()) return nowhere();
+  const auto known = [](const auto& matrix) { return (matrix.array().abs() <= std::numeric_limits<float>::max()).all(); };
+  if ((sample.velocity && !known(*sample.velocity)) || (sample.covariance && !known(*sample.covariance))) return nowhere();
+  if (!is_number(sample.score) || !is_number(sample.residual_px) || !is_number(sample.residual_m)) return nowhere();
+  if (sample.outline && !is_sound(*sample.outline)) return fmt::format("the outline of track {} is nowhere", number(sample.track));
+  if (!sample.box) return std::nullopt;
+  const Box& box = *sample.box;
+  if (!is_number(box.left) || !is_number(box.top) || !is_number(box.width) || !is_number(box.height)) return nowhere();
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_of(const SeenPoint& point) {
+  const int camera = number(point.camera);
+  if (camera < 0 || camera > 63) return fmt::format("camera {} cannot be; a rig has 64 at most", camera);
+  if (!point.pixel.allFinite() || !is_number(point.sigma) || !is_number(point.area) || (point.track && number(*point.track) <= 0))
+    return fmt::format("camera {} has seen what no camera sees", camera);
+  return std::nullopt;
+}
+
+}  // namespace marey::format::take

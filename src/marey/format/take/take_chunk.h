@@ -1,0 +1,45 @@
+// A stretch of a take, in memory: what is gathered until it is written, what is read at once, and what short chunks are joined in.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/recording.h"
+
+namespace marey::format::take {
+
+/// What one camera saw, in columns, by instant of the chunk.
+struct SeenColumns {
+  std::vector<std::int32_t> at;  ///< of the chunk's instants; several rows may have the same
+  std::vector<double> x, y;      ///< px
+  OptionalColumn sigma{1}, area{1};
+  std::vector<std::uint64_t> track;  ///< 0: nobody's
+
+  std::size_t size() const { return at.size(); }
+  void add(std::int32_t instant, const SeenPoint& point);
+  SeenPoint point(CameraId camera, std::size_t row) const;
+  void clear();
+};
+
+/// `at` counts its own instants.
+struct Chunk {
+  std::vector<Recording::Moment> moments;
+  std::map<TrackId, TrackColumns> tracks;
+  std::map<CameraId, SeenColumns> seen;
+  std::size_t bytes = 0;  ///< about what it takes in the file
+
+  bool empty() const { return moments.empty(); }
+  void add(const Instant& instant, int dimensions);
+  TrackColumns& track(TrackId id, int dimensions);
+  void clear();
+};
+
+/// Why reading would refuse it; nothing where it is sound.
+std::optional<std::string> problem_of(const Sample& sample);
+std::optional<std::string> problem_of(const SeenPoint& point);
+
+}  // namespace marey::format::take

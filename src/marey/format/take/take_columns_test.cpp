@@ -1,0 +1,339 @@
+// What lies in a take's columns: random recordings of every kind come back, a track that is read alone is what row by row SQL says,
+// schema 1 is read as before, and what no writer wrote is refused.
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <random>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/format/take/schema_1_records.h"
+#include "marey/format/take/take_file.h"
+#include "marey/format/take/take_schema.h"
+#include "marey/format/take/take_testing.h"
+
+#include "support/files.h"
+
+namespace marey::format::take {
+namespace {
+
+using Kind = FrameOfReference::Kind;
+
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : engine_(seed) {}
+  double between(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
+  int below(int end) { return std::uniform_int_distribution(0, end - 1)(engine_); }
+  bool with(double probability) { return between(0, 1) < probability; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+std::shared_ptr<const Outline> outline_of(Dice& dice) {
+  auto outline = std::make_shared<Outline>();
+  outline->state = static_cast<Outline::State>(dice.below(3));
+  const auto pair = [&] { return Vector<2>(dice.between(0, 800), dice.between(0, 600)); };
+  outline->control_points.resize(static_cast<std::size_t>(4 + dice.below(12)));
+  for (auto& point : outline->control_points) point = pair();
+  if (dice.with(0.5)) outline->deviations.resize(outline->control_points.size(), Vector<2>(0.5, 0.25));
+  outline->centre = pair();
+  outline->velocity = pair();
+  outline->scale_rate_deviation = dice.between(0, 1);
+  if (dice.with(0.5)) outline->silhouette = pair();
+  return outline;
+}
+
+/// With gaps in indices, tracks that come and go, and optional columns that some tracks have always, some now and then, some never.
+Recording random_recording(Kind kind, unsigned seed) {
+  Dice dice(seed);
+  RecordingHeader header;
+  header.name = "random";
+  header.frame.kind = kind;
+  if (kind == Kind::image) header.frame.camera = CameraId{2};
+  header.rate_hz = 25;
+  header.smoothed = dice.with(0.5);
+  Recording recording(header);
+  const int tracks = 1 + dice.below(9), dimensions = recording.dimensions();
+  std::int64_t index = dice.below(5);
+  for (int i = 0; i < 400; ++i, index += dice.with(0.05) ? 1 + dice.below(3'000) : 1) {
+    Instant instant;
+    instant.index = index;
+    instant.time = timestamp_from_seconds(static_cast<double>(index) / 25 + dice.between(0, 0.001));
+    for (int t = 1; t <= tracks; ++t) {
+      if (i < 20 * t || i > 400 - 10 * t || dice.with(0.1)) continue;
+      const auto has = [&](int column) { return (t + column) % 3 == 0 || ((t + column) % 3 == 1 && dice.with(0.3)); };
+      Sample sample;
+      sample.track = TrackId{7 * t};
+      for (int k = 0; k < dimensions; ++k) sample.position[k] = t == 2 ? dice.below(1000) : dice.between(-50, 50);
+      sample.provenance = t == 3 ? Provenance::measured : static_cast<Provenance>(dice.below(4));
+      sample.cameras = t == 4 ? ~CameraMask{0} : CameraMask{1} << dice.below(t == 5 ? 64 : 4);
+      if (has(0)) sample.velocity = Vector<3>(dice.between(-9, 9), dice.between(-9, 9), dimensions == 3 ? 1 : 0);
+      if (has(1)) {
+        sample.covariance = Matrix<3>::Zero();
+        for (int k = 0; k < dimensions; ++k) {
+          for (int m = k; m < dimensions; ++m) (*sample.covariance)(k, m) = (*sample.covariance)(m, k) = dice.between(0, 1);
+        }
+      }
+      if (has(2)) sample.score = dice.between(0, 1);
+      if (kind == Kind::image && has(0)) sample.box = Box{dice.between(0, 800), dice.between(0, 600), 20, 40.5};
+      if (kind == Kind::image && t % 3 == 1 && dice.with(0.7)) sample.outline = outline_of(dice);
+      if (has(3)) sample.residual_px = dice.between(0, 1);
+      if (has(4)) sample.residual_m = dice.between(0, 1);
+      instant.samples.push_back(sample);
+    }
+    for (int camera = 0; camera < 3; ++camera) {
+      for (int n = dice.below(4); n > 0; --n) {
+        SeenPoint point{CameraId{camera}, {dice.between(0, 800), dice.between(0, 600)}, {}, {}, {}};
+        if (camera != 1) point.sigma = dice.between(0, 1);
+        if (dice.with(0.5)) point.area = dice.between(0, 100);
+        if (dice.with(0.5)) point.track = TrackId{7 * (1 + dice.below(tracks))};
+        instant.seen.push_back(point);
+      }
+    }
+    recording.add(instant);
+  }
+  return recording;
+}
+
+class TakeColumnsTest : public testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_ / "some.marey";
+
+  static std::string error_of(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  void read_everything() const {
+    TakeReader reader(path_);
+    const auto summary = reader.summary();
+    while (reader.next()) {
+    }
+    reader.moments();
+    for (const auto& track : summary.tracks) reader.read_track(track.name.id);
+  }
+};
+
+TEST_F(TakeColumnsTest, RecordingsOfEveryKindComeBack) {
+  for (const Kind kind : {Kind::image, Kind::ground, Kind::user_ground, Kind::space}) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      SCOPED_TRACE(fmt::format("kind {}, seed {}", static_cast<int>(kind), seed));
+      const Recording recording = random_recording(kind, seed);
+      write_recording(path_, recording);
+      const Recording read = read_recording(path_);
+      EXPECT_EQ(read.header.frame, recording.header.frame);
+      EXPECT_EQ(read.header.smoothed, recording.header.smoothed);
+      testing_take::expect_same(read, recording);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+/// The coordinates of a track by SQL alone, number by number.
+std::vector<std::array<double, 4>> rows_by_sql(const std::string& path, int track) {
+  std::vector<std::array<double, 4>> found;
+  Database database(path, Database::Mode::read);
+  Statement rows(database,
+                 "SELECT s.rows, s.at, s.x, s.y, s.z, c.times FROM samples s JOIN chunk c ON c.id = s.id >> 32 WHERE "
+                 "s.id & 0xFFFFFFFF = ? ORDER BY c.last_index");
+  rows.bind(0, std::int64_t{track});
+  while (rows.step()) {
+    const auto count = static_cast<std::size_t>(rows.integer(0));
+    const auto coordinate = [&](int column, std::size_t row) {
+      const auto blob = rows.blob(column);
+      double wide = 0;
+      float narrow = 0;
+      if (blob.empty()) return 0.0;
+      if (blob.size() == 4 * count) return static_cast<double>((std::memcpy(&narrow, blob.data() + 4 * row, 4), narrow));
+      return std::memcpy(&wide, blob.data() + 8 * row, 8), wide;
+    };
+    for (std::size_t row = 0; row < count; ++row) {
+      std::uint32_t at = 0;
+      if (rows.is_number(1)) {
+        at = static_cast<std::uint32_t>(rows.integer(1)) + static_cast<std::uint32_t>(row);
+      } else {
+        std::memcpy(&at, rows.blob(1).data() + 4 * row, 4);
+      }
+      std::int64_t time = 0;
+      std::memcpy(&time, rows.blob(5).data() + 8 * std::size_t{at}, 8);
+      found.push_back({static_cast<double>(time) * 1e-9, coordinate(2, row), coordinate(3, row), coordinate(4, row)});
+    }
+  }
+  return found;
+}
+
+TEST_F(TakeColumnsTest, OneTrackIsReadAsRowByRow) {
+  for (const Kind kind : {Kind::image, Kind::space}) {
+    const Recording recording = random_recording(kind, 9);
+    write_recording(path_, recording);
+    const TakeReader reader(path_);
+    const auto moments = reader.moments();
+    ASSERT_EQ(moments.size(), recording.instants().size());
+    for (const auto& track : recording.tracks()) {
+      const auto alone = reader.read_track(track.id());
+      testing_take::expect_same(alone, track);
+      const auto slow = rows_by_sql(path_, number(track.id()));
+      ASSERT_EQ(slow.size(), alone.size());
+      for (std::size_t row = 0; row < slow.size(); ++row) {
+        EXPECT_EQ(alone.position(row), Vector<3>(slow[row][1], slow[row][2], slow[row][3]));
+        EXPECT_NEAR(seconds(moments[static_cast<std::size_t>(alone.at()[row])].time), slow[row][0], 1e-9);
+      }
+    }
+    EXPECT_TRUE(reader.read_track(TrackId{4}).empty());
+  }
+}
+
+TEST_F(TakeColumnsTest, ColumnsThatNobodyFillsAreNotThere) {
+  RecordingHeader header;
+  header.rate_hz = 25;
+  header.frame.kind = Kind::ground;
+  Recording recording(header);
+  for (int i = 0; i < 1000; ++i) {
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(0.04 * i);
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = TrackId{1};
+    sample.position = {0.1 * i, 0.25 * i, 0};
+    sample.cameras = 3;
+    recording.add(instant);
+  }
+  write_recording(path_, recording);
+  EXPECT_EQ(testing_take::number_in(path_,
+                                    "SELECT count(*) FROM samples WHERE typeof(at) = 'integer' AND typeof(cameras) = 'integer' "
+                                    "AND typeof(provenance) = 'integer' AND z IS NULL AND velocity IS NULL AND covariance IS "
+                                    "NULL AND box IS NULL AND outline IS NULL"),
+            1);
+  EXPECT_EQ(testing_take::number_in(path_, "SELECT length(x) FROM samples"), 8000);
+  EXPECT_EQ(testing_take::number_in(path_, "SELECT length(y) FROM samples"), 4000) << "quarters are floats without a loss";
+}
+
+/// A take as Marey 0.1 wrote it.
+void write_schema_1(const std::string& path) {
+  Database database(path, Database::Mode::create);
+  database.run(R"(
+    PRAGMA application_id = 0x4D524559;
+    PRAGMA user_version = 1;
+    CREATE TABLE take (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+    CREATE TABLE track (id INTEGER PRIMARY KEY, label TEXT NOT NULL, first_frame INTEGER, last_frame INTEGER,
+                        measured INTEGER NOT NULL, filled INTEGER NOT NULL, predicted INTEGER NOT NULL);
+    CREATE TABLE frame (frame INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, points BLOB NOT NULL, observations BLOB NOT NULL);
+    CREATE TABLE edit (id INTEGER PRIMARY KEY, time TEXT NOT NULL, what TEXT NOT NULL);
+    INSERT INTO take VALUES ('name', 'walk'), ('made_by', 'old'), ('recorded_at', ''), ('rate_hz', 100.0), ('complete', 1),
+                            ('frames', 200), ('points', 200), ('observations', 200);
+    INSERT INTO track VALUES (3, 'head', 0, 199, 100, 100, 0);
+    INSERT INTO edit (time, what) VALUES ('2026-01-01', 'head "renamed"'), ('', 'tail');
+  )");
+  Statement add(database, "INSERT INTO frame VALUES (?, ?, ?, ?)");
+  for (std::int64_t i = 0; i < 200; ++i) {
+    PointRecord point{};
+    point.x = static_cast<double>(i) / 3;
+    point.z = 1;
+    point.cameras = 5;
+    point.residual_px = 0.25;
+    point.track = 3;
+    point.provenance = static_cast<std::uint8_t>(i % 2);
+    point.flags = PointRecord::has_residual_px;
+    const ObservationRecord seen{1.5, 2.5, 0, 12, 1, 0};
+    add.bind(0, i);
+    add.bind(1, i * 10'000'000);
+    add.bind(2, std::as_bytes(std::span(&point, 1)));
+    add.bind(3, std::as_bytes(std::span(&seen, 1)));
+    add.run();
+  }
+}
+
+TEST_F(TakeColumnsTest, Schema1IsStillRead) {
+  write_schema_1(path_);
+  TakeReader reader(path_);
+  EXPECT_EQ(reader.header().made_by.program, "old");
+  EXPECT_EQ(reader.header().frame.kind, Kind::space);
+  EXPECT_EQ(reader.summary().tracks.at(0).of(Provenance::filled), 100);
+  ASSERT_EQ(reader.edits().size(), 2U);
+  EXPECT_EQ(reader.edits()[0], (Edit{1, {}, "note", R"({"time":"2026-01-01","what":"head \"renamed\""})"}));
+  EXPECT_EQ(reader.edits()[1].parent, 1);
+  EXPECT_EQ(reader.head(), 2);
+  reader.seek(77);
+  const auto instant = reader.next();
+  ASSERT_TRUE(instant);
+  EXPECT_EQ(instant->index, 77);
+  EXPECT_EQ(instant->samples.at(0).position, Vector<3>(77.0 / 3, 0, 1));
+  EXPECT_EQ(instant->samples.at(0).provenance, Provenance::filled);
+  EXPECT_EQ(instant->seen.at(0), (SeenPoint{CameraId{1}, {1.5, 2.5}, {}, 12, {}}));
+  const auto track = reader.read_track(TrackId{3});
+  EXPECT_EQ(track.name.label, "head");
+  ASSERT_EQ(track.size(), 200U);
+  EXPECT_EQ(track.position(150).x(), 50);
+  // And written again, it is the same recording.
+  const Recording old = read_recording(path_);
+  write_recording(folder_ / "new.marey", old);
+  EXPECT_EQ(testing_take::number_in(folder_ / "new.marey", "PRAGMA user_version"), 2);
+  testing_take::expect_same(read_recording(folder_ / "new.marey"), old);
+}
+
+TEST_F(TakeColumnsTest, LaterSchemasAndOtherProgramsFilesAreRefused) {
+  write_recording(path_, random_recording(Kind::space, 1));
+  Database(path_, Database::Mode::create).run("PRAGMA user_version = 3");
+  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("later version of Marey"), std::string::npos);
+  Database(path_, Database::Mode::create).run("PRAGMA application_id = 42");
+  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is no take"), std::string::npos);
+}
+
+TEST_F(TakeColumnsTest, HostileTablesAreRefused) {
+  const char* const changes[] = {
+      "UPDATE samples SET rows = rows + 1",
+      "UPDATE samples SET rows = -1",
+      "UPDATE samples SET rows = 2000000000",
+      "UPDATE samples SET rows = 2000000000, at = 0, provenance = 0, cameras = 0",
+      "UPDATE samples SET x = zeroblob(3)",
+      "UPDATE samples SET z = NULL",
+      "UPDATE samples SET x = CAST(replace(hex(x), '0', 'F') AS BLOB)",
+      "UPDATE samples SET (rows, at, provenance, cameras, x, y, z) = (1, 0, 0, 0, x'0000c07f', x'00000000', x'00000000')",
+      "UPDATE samples SET at = 1000000",
+      "UPDATE samples SET at = -1",
+      "UPDATE samples SET at = zeroblob(4 * rows) WHERE rows > 1",
+      "UPDATE samples SET provenance = 9",
+      "UPDATE samples SET velocity = zeroblob(5)",
+      "UPDATE samples SET outline = zeroblob(5)",
+      "UPDATE samples SET outline = x'ffffffff'",
+      "UPDATE samples SET id = id | 0xC0000000",
+      "UPDATE seen SET rows = rows + 1",
+      "UPDATE seen SET at = zeroblob(4)",
+      "UPDATE seen SET track = 3000000000",
+      "UPDATE seen SET id = id | 64",
+      "UPDATE chunk SET instants = instants + 1",
+      "UPDATE chunk SET instants = 2000000000, last_index = 4000000000, indices = NULL WHERE id = (SELECT max(id) FROM chunk)",
+      "UPDATE chunk SET times = zeroblob(16)",
+      "UPDATE chunk SET indices = zeroblob(4 * instants)",
+      "UPDATE chunk SET first_index = last_index + 1",
+      "UPDATE chunk SET last_index = 9223372036854775807 WHERE id = (SELECT max(id) FROM chunk)",
+      "UPDATE chunk SET id = 9223372036854775807 WHERE id = 1",
+      "UPDATE track SET id = -1 WHERE id = 7",
+      "UPDATE take SET value = 'elsewhere' WHERE key = 'frame'",
+      "UPDATE take SET value = 0 WHERE key = 'rate_hz'",
+      "UPDATE take SET value = 'nonsense = [' WHERE key = 'rig'",
+      "DROP TABLE seen",
+  };
+  Recording recording = random_recording(Kind::space, 3);
+  recording.header.rig = Rig{};
+  recording.header.rig->cameras.emplace_back().name = "left";
+  write_recording(folder_ / "whole.marey", recording);
+  for (const char* change : changes) {
+    SCOPED_TRACE(change);
+    std::filesystem::copy_file(folder_ / "whole.marey", path_, std::filesystem::copy_options::overwrite_existing);
+    Database(path_, Database::Mode::create).run(change);
+    const std::string error = error_of([&] { read_everything(); });
+    EXPECT_TRUE(error.starts_with(path_)) << error;
+  }
+}
+
+}  // namespace
+}  // namespace marey::format::take

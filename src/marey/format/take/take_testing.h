@@ -1,0 +1,94 @@
+// What the tests of takes share: recordings compared, and a take's tables asked.
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/recording.h"
+#include "marey/format/take/sqlite.h"
+
+namespace marey::format::take::testing_take {
+
+/// As a take keeps it: exactly, or with a float32's precision.
+inline void expect_same(const Sample& a, const Sample& b) {
+  EXPECT_EQ(a.track, b.track);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.provenance, b.provenance);
+  EXPECT_EQ(a.cameras, b.cameras);
+  EXPECT_EQ(a.box.has_value(), b.box.has_value());
+  if (a.box && b.box) {
+    EXPECT_EQ(a.box->left, b.box->left);
+    EXPECT_EQ(a.box->top, b.box->top);
+    EXPECT_EQ(a.box->width, b.box->width);
+    EXPECT_EQ(a.box->height, b.box->height);
+  }
+  const auto floats = [](const auto& one, const auto& other) {
+    ASSERT_EQ(one.has_value(), other.has_value());
+    if (!one) return;
+    EXPECT_TRUE(one->template cast<float>() == other->template cast<float>()) << *one << "\n" << *other;
+  };
+  floats(a.velocity, b.velocity);
+  floats(a.covariance, b.covariance);
+  const auto number = [](const std::optional<double>& one, const std::optional<double>& other) {
+    ASSERT_EQ(one.has_value(), other.has_value());
+    if (!one) return;
+    EXPECT_EQ(static_cast<float>(*one), static_cast<float>(*other));
+  };
+  number(a.score, b.score);
+  number(a.residual_px, b.residual_px);
+  number(a.residual_m, b.residual_m);
+  ASSERT_EQ(a.outline == nullptr, b.outline == nullptr);
+  if (!a.outline) return;
+  ASSERT_EQ(a.outline->control_points.size(), b.outline->control_points.size());
+  for (std::size_t i = 0; i < a.outline->control_points.size(); ++i)
+    EXPECT_TRUE(a.outline->control_points[i].cast<float>() == b.outline->control_points[i].cast<float>());
+  EXPECT_EQ(a.outline->deviations.size(), b.outline->deviations.size());
+  EXPECT_EQ(a.outline->order, b.outline->order);
+  EXPECT_EQ(a.outline->state, b.outline->state);
+  EXPECT_TRUE(a.outline->centre.cast<float>() == b.outline->centre.cast<float>());
+  EXPECT_FLOAT_EQ(static_cast<float>(a.outline->scale_rate_deviation), static_cast<float>(b.outline->scale_rate_deviation));
+  EXPECT_EQ(a.outline->silhouette.has_value(), b.outline->silhouette.has_value());
+}
+
+inline void expect_same(const SeenPoint& a, const SeenPoint& b) {
+  EXPECT_EQ(a.camera, b.camera);
+  EXPECT_EQ(a.pixel, b.pixel);
+  EXPECT_EQ(a.track, b.track);
+  EXPECT_EQ(a.sigma.has_value(), b.sigma.has_value());
+  EXPECT_EQ(a.area.has_value(), b.area.has_value());
+  EXPECT_EQ(static_cast<float>(a.sigma.value_or(0)), static_cast<float>(b.sigma.value_or(0)));
+  EXPECT_EQ(static_cast<float>(a.area.value_or(0)), static_cast<float>(b.area.value_or(0)));
+}
+
+inline void expect_same(const Instant& a, const Instant& b) {
+  ASSERT_EQ(a.index, b.index);
+  EXPECT_EQ(a.time, b.time);
+  ASSERT_EQ(a.samples.size(), b.samples.size()) << a.index;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) expect_same(a.samples[i], b.samples[i]);
+  ASSERT_EQ(a.seen.size(), b.seen.size()) << a.index;
+  for (std::size_t i = 0; i < a.seen.size(); ++i) expect_same(a.seen[i], b.seen[i]);
+}
+
+inline void expect_same(const TrackColumns& a, const TrackColumns& b) {
+  EXPECT_EQ(a.name, b.name);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t row = 0; row < a.size(); ++row) {
+    ASSERT_EQ(a.at()[row], b.at()[row]);
+    expect_same(a.sample(row), b.sample(row));
+  }
+}
+
+inline void expect_same(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.instants().size(), b.instants().size());
+  ASSERT_EQ(a.tracks().size(), b.tracks().size());
+  for (std::size_t i = 0; i < a.tracks().size(); ++i) expect_same(a.tracks()[i], b.tracks()[i]);
+  InstantsOf of_a(a), of_b(b);
+  while (const auto instant = of_a.next()) expect_same(*instant, of_b.next().value());
+}
+
+inline std::int64_t number_in(const std::string& path, const std::string& query) {
+  return Database(path, Database::Mode::read).number(query);
+}
+
+}  // namespace marey::format::take::testing_take
