@@ -157,7 +157,7 @@ class TrackColumns {
   void reserve(std::size_t rows);
   /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
   void set_at(std::vector<std::int32_t> instants);
-  void forget_velocities();
+  void forget_velocities() { column(Optional::velocity).clear(); }
   /// Many rows at once, later than those that are there; what they have in optional columns is put into those afterwards.
   void add_rows(const Rows& rows);
   void set_outline(std::size_t row, std::shared_ptr<const Outline> outline) { outlines_[row] = std::move(outline); }
