@@ -24,20 +24,23 @@ constexpr double kBodyMetres = 1.75;
 pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
   pipeline::GroundOutput output{
       .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
-  const std::string format = command.format.empty() ? (flags.camera.empty() ? "csv" : "mot") : command.format;
-  if (format != "csv" && format != "mot")
-    throw WrongUsage("--format {}: places on the ground are written as csv, and the boxes in one camera's view as mot", format);
+  const char* usual = command.out.ends_with(".marey") ? "take" : flags.camera.empty() ? "csv" : "mot";
+  const std::string format = command.format.empty() ? usual : command.format;
+  if (format != "csv" && format != "take" && format != "mot")
+    throw WrongUsage("--format {}: places on the ground are written as csv or take, the boxes in one camera's view as mot", format);
   if (format == "mot" && flags.camera.empty())
     throw WrongUsage("--format mot holds the boxes in one camera's view; name the camera with --camera");
-  if (format == "csv" && !flags.camera.empty())
+  if (format != "mot" && !flags.camera.empty())
     throw WrongUsage("--camera {} is for --format mot; places on the ground are those of all cameras together", flags.camera);
-  const char* ending = format == "mot" ? ".txt" : ".csv";
+  const char* ending = format == "mot" ? ".txt" : format == "take" ? ".marey" : ".csv";
+  if (format == "take" && !command.out.empty() && !command.out.ends_with(ending))
+    throw WrongUsage("--output {}: a take's name ends in .marey", command.out);
   if (command.format.empty() && !command.out.empty() && !is_stream(command.out) && !command.out.ends_with(ending))
     throw WrongUsage("--output {}: {} is written, so its name ends in {}; or name the format with --format", command.out, format,
                      ending);
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty())
-    output.tracks = std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : "_ground.csv");
+    output.tracks = std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : std::string("_ground") + ending);
   return output;
 }
 

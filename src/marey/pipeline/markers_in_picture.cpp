@@ -52,6 +52,7 @@ class MarkersInPicture final : public Stage {
   MarkersInPicture(const Feed& feed, const MarkersInPictureOptions& options) : options_(options), detector_(options.markers) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
+    header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (options.fit_noise && !options.live) fit(feed.again());

@@ -77,6 +77,7 @@ class PeopleInPicture final : public Stage {
       : options_(options), tracker_(track::make_tracker(tracker_options(feed, options))) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
+    header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.smoothed = !options.live;
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};

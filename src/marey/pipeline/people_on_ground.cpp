@@ -75,6 +75,7 @@ class GroundStage final : public PeopleOnGround {
     tracker_ = track::ground::make_ground_tracker(options.tracker, std::move(views));
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
+    header_.made_by.program = "marey track";
     header_.rate_hz = feeds.front().rate_hz();
     header_.rig = rig_;
     header_.smoothed = !options.live;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/format/input_hash.h"
 
 namespace marey::pipeline {
 namespace {
@@ -56,6 +57,17 @@ class Counter {
   std::set<TrackId> tracks_, labelled_;
 };
 
+/// The header with how it was made.
+RecordingHeader signed_header(RecordingHeader header, const Clock& clock, const Hooks& hooks) {
+  if (header.made_by.program.empty()) header.made_by.program = "marey";
+  header.made_by.program += " " MAREY_VERSION;
+  header.made_by.options = hooks.options;
+  for (const Feed& feed : clock.feeds()) {
+    if (!feed.info().name.empty()) header.made_by.inputs.push_back(format::input_of(feed.info().name));
+  }
+  return header;
+}
+
 void attach(std::vector<Frame>& frames, const FrameSet& set) {
   for (const auto& camera : set.cameras) {
     if (camera && !camera->frame.picture.empty()) frames.push_back(camera->frame);
@@ -105,7 +117,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Summary summary;
   Counter counter(summary);
   const auto begin = std::chrono::steady_clock::now();
-  sinks.begin(stage.header());
+  sinks.begin(signed_header(stage.header(), clock, hooks));
   if (sinks.want_boxes()) stage.want_boxes();
   std::optional<Timestamp> first;
   while (const std::optional<FrameSet> frames = clock.next()) {

@@ -33,6 +33,8 @@ enum class Continue { no, yes };
 struct Hooks {
   std::function<void(const Progress&)> progress;
   std::function<bool()> stop;  ///< true: leave off here, and write what there is
+  /// What the user asked for, by option: recordings keep it with the inputs' names and hashes, so that they can be made again.
+  std::map<std::string, std::string> options = {};
 
   Continue report(const Progress& now) const {
     if (progress) progress(now);

@@ -8,6 +8,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/overlay_film.h"
 #include "marey/format/match/ground_file.h"
+#include "marey/format/take/take_file.h"
 #include "marey/pipeline/ground_films.h"
 #include "marey/pipeline/ground_offsets.h"
 #include "marey/pipeline/rig_sources.h"
@@ -47,7 +48,9 @@ void add_films(Sinks& sinks, const GroundOutput& output, const std::vector<Feed>
 
 Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const std::vector<Feed>& feeds) {
   Sinks sinks;
-  if (output.boxes_of.empty()) {
+  if (output.tracks.ends_with(".marey")) {
+    sinks.add(std::make_unique<format::take::TakeWriter>(output.tracks));
+  } else if (output.boxes_of.empty()) {
     sinks.add(std::make_unique<format::match::GroundWriter>(output.tracks));
   } else {
     sinks.add(std::make_unique<ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));

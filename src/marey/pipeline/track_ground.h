@@ -13,7 +13,7 @@ namespace marey::pipeline {
 
 /// Where the results go; what is empty is not made.
 struct GroundOutput {
-  std::string tracks;      ///< CSV as format/match/ground_file.h has it, unless `boxes_of` names a camera
+  std::string tracks;      ///< a take (.marey), else CSV as format/match/ground_file.h has it, unless `boxes_of` names a camera
   std::string boxes_of;    ///< a camera: `tracks` then is MOT text, the boxes in that view by that camera's own frames
   std::string overlays;    ///< a folder: <camera>.mp4, a film of each camera that has pictures
   std::string pitch_view;  ///< a film of the ground from above

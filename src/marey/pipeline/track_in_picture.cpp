@@ -22,7 +22,7 @@ Feed open(const RigCamera& camera) {
 
 Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayOptions& drawn) {
   Sinks sinks;
-  sinks.add(std::make_unique<format::tracks::TrackFile>(output.tracks, output.format));
+  sinks.add(format::tracks::create_tracks(output.tracks, output.format));
   if (!output.plot.empty()) sinks.add(std::make_unique<PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);

@@ -15,6 +15,7 @@
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/match/line_ups.h"
+#include "marey/format/take/take_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
@@ -296,6 +297,15 @@ GroundMatch read_ground_any(const std::string& path, const GroundReadOptions& op
   std::error_code error;
   if (!fs::exists(path, error)) throw Error("{}: no such file", path);
   if (fs::is_directory(path, error)) throw Error("{}: is a folder, not a file", path);
+  if (take::is_take(path)) {
+    GroundMatch match;
+    match.pitch = options.pitch;
+    match.recording = take::read_recording(path);
+    match.recording.header.name = path;
+    require_ground(match.recording, "a match");
+    for (const TrackColumns& track : match.recording.tracks()) match.order.push_back(track.id());
+    return match;
+  }
   // What is no format at all is told by the reader of ours, which says what it wants.
   return read_ground_as(path, ground_format_of_content(path).value_or(GroundFormat::csv), options);
 }

@@ -1,6 +1,7 @@
 #include "marey/format/tracks/track_file.h"
 
 #include <array>
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -9,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/text_rows.h"
+#include "marey/format/take/take_file.h"
 #include "marey/format/tracks/outline_json.h"
 
 namespace marey::format::tracks {
@@ -20,7 +22,7 @@ struct NamedFormat {
   std::string_view ending;
 };
 constexpr std::array kFormats{NamedFormat{TrackFormat::mot, "mot", ".txt"}, NamedFormat{TrackFormat::csv, "csv", ".csv"},
-                              NamedFormat{TrackFormat::jsonl, "jsonl", ".jsonl"}};
+                              NamedFormat{TrackFormat::jsonl, "jsonl", ".jsonl"}, NamedFormat{TrackFormat::take, "take", ".marey"}};
 
 std::string_view state_of(const Sample& sample) {
   return sample.measured() ? "observed" : "predicted";
@@ -100,6 +102,11 @@ std::string_view ending_of(TrackFormat format) {
   return {};
 }
 
+std::unique_ptr<Sink> create_tracks(const std::string& path, TrackFormat format) {
+  if (format == TrackFormat::take) return std::make_unique<take::TakeWriter>(path);
+  return std::make_unique<TrackFile>(path, format);
+}
+
 TrackFile::TrackFile(const std::string& path, TrackFormat format) : path_(path), file_(path), format_(format) {}
 
 Sink::Wants TrackFile::begin(const RecordingHeader& header) {
@@ -124,6 +131,8 @@ void TrackFile::write(const Instant& instant) {
       case TrackFormat::jsonl:
         append_json(lines_, instant, sample, names_.label(sample.track));
         break;
+      case TrackFormat::take:
+        assert(!"a take is no text: create_tracks knows its writer");
     }
   }
   file_.write(lines_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,8 @@ namespace marey::format::tracks {
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
 ///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
 ///          (outline_json.h)
-enum class TrackFormat { mot, csv, jsonl };
+///   take   a recording with all that is known (format/take/take_file.h)
+enum class TrackFormat { mot, csv, jsonl, take };
 
 /// Every format's name with commas between, the default one first.
 std::string track_format_names();
@@ -26,7 +28,10 @@ std::optional<TrackFormat> track_format_of(std::string_view path);
 /// The ending that track_format_of knows it by, with its dot.
 std::string_view ending_of(TrackFormat format);
 
-/// Writes tracks as they come; the file is there whole or not at all.
+/// What writes that format at `path`. Throws Error where nothing can be written there.
+std::unique_ptr<Sink> create_tracks(const std::string& path, TrackFormat format);
+
+/// Writes tracks as text as they come; the file is there whole or not at all.
 class TrackFile final : public Sink {
  public:
   /// Throws Error where nothing can be written there.
