@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -40,6 +41,8 @@ class HelpText : public CLI::Formatter {
 struct CommandMissing {
   std::string help;
 };
+
+std::map<std::string, std::string> asked_for;  // of the command that runs
 
 void say(const char* sentence) {
   fmt::print(stderr, "marey: {}\n", sentence);
@@ -111,6 +114,7 @@ struct Command::Declared {
   }
 
   void check_its_files() const;
+  std::map<std::string, std::string> given() const;
 };
 
 struct Program::Parser {
@@ -342,6 +346,20 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
 
 // ---- the program
 
+/// What was asked for, by option, but for its files: those are told by name and hash.
+std::map<std::string, std::string> Command::Declared::given() const {
+  std::map<std::string, std::string> texts;
+  for (const auto& option : options) {
+    if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
+    texts[option->name.substr(option->name.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
+  }
+  return texts;
+}
+
+const std::map<std::string, std::string>& given_options() {
+  return asked_for;
+}
+
 Program::Program(const std::string& name, const std::string& meaning) : parser_(std::make_unique<Parser>()) {
   parser_->app.name(name);
   parser_->app.description(meaning);
@@ -384,6 +402,7 @@ int Program::run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());
     parser_->app.parse(words);
     command.check_its_files();
+    asked_for = command.given();
     command.run();
   } catch (const EndWith& end) {
     code = end.code;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -180,5 +181,8 @@ class Program {
   struct Parser;
   std::unique_ptr<Parser> parser_;
 };
+
+/// The options that the running command was given, without their dashes; not those that name files.
+const std::map<std::string, std::string>& given_options();
 
 }  // namespace marey::cli

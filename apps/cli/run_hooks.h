@@ -32,6 +32,7 @@ void run_with_progress(bool quiet, Track&& track, Report&& report) {
     ProgressBar bar(quiet);
     pipeline::Hooks hooks;
     hooks.stop = [] { return interrupted(); };
+    hooks.options = given_options();
     hooks.progress = [&](const pipeline::Progress& progress) { bar.show(progress.step, progress.done, progress.total); };
     return track(hooks);
   }();
