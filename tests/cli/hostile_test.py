@@ -102,10 +102,11 @@ class Hostile(unittest.TestCase):
         self.refused("measure", "match.csv", words=words)
         take = self.take()
         with sqlite3.connect(take) as database:
-            names = [row[1] for row in database.execute("PRAGMA table_info(frame)")]
-            others = ", ".join(names[1:])
-            self.assertEqual(names[0], "frame")
-            database.execute(f"INSERT INTO frame (frame, {others}) SELECT {far}, {others} FROM frame WHERE frame = 199")
+            first, last, indices = database.execute("SELECT first_index, last_index, indices FROM chunk").fetchone()
+            self.assertEqual((first, last), (0, 199))
+            others = "instants, NULL, times"
+            database.execute(f"INSERT INTO chunk (id, first_index, last_index, instants, indices, times) "
+                             f"SELECT id + 1, {far}, {far} + instants - 1, {others} FROM chunk")
         self.refused("convert", take, "out.csv", words=words)
 
     def test_a_wild_time_makes_no_wild_rate(self):
@@ -145,7 +146,7 @@ class Hostile(unittest.TestCase):
         take = self.take("b.marey")
         with sqlite3.connect(take) as database:
             names = [row[1] for row in database.execute("PRAGMA table_info(track)")]
-            values = ", ".join("n" if name == "id" else "''" if name == "label" else "0" for name in names)
+            values = ", ".join("n" if name == "id" else "''" if name in ("label", "team") else "0" for name in names)
             database.execute(f"WITH RECURSIVE many(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM many LIMIT 200000) "
                              f"INSERT INTO track ({', '.join(names)}) SELECT {values} FROM many")
         self.refused("info", take, words=["100000 tracks"])

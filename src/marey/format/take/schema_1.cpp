@@ -45,6 +45,7 @@ class CursorOfSchema1 : public TakeCursor {
       RecordingSummary::TrackCount count;
       count.name.id = checked_track(tracks.integer(0), *database_);
       count.name.label = tracks.text(1);
+      check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       for (int i = 0; i < 3; ++i) count.by_provenance[static_cast<std::size_t>(i)] = tracks.integer(4 + i);
       if (count.samples() > 0) {
         count.first_index = tracks.integer(2);

@@ -47,6 +47,7 @@ class CursorOfSchema2 : public TakeCursor {
     while (tracks.step()) {
       RecordingSummary::TrackCount count;
       count.name = {checked_track(tracks.integer(0), *database_), std::string(tracks.text(1)), std::string(tracks.text(2))};
+      check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       if (tracks.is_number(3)) count.first_index = tracks.integer(3);
       if (tracks.is_number(4)) count.last_index = tracks.integer(4);
       for (int i = 0; i < 4; ++i) count.by_provenance[static_cast<std::size_t>(i)] = tracks.integer(5 + i);

@@ -1,5 +1,7 @@
 #include "marey/format/take/take_cursor.h"
 
+#include <algorithm>
+
 #include <cmath>
 #include <limits>
 
@@ -61,6 +63,14 @@ RecordingHeader common_header(const Database& database, TakeValues& values) {
 TrackId checked_track(std::int64_t id, const Database& database) {
   if (id <= 0 || id > std::numeric_limits<int>::max()) throw Error("{}: is damaged (a track's id is {})", database.path(), id);
   return TrackId{static_cast<int>(id)};
+}
+
+void check_name(const TrackName& name, std::size_t known, const Limits& limits, const Database& database) {
+  if (known >= limits.tracks) throw Error("{}: has more than {} tracks (the limit tracks)", database.path(), limits.tracks);
+  const std::size_t longest = std::max(name.label.size(), name.team.size());
+  if (longest <= limits.label_bytes) return;
+  throw Error("{}: the label of track {} has {} bytes; they have at most {} (the limit label_bytes)", database.path(), number(name.id),
+              longest, limits.label_bytes);
 }
 
 }  // namespace marey::format::take

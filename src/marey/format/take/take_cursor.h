@@ -52,6 +52,8 @@ class TakeValues {
 void require_tables(const Database& database, const char* tables, int count);
 /// A name, a rate, a rig: what both schemas have.
 RecordingHeader common_header(const Database& database, TakeValues& values);
+/// Throws Error where the take has `known` tracks already that are as many as there may be, or where a name is too long.
+void check_name(const TrackName& name, std::size_t known, const Limits& limits, const Database& database);
 /// A track's id as the file has it.
 TrackId checked_track(std::int64_t id, const Database& database);
 

@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_cursor.h"
 #include "marey/format/take/take_file.h"
@@ -69,6 +70,16 @@ void require_whole_pages(Database& database) {
     throw Error("{}: is damaged (it is cut off); restore it from a copy", database.path());
 }
 
+/// One instant that is far from all others: who follows the take would walk through all between.
+std::unique_ptr<TakeCursor> believable(std::unique_ptr<TakeCursor> cursor, const std::string& path) {
+  const RecordingSummary summary = cursor->summary();
+  if (!summary.first_index || *summary.last_index - *summary.first_index < FrameNumbers::kMostMissing) return cursor;
+  FrameNumbers numbers;
+  for (const Recording::Moment& moment : cursor->moments()) numbers.add(moment.index);
+  numbers.check(path);
+  return cursor;
+}
+
 std::unique_ptr<TakeCursor> open(const std::string& path, TakeReaderOptions options) {
   require_take(path);
   tidy_after_kill(path);
@@ -79,8 +90,8 @@ std::unique_ptr<TakeCursor> open(const std::string& path, TakeReaderOptions opti
     throw Error("{}: was written by a later version of Marey (schema {}, this one knows {}); bring Marey up to date", path, version,
                 kTakeSchemaVersion);
   }
-  if (version == 1) return open_schema_1(std::move(database), options);
-  if (version == kTakeSchemaVersion) return open_schema_2(std::move(database), options);
+  if (version == 1) return believable(open_schema_1(std::move(database), options), path);
+  if (version == kTakeSchemaVersion) return believable(open_schema_2(std::move(database), options), path);
   throw Error("{}: is damaged (schema version {})", path, version);
 }
 
