@@ -83,7 +83,7 @@ void Clock::read(std::size_t number, Timestamp until, std::vector<CameraFrame>& 
     lane.ended = !frame;
     if (!frame) break;
     last = std::max(last, frame->frame.time);
-    if (frame->detections && feeds_[number].detector() != nullptr) frame->frame.picture = {};  // nobody looks at it again
+    if (options_.interpolate) frame->frame.picture = {};  // of detections between frames there is no picture
     read.push_back(std::move(*frame));
   }
 }

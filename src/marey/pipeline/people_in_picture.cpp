@@ -81,7 +81,7 @@ class PeopleInPicture final : public Stage {
     header_.rate_hz = feed.rate_hz();
     header_.smoothed = !options.live;
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
-    if (feed.has_pictures()) {
+    if (feed.has_pictures() && feed.detector() == nullptr) {
       people_ =
           std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
       if (!options.live) people_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));

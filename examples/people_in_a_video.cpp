@@ -1,0 +1,34 @@
+// People in a video, as a recording in memory: how far did each of them walk, in the picture?
+//   people_in_a_video street.mp4
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "marey/core/error.h"
+#include "marey/core/recording_sink.h"
+#include "marey/pipeline/people_in_picture.h"
+
+int main(int argc, char** argv) try {
+  if (argc != 2) return std::puts("usage: people_in_a_video VIDEO"), 2;
+  marey::RigCamera camera;
+  camera.source = argv[1];
+  std::vector<marey::pipeline::Feed> feeds;
+  feeds.emplace_back(camera, marey::CameraId{});
+  const auto stage = marey::pipeline::people_in_picture(feeds.front(), {});
+
+  marey::Recording recording;
+  marey::pipeline::Sinks sinks;
+  sinks.add(std::make_unique<marey::RecordingSink>(recording));
+  marey::pipeline::Clock clock(std::move(feeds));
+  const marey::pipeline::Summary summary = marey::pipeline::run(*stage, clock, sinks);
+
+  std::printf("%lld people in %.1f s\n", static_cast<long long>(summary.tracks), summary.seconds);
+  for (const marey::TrackColumns& track : recording.tracks()) {
+    double length = 0;
+    for (std::size_t i = 1; i < track.size(); ++i) length += (track.place(i) - track.place(i - 1)).norm();
+    std::printf("%3d: %4zu frames, %6.0f px\n", marey::number(track.id()), track.size(), length);
+  }
+  return 0;
+} catch (const marey::Error& error) {
+  return std::fprintf(stderr, "%s\n", error.what()), 1;
+}
