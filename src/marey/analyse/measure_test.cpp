@@ -120,7 +120,9 @@ TEST(Measure, PathsAreCutAtLongGapsAndNobodyIsNoError) {
   EXPECT_EQ(paths[1].place.back().x(), 51) << "of two rows at one time the first counts";
   EXPECT_TRUE(measure(Recording(on_the_ground())).people.empty());
   Recording still(on_the_ground());
-  still.add({.index = 0, .time = {}, .samples = {sample_at(1, {1, 1})}, .seen = {}, .named = {}, .frames = {}});
+  Instant lone;
+  lone.samples = {sample_at(1, {1, 1})};
+  still.add(lone);
   EXPECT_TRUE(measure(still).people.empty()) << "one place is no path";
 }
 
@@ -131,8 +133,11 @@ Recording with_velocities(bool smoothed) {
   for (int i = 0; i < 250; ++i) {
     Sample sample = sample_at(3, {0.24 * i, 20});
     sample.velocity = Vector<3>(i == 100 ? 6.75 : 6.5, 0, 0);
-    recording.add(
-        {.index = i, .time = timestamp_from_seconds(i / 25.0), .samples = {sample}, .seen = {}, .named = {}, .frames = {}});
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(i / 25.0);
+    instant.samples = {sample};
+    recording.add(instant);
   }
   return recording;
 }
