@@ -49,7 +49,7 @@ struct Match {
       auto& boxes = instants.emplace_back();
       for (const Camera& camera : cameras) {
         auto& seen = boxes.emplace_back();
-        for (const LabelledBox& one : simulate::match::detect_match(simulate::match::look_at(camera, figures, stances), camera,
+        for (const LabelledBox& one : simulate::match::detect_match(simulate::match::people_in_view(camera, figures, stances), camera,
                                                                     Matrix<3>::Identity(), {}, frame, {}, random)) {
           seen.emplace_back();
           seen.back().box = one.box;

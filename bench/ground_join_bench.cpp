@@ -96,8 +96,8 @@ void second_pass(benchmark::State& state) {
     const track::ground::GroundRecorder::Joined joined = std::move(recorder).join();
     const double took = now_s() - begin;
     least = std::min(least, took);
-    rows = joined.recording.samples.size();
-    state.counters["people"] = static_cast<double>(joined.recording.people.size());
+    rows = static_cast<std::size_t>(joined.recording.samples());
+    state.counters["people"] = static_cast<double>(joined.recording.tracks().size());
     state.SetIterationTime(took);
   }
   rusage usage{};

@@ -47,7 +47,7 @@ TEST(PlainLens, AnUnknownModelIsRefusedWithTheKnownOnes) {
     plain_lens("pinhole", 1000, {0, 0});
     FAIL() << "not refused";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("brown, fisheye or tsai"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("brown, fisheye, tsai"), std::string::npos) << error.what();
   }
 }
 

@@ -211,9 +211,9 @@ TEST_F(TakeFile, TakesOneWriter) {
   TakeWriter writer(path_);
   writer.begin(header());
   writer.write(instant_of(0));
-  EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is being recorded by another program"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is being written by another run"), std::string::npos);
   const int status =
-      in_child([&] { _exit(error_of([&] { TakeWriter(path_).begin(header()); }).find("recorded") != std::string::npos); });
+      in_child([&] { _exit(error_of([&] { TakeWriter(path_).begin(header()); }).find("written") != std::string::npos); });
   EXPECT_EQ(WEXITSTATUS(status), 1);
   writer.finish();
   EXPECT_EQ(read_recording(path_).instants().size(), 1U);
