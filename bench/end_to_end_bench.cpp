@@ -56,9 +56,8 @@ int main(int argc, char** argv) {
   marey::RigCamera camera;
   camera.source = video;
   for (int round = 0; round < kRounds; ++round) {
-    whole = std::min(whole, seconds_of([&] {
-                       frames = static_cast<double>(marey::pipeline::track_people(camera, {.tracks = tracks}).frames);
-                     }));
+    whole = std::min(
+        whole, seconds_of([&] { frames = static_cast<double>(marey::pipeline::track_people(camera, {.tracks = tracks}).frames); }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(video, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(video, false); }));
     own_decode = std::min(own_decode, seconds_of([&] { marey_decode(video); }));

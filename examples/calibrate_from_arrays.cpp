@@ -19,8 +19,15 @@ int main() try {
 
   marey::calibrate::pitch::PitchView view;
   view.name = "stand", view.size = truth.size();
-  for (const auto& [x, y] : std::vector<std::pair<double, double>>{
-           {52.5, 0}, {52.5, 24.85}, {52.5, 43.15}, {52.5, 68}, {43.35, 34}, {61.65, 34}, {16.5, 54.16}, {88.5, 54.16}, {52.5, 34}}) {
+  for (const auto& [x, y] : std::vector<std::pair<double, double>>{{52.5, 0},
+                                                                   {52.5, 24.85},
+                                                                   {52.5, 43.15},
+                                                                   {52.5, 68},
+                                                                   {43.35, 34},
+                                                                   {61.65, 34},
+                                                                   {16.5, 54.16},
+                                                                   {88.5, 54.16},
+                                                                   {52.5, 34}}) {
     const auto pixel = truth.project({x, y, 0});
     if (pixel && truth.in_picture(*pixel)) view.points.push_back({{x, y}, *pixel, "clicked"});
   }

@@ -40,7 +40,8 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
                      ending);
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty())
-    output.tracks = std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : std::string("_ground") + ending);
+    output.tracks =
+        std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : std::string("_ground") + ending);
   return output;
 }
 

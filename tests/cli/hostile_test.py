@@ -93,13 +93,13 @@ class Hostile(unittest.TestCase):
     def test_one_wild_frame_is_named_before_anything_is_followed(self):
         far, words = 999_999_999, ["999999999 are named, of which", "a number must be wrong"]
         self.write("boxes.txt", "".join(f"{i},-1,100,100,20,50,0.9\n" for i in (1, 2, 3, far)))
-        self.refused("track", "boxes.txt", "-o", "out.txt", words=words)
+        self.refused("track", "--detections", "boxes.txt", "--rate", "25", "-o", "out.txt", words=words)
         self.write("tracks.txt", "".join(f"{i},1,100,100,20,50,1\n" for i in (1, 2, 3, far)))
         self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=words)
         self.write("points.csv", "frame,time,id,label,x,y,z\n" + "".join(f"{i},{i / 100:.2f},1,a,1,2,3\n" for i in (0, 1, 2, far)))
         self.refused("convert", "points.csv", "out.c3d", words=words)
-        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{i / 25:.2f},1,2,3\n" for i in (0, 1, 2, far)))
-        self.refused("measure", "match.csv", words=words)
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"{i},{min(i, 3) / 25:.2f},1,2,3\n" for i in (0, 1, 2, far)))
+        self.refused("measure", "match.csv", "-o", "measured.csv", words=words)
         take = self.take()
         with sqlite3.connect(take) as database:
             first, last, indices = database.execute("SELECT first_index, last_index, indices FROM chunk").fetchone()
@@ -120,7 +120,7 @@ class Hostile(unittest.TestCase):
         head = b"frame,time,id,label,team,x,y\n"
         row = b"%d,%.2f,%d,a\x01\xff<&,=1+1,%d,3\n"
         self.write("match.csv", head + b"".join(row % (i, i / 25, k, i % 50 + k) for i in range(60) for k in (1, 2)))
-        said = self.accepted("measure", "match.csv", "--json").stdout
+        said = self.accepted("measure", "match.csv", "-o", "measured.csv", "--json").stdout
         json.loads(said.decode())
         for name in ("out.csv", "out.txt"):
             self.accepted("convert", "match.csv", name)
@@ -132,7 +132,7 @@ class Hostile(unittest.TestCase):
         name = os.fsencode(self.folder) + b"/f\xff<m>.txt"
         with open(name, "wb") as file:
             file.write(b"".join(b"%d,-1,%d,100,20,50,0.9\n" % (i, 100 + 2 * i) for i in range(1, 60)))
-        done = subprocess.run([MAREY, "track", name, "-o", "out.txt", "--plot", "out.svg"], capture_output=True, cwd=self.folder, timeout=SECONDS)
+        done = subprocess.run([MAREY, "track", "--detections", name, "--rate", "25", "-o", "out.txt", "--plot", "out.svg"], capture_output=True, cwd=self.folder, timeout=SECONDS)
         self.assertEqual(done.returncode, 0, done.stderr)
         xml.dom.minidom.parse(str(self.folder / "out.svg"))
 

@@ -101,8 +101,7 @@ class Walk {
   }
 
   template <typename F>
-  static void print_line(double dt, bool seen, const Vector<D>& z, const Matrix<D>& R, const F& predicted,
-                         const F& filter) {
+  static void print_line(double dt, bool seen, const Vector<D>& z, const Matrix<D>& R, const F& predicted, const F& filter) {
     fmt::print("{:.17g} {:d}", dt, seen);
     print_entries(z);
     print_entries(R);

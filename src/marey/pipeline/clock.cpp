@@ -122,13 +122,8 @@ std::optional<Timestamp> Clock::next_moment() {
   }
   Lane& first = lanes_.front();
   if (first.waiting.empty()) {
-    std::vector<CameraFrame> got;
-    read(0, Timestamp::min(), got);
-    if (got.empty()) return std::nullopt;
-    decoding_.add(got.front().decode_s);
-    detecting_.add(got.front().detect_s);
-    ++first.frames;
-    first.waiting.push_back(std::move(got.front()));
+    fill(Timestamp::min());
+    if (first.waiting.empty()) return std::nullopt;
   }
   const Timestamp now = first.waiting.front().frame.time;
   if (lanes_.size() > 1) fill(now);

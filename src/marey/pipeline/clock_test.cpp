@@ -1,7 +1,7 @@
 #include "marey/pipeline/clock.h"
 
 #include <cmath>
-#include <map>
+#include <memory>
 #include <random>
 #include <set>
 #include <string>
@@ -118,6 +118,26 @@ TEST(Clock, TheFastestCameraSetsAnEvenPaceFromTheEarliestFrame) {
   EXPECT_NEAR(seconds(first->time), 0, 1e-9);
   EXPECT_TRUE(first->cameras[0]);
   EXPECT_FALSE(first->cameras[1]);
+}
+
+/// Finds nothing, in every frame.
+class Blind final : public detect::Detector {
+ public:
+  detect::Detections detect(const Frame&, std::span<const Expected>) override { return {}; }
+};
+
+TEST(Clock, AFeedThatDetectsLosesNoFrame) {
+  const test::TemporaryFolder folder;
+  std::vector<Feed> feeds;
+  feeds.push_back(camera(folder, 0, all(50), 25, 0));
+  feeds.front().find(std::make_unique<Blind>());
+  Clock clock(std::move(feeds));
+  for (int i = 0; i < 50; ++i) {
+    const auto set = clock.next();
+    ASSERT_TRUE(set) << i;
+    EXPECT_EQ(set->index, i);
+  }
+  EXPECT_FALSE(clock.next());
 }
 
 TEST(Clock, AgainGivesTheSameMoments) {

@@ -24,17 +24,17 @@ using Markers = std::map<TrackId, std::string>;
 class FilledRows final : public InstantSource {
  public:
   FilledRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, Markers labels)
-      : rows_(std::move(rows)), moments_(std::move(moments)), labels_(std::move(labels)), by_frame_(rows_) {}
+      : rows_(std::move(rows)), moments_(std::move(moments)), labels_(std::move(labels)), by_number_(rows_) {}
 
   std::optional<Instant> next() override {
     if (next_ == moments_.size()) return std::nullopt;
     Instant instant;
     instant.index = moments_[next_].index;
     instant.time = moments_[next_].time;
-    if (next_++ == 0) {
+    if (next_ == 0) {
       for (const auto& [id, label] : labels_) instant.named.push_back({id, label, {}});
     }
-    for (const Track<2>& track : by_frame_.at(instant.index)) instant.samples.push_back(sample_of(track));
+    for (const Track<2>& track : by_number_.at(static_cast<std::int64_t>(next_++))) instant.samples.push_back(sample_of(track));
     for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
     return instant;
   }
@@ -43,7 +43,7 @@ class FilledRows final : public InstantSource {
   std::vector<track::TrackRow> rows_;
   std::vector<Recording::Moment> moments_;
   Markers labels_;
-  RowsByFrame by_frame_;
+  RowsByFrame by_number_;
   std::size_t next_ = 0;
 };
 
@@ -79,7 +79,7 @@ class MarkersInPicture final : public Stage {
       for (const Track<2>& track : confirmed_) live_.samples.push_back(sample_of(track));
       return {&live_, 1};
     }
-    recording_.add(frame.index, frame.time, confirmed_);
+    recording_.add(std::ssize(moments_), frame.time, confirmed_);
     moments_.push_back({frame.index, frame.time});
     return {};
   }

@@ -51,23 +51,23 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
 /// What the second pass made of the recording, frame by frame.
 class JoinedRows final : public InstantSource {
  public:
-  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Timestamp> times, track::OutlineRecording* outlines)
-      : rows_(std::move(rows)), times_(std::move(times)), by_frame_(rows_, {}, outlines) {}
+  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineRecording* outlines)
+      : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines) {}
 
   std::optional<Instant> next() override {
-    if (next_ == times_.size()) return std::nullopt;
+    if (next_ == moments_.size()) return std::nullopt;
     Instant instant;
-    instant.index = static_cast<std::int64_t>(next_);
-    instant.time = times_[next_++];
-    for (const Track<2>& track : by_frame_.at(instant.index)) instant.samples.push_back(sample_of(track));
+    instant.index = moments_[next_].index;
+    instant.time = moments_[next_].time;
+    for (const Track<2>& track : by_number_.at(static_cast<std::int64_t>(next_++))) instant.samples.push_back(sample_of(track));
     for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
     return instant;
   }
 
  private:
   std::vector<track::TrackRow> rows_;
-  std::vector<Timestamp> times_;
-  RowsByFrame by_frame_;
+  std::vector<Recording::Moment> moments_;  // frames may be missing between them: rows count these
+  RowsByFrame by_number_;
   std::size_t next_ = 0;
 };
 
@@ -101,15 +101,16 @@ class PeopleInPicture final : public Stage {
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += std::ssize(seen.detections);
     if (options_.live) return told(given.frame, tracks);
-    recording_.add(given.frame.index, given.frame.time, tracks);
-    times_.push_back(given.frame.time);
-    if (outlines_) outlines_->add(given.frame.index, tracks);
+    const auto number = std::ssize(moments_);
+    recording_.add(number, given.frame.time, tracks);
+    moments_.push_back({given.frame.index, given.frame.time});
+    if (outlines_) outlines_->add(number, tracks);
     return {};
   }
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
-    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(times_),
+    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_),
                                         outlines_ ? &*outlines_ : nullptr);
   }
 
@@ -155,7 +156,7 @@ class PeopleInPicture final : public Stage {
   std::optional<track::contour::OutlineFollower> follower_;
   std::optional<track::OutlineRecording> outlines_;
   track::Recording recording_;
-  std::vector<Timestamp> times_;
+  std::vector<Recording::Moment> moments_;
   Instant live_;
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;

@@ -38,6 +38,7 @@ class PeopleOnGround : public Stage {
 /// `feeds` are the rig's cameras; instants are those of a clock over them. The results are in the
 /// user's coordinates (`ground_from_world`), their times by the first camera's own clock. Memory grows with the rows, not where
 /// `live`. Throws Error where a camera is not calibrated or brings nothing.
-std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options);
+std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig,
+                                                 const PeopleOnGroundOptions& options);
 
 }  // namespace marey::pipeline

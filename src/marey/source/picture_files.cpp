@@ -87,7 +87,8 @@ class PictureFiles final : public Source {
       info_.size = picture.size();
       return;
     }
-    throw Error("{}: none of its {} pictures can be read", name, files_.size());
+    throw Error("{}: none of its {} pictures can be read{}{}", name, files_.size(),
+                first_error_.empty() ? "" : "; of the first: ", first_error_);
   }
 
   const SourceInfo& info() const override { return info_; }
@@ -108,12 +109,13 @@ class PictureFiles final : public Source {
   }
 
  private:
-  static Picture read(const std::string& file) {
+  Picture read(const std::string& file) {
     try {
       Decoder decoder(file, 1);
       auto decoded = decoder.next();
       return decoded ? std::move(decoded->picture) : Picture();
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (first_error_.empty()) first_error_ = error.what();
       return {};
     }
   }
@@ -134,7 +136,7 @@ class PictureFiles final : public Source {
   std::size_t at_ = 0;
   std::int64_t next_index_ = 0;
   std::int64_t left_out_ = 0;
-  std::string first_left_out_;
+  std::string first_left_out_, first_error_;
   std::vector<std::string> warnings_;
   bool ended_ = false;
 };

@@ -15,8 +15,8 @@
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/match/line_ups.h"
-#include "marey/format/take/take_file.h"
 #include "marey/format/read_file.h"
+#include "marey/format/take/take_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::match {

@@ -1,7 +1,6 @@
 #include "marey/format/take/take_cursor.h"
 
 #include <algorithm>
-
 #include <cmath>
 #include <limits>
 
@@ -69,8 +68,8 @@ void check_name(const TrackName& name, std::size_t known, const Limits& limits, 
   if (known >= limits.tracks) throw Error("{}: has more than {} tracks (the limit tracks)", database.path(), limits.tracks);
   const std::size_t longest = std::max(name.label.size(), name.team.size());
   if (longest <= limits.label_bytes) return;
-  throw Error("{}: the label of track {} has {} bytes; they have at most {} (the limit label_bytes)", database.path(), number(name.id),
-              longest, limits.label_bytes);
+  throw Error("{}: the label of track {} has {} bytes; they have at most {} (the limit label_bytes)", database.path(),
+              number(name.id), longest, limits.label_bytes);
 }
 
 }  // namespace marey::format::take

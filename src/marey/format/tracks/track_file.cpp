@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/text_rows.h"
 #include "marey/format/take/take_file.h"
+#include "marey/format/text_rows.h"
 #include "marey/format/tracks/outline_json.h"
 
 namespace marey::format::tracks {
@@ -37,8 +37,8 @@ void append_mot(std::string& lines, const Instant& instant, const Sample& sample
 
 void append_csv(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
   auto out = std::back_inserter(lines);
-  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},", instant.index, seconds(instant.time), number(sample.track), quoted_field(label),
-                 sample.position.x(), sample.position.y());
+  fmt::format_to(out, "{},{:.6f},{},{},{:.3f},{:.3f},", instant.index, seconds(instant.time), number(sample.track),
+                 quoted_field(label), sample.position.x(), sample.position.y());
   if (sample.velocity) {
     fmt::format_to(out, "{:.2f},{:.2f},", sample.velocity->x(), sample.velocity->y());
   } else {
@@ -111,7 +111,8 @@ TrackFile::TrackFile(const std::string& path, TrackFormat format) : path_(path),
 
 Sink::Wants TrackFile::begin(const RecordingHeader& header) {
   if (header.frame.metric()) {
-    throw Error("{}: {} holds boxes in a picture, and these positions are {}", path_, track_format_names(), to_string(header.frame));
+    throw Error("{}: {} holds boxes in a picture, and these positions are {}", path_, track_format_names(),
+                to_string(header.frame));
   }
   if (format_ == TrackFormat::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
   return {};
