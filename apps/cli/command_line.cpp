@@ -351,7 +351,8 @@ std::map<std::string, std::string> Command::Declared::given() const {
   std::map<std::string, std::string> texts;
   for (const auto& option : options) {
     if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
-    texts[option->name.substr(option->name.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
+    const std::string longest = option->name.substr(option->name.find_last_of(',') + 1);
+    texts[longest.substr(longest.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
   }
   return texts;
 }

@@ -128,7 +128,7 @@ Written convert_motion(const ConvertOptions& options) {
 
 Written convert(const ConvertOptions& options) {
   std::error_code error;
-  if (format::match::ground_format_of_content(options.from)) {
+  if (format::match::ground_format_of_content(options.from) || is_take_of_ground(options.from)) {
     if (!options.up.empty() || !options.from_up.empty())
       throw WrongUsage("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
     const GroundWritten written = convert_ground(options.from, options.to, options.format, options.ground);

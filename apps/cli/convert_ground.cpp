@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
+#include "marey/format/take/take_file.h"
 #include "marey/format/rig/rig_file.h"
 
 #include "command_line.h"
@@ -58,6 +59,12 @@ void add_ground_conversion(Command& command, GroundConversion& options) {
   command.group("");
 }
 
+bool is_take_of_ground(const std::string& path) {
+  if (!format::take::is_take(path)) return false;
+  const FrameOfReference frame = format::take::TakeReader(path).header().frame;
+  return frame.metric() && frame.dimensions() == 2;
+}
+
 GroundWritten convert_ground(const std::string& from, const std::string& to, const std::string& format_name,
                              const GroundConversion& options) {
   const auto by_name = format::match::ground_format_of_name(to);
@@ -70,8 +77,9 @@ GroundWritten convert_ground(const std::string& from, const std::string& to, con
                                                                  : format::match::parse_ground_format(format_name);
   const format::match::GroundFrame frame = frame_of(options);
   const auto in = format::match::ground_format_of_content(from).value_or(format::match::GroundFormat::csv);
+  const format::match::GroundReadOptions how{options.metadata, parse_pitch_size(options.size), options.rate_hz};
   format::match::GroundMatch match =
-      format::match::read_ground_as(from, in, {options.metadata, parse_pitch_size(options.size), options.rate_hz});
+      is_take_of_ground(from) ? format::match::read_ground_any(from, how) : format::match::read_ground_as(from, in, how);
   if (!options.home.empty()) match.home = options.home;
   if (!options.away.empty()) match.away = options.away;
   if (!options.periods.empty()) match.periods.clear();

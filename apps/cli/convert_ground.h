@@ -27,4 +27,7 @@ struct GroundWritten {
 GroundWritten convert_ground(const std::string& from, const std::string& to, const std::string& format,
                              const GroundConversion& options);
 
+/// A take of people on the ground.
+bool is_take_of_ground(const std::string& path);
+
 }  // namespace marey::cli

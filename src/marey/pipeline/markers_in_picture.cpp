@@ -55,6 +55,7 @@ class MarkersInPicture final : public Stage {
     header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
+    if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (options.fit_noise && !options.live) fit(feed.again());
     tracker_ = track::make_roster_tracker<2>(options_.tracker);
   }

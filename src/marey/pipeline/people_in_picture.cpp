@@ -81,6 +81,7 @@ class PeopleInPicture final : public Stage {
     header_.rate_hz = feed.rate_hz();
     header_.smoothed = !options.live;
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
+    if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
       people_ =
           std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
