@@ -6,8 +6,8 @@
 
 #include "marey/core/error.h"
 #include "marey/format/match/ground_exchange.h"
-#include "marey/format/take/take_file.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/take/take_file.h"
 
 #include "command_line.h"
 #include "pitch_size.h"
