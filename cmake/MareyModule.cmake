@@ -1,3 +1,27 @@
+# marey_unity(TARGET SOURCE ...)
+#
+# With MAREY_UNITY the compiler reads these sources, one room's or one program's, together, up to twelve at a time. What costs is the headers (Eigen,
+# OpenCV, fmt, the standard library) and what is instantiated out of them, and one source alone needs as much of that as twelve. A source with
+# flags of its own stays alone. Therefore names in a room's unnamed namespaces are distinct, and no source has `using namespace` at its top.
+function(marey_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MAREY_UNITY} UNITY_BUILD_MODE GROUP)
+  list(LENGTH ARGN count)
+  if(NOT MAREY_UNITY OR count EQUAL 0)
+    return()
+  endif()
+  # Units of the same size: thirteen sources are seven and six, not twelve and one.
+  math(EXPR units "(${count} + 11) / 12")
+  math(EXPR size "(${count} + ${units} - 1) / ${units}")
+  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" room ${room})
+  set(index 0)
+  foreach(source IN LISTS ARGN)
+    math(EXPR unit "${index} / ${size}")
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${room}_${unit})
+    math(EXPR index "${index} + 1")
+  endforeach()
+endfunction()
+
 # marey_module(NAME SOURCES ... [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
 # Adds one room of src/marey, "detect" or "detect/markers", to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
@@ -11,11 +35,14 @@ function(marey_module name)
   list(TRANSFORM arg_VIDEO_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   target_sources(marey PRIVATE ${arg_SOURCES})
   target_sources(marey_video PRIVATE ${arg_VIDEO_SOURCES})
+  marey_unity(marey ${arg_SOURCES})
+  marey_unity(marey_video ${arg_VIDEO_SOURCES})
   if(MAREY_TESTS AND arg_TESTS)
     string(REPLACE "/" "." prefix ${name})
     string(REPLACE "/" "_" name ${name})
     add_executable(${name}_test ${arg_TESTS})
     target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings marey_test_support ${arg_TEST_LIBRARIES})
+    marey_unity(${name}_test ${arg_TESTS})
     gtest_discover_tests(${name}_test TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   endif()
 endfunction()
@@ -24,8 +51,14 @@ endfunction()
 add_library(marey_warnings INTERFACE)
 target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                        $<$<BOOL:${MAREY_WERROR}>:-Werror>
+                       # A source that others include is no header: its unnamed namespace may be a member's type.
+                       $<$<AND:$<BOOL:${MAREY_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
                        # libstdc++ 12's own stable_sort and stable_partition call what it has deprecated, and clang tells.
                        $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
+# A release is built hard: what runs over a buffer or out of a container ends the program. Not with sanitizers, which see more.
+if(NOT MAREY_SANITIZE AND NOT MAREY_FUZZ)
+  target_compile_options(marey_warnings INTERFACE $<$<CONFIG:Release>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3;-fstack-protector-strong;-D_GLIBCXX_ASSERTIONS>)
+endif()
 if(MAREY_SANITIZE)  # The presets with sanitizers let warnings pass: GCC gives false ones there, as its manual says.
   add_compile_options(-fsanitize=${MAREY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MAREY_SANITIZE})

@@ -23,14 +23,15 @@ struct Kind {
 constexpr std::array kinds{Kind{"cross", simulate::Encounter::cross}, Kind{"side by side", simulate::Encounter::alongside},
                            Kind{"stop", simulate::Encounter::stop}, Kind{"any", std::nullopt}};
 
-struct Method {
+struct Association {
   const char* name;
   track::ground::GroundAssociation association;
   bool live;  ///< judged is what is said at once
 };
-constexpr std::array methods{
-    Method{"gnn", track::ground::GroundAssociation::gnn, false}, Method{"jpda", track::ground::GroundAssociation::jpda, false},
-    Method{"mht", track::ground::GroundAssociation::mht, false}, Method{"mht, live", track::ground::GroundAssociation::mht, true}};
+constexpr std::array kAssociations{Association{"gnn", track::ground::GroundAssociation::gnn, false},
+                                   Association{"jpda", track::ground::GroundAssociation::jpda, false},
+                                   Association{"mht", track::ground::GroundAssociation::mht, false},
+                                   Association{"mht, live", track::ground::GroundAssociation::mht, true}};
 
 void add(std::vector<evaluate::PersonPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
   for (const Track<2>& track : tracks) {
@@ -56,19 +57,19 @@ GroundView view_of(const simulate::EncounterOptions& options) {
   return GroundView(ground_from_image, cv::Size(pixels, pixels));
 }
 
-struct Outcome {
+struct Followed {
   HypothesesExperiment::Score score;
   double seconds = 0;
   std::int64_t steps = 0;
 };
 
-Outcome follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Method& method,
-               track::ground::GroundTrackerOptions options) {
+Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Association& method,
+                track::ground::GroundTrackerOptions options) {
   options.associate = method.association;
   const auto tracker = track::ground::make_ground_tracker(options, {view_of(scene.options)});
   std::vector<evaluate::PersonPlace> said;
   std::int32_t decided = 0;
-  Outcome outcome;
+  Followed outcome;
   for (std::size_t frame = 0; frame < scene.seen.size(); ++frame) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / scene.options.rate_hz);
     const track::ground::CameraObservations look{CameraId{0}, now, scene.seen[frame]};
@@ -98,7 +99,7 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     experiment.kinds.emplace_back(kind.name);
     experiment.meetings.push_back(options.scenes * options.encounters.pairs * options.encounters.meetings);
   }
-  std::vector<std::vector<Outcome>> sums(methods.size(), std::vector<Outcome>(kinds.size()));
+  std::vector<std::vector<Followed>> sums(kAssociations.size(), std::vector<Followed>(kinds.size()));
   std::mutex mutex;
   int done = 0;
   const int all = options.scenes * static_cast<int>(kinds.size());
@@ -109,10 +110,10 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     const simulate::EncounterScene scene =
         simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kinds.size(), encounters);
     const std::vector<evaluate::PersonPlace> truth = truth_of(scene);
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-      const Outcome outcome = follow(scene, truth, methods[m], options.tracker);
+    for (std::size_t m = 0; m < kAssociations.size(); ++m) {
+      const Followed outcome = follow(scene, truth, kAssociations[m], options.tracker);
       const std::lock_guard lock(mutex);
-      Outcome& sum = sums[m][kind];
+      Followed& sum = sums[m][kind];
       sum.score.switches += outcome.score.switches;
       sum.score.people += outcome.score.people;
       sum.score.misses += outcome.score.misses;
@@ -124,10 +125,10 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     ++done;
     if (options.progress) options.progress(done, all);
   });
-  for (std::size_t m = 0; m < methods.size(); ++m) {
+  for (std::size_t m = 0; m < kAssociations.size(); ++m) {
     auto& row = experiment.rows.emplace_back();
-    row.method = methods[m].name;
-    for (Outcome& sum : sums[m]) {
+    row.method = kAssociations[m].name;
+    for (Followed& sum : sums[m]) {
       row.scores.push_back(sum.score);
       if (sum.steps > 0) row.scores.back().step_us = 1e6 * sum.seconds / static_cast<double>(sum.steps);
     }

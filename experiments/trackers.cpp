@@ -47,20 +47,20 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-struct Method {
+struct TrackerMethod {
   std::string name;
   std::function<std::unique_ptr<track::Tracker<2>>()> make;
 };
 
-Method alone(std::string name, const filter::FilterOptions& options) {
+TrackerMethod alone(std::string name, const filter::FilterOptions& options) {
   return {std::move(name), [options] { return std::make_unique<track::IndependentTracker>(options); }};
 }
 
 /// The paper's three, with its parameters; every other filter in their place; and Marey's own tracker.
-std::vector<Method> methods() {
-  std::vector<Method> list{alone("alpha-beta (paper)", filter::AlphaBetaOptions{}),
-                           alone("Kalman (paper)", filter::KalmanPaperOptions{}),
-                           alone("CONDENSATION (paper)", filter::CondensationOptions{})};
+std::vector<TrackerMethod> tracker_methods() {
+  std::vector<TrackerMethod> list{alone("alpha-beta (paper)", filter::AlphaBetaOptions{}),
+                                  alone("Kalman (paper)", filter::KalmanPaperOptions{}),
+                                  alone("CONDENSATION (paper)", filter::CondensationOptions{})};
   for (const filter::NamedFilter& filter : filter::named_filters()) {
     const std::string_view name = filter.name;
     if (name == "alpha-beta" || name == "kalman-paper" || name == "condensation") continue;
@@ -103,14 +103,14 @@ Video make_video(simulate::markers::MarkerSituation situation, std::uint64_t see
 }
 
 /// What one method made of one video.
-struct Outcome {
+struct TrackOutcome {
   bool lost = false;
   std::vector<double> errors;  ///< px, of the predictions for the first marker
 };
 
-Outcome track(const Video& video, track::Tracker<2>& tracker) {
+TrackOutcome track(const Video& video, track::Tracker<2>& tracker) {
   std::vector<std::vector<evaluate::NamedPlace>> truth(video.seen.frames.size()), named(video.seen.frames.size());
-  Outcome outcome;
+  TrackOutcome outcome;
   for (std::size_t i = 0; i < video.seen.frames.size(); ++i) {
     for (const simulate::markers::MarkerTruth& marker : video.scene.frames[i]) {
       if (marker.visible) truth[i].push_back({std::to_string(marker.marker), marker.position});
@@ -213,8 +213,8 @@ std::vector<TrackerRow> paper_rows() {
 
 TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options) {
   TrackerExperiment experiment{options.videos, options.seed, paper_rows(), {}};
-  const std::vector<Method> all_methods = methods();
-  for (const Method& method : all_methods) experiment.ours.push_back({method.name, {}, {}, {}});
+  const std::vector<TrackerMethod> all_methods = tracker_methods();
+  for (const TrackerMethod& method : all_methods) experiment.ours.push_back({method.name, {}, {}, {}});
   const TemporaryFolder folder;
   const int all = options.videos * static_cast<int>(kSituations.size()) + static_cast<int>(options.timed_markers.size());
   int done = 0;
@@ -225,12 +225,12 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
 
   for (std::size_t s = 0; s < kSituations.size(); ++s) {
     // Videos are independent; what came of each is put together in their order.
-    std::vector<std::vector<Outcome>> outcomes(static_cast<std::size_t>(options.videos));
+    std::vector<std::vector<TrackOutcome>> outcomes(static_cast<std::size_t>(options.videos));
     std::mutex telling;
     tbb::parallel_for(0, options.videos, [&](int v) {
       const auto seed = options.seed + static_cast<std::uint64_t>(v);
       const Video video = make_video(kSituations[s], seed, {}, folder.file(fmt::format("{}_{}.mp4", s, seed)));
-      for (const Method& method : all_methods) outcomes[static_cast<std::size_t>(v)].push_back(track(video, *method.make()));
+      for (const TrackerMethod& method : all_methods) outcomes[static_cast<std::size_t>(v)].push_back(track(video, *method.make()));
       const std::lock_guard lock(telling);
       tell();
     });

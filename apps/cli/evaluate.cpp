@@ -74,7 +74,7 @@ std::string verdict(const evaluate::Evaluation& result) {
       result.clear.switches, result.objects);
 }
 
-void print_row(const char* name, const std::string& value, const char* meaning) {
+void print_box_row(const char* name, const std::string& value, const char* meaning) {
   fmt::print("  {:<5} {:>9}   {}\n", name, value, meaning);
 }
 
@@ -83,27 +83,27 @@ void print_table(const evaluate::Evaluation& result, double iou) {
   fmt::print("{} frames; truth: {} objects, {} boxes; tracks: {}, {} boxes. A box counts as found from an overlap (IoU) of {}.\n\n",
              result.frames, result.objects, result.true_boxes, result.tracks, result.track_boxes, iou);
   fmt::print("Overall\n");
-  print_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true boxes; 100 % is perfect, below 0 is possible");
-  print_row("IDF1", percent(result.identity.f1), "boxes that bear the right name throughout, of both files' boxes");
-  print_row("HOTA", percent(result.hota.hota), "finding and naming weighed alike, over overlaps of 0.05 to 0.95");
+  print_box_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true boxes; 100 % is perfect, below 0 is possible");
+  print_box_row("IDF1", percent(result.identity.f1), "boxes that bear the right name throughout, of both files' boxes");
+  print_box_row("HOTA", percent(result.hota.hota), "finding and naming weighed alike, over overlaps of 0.05 to 0.95");
   fmt::print("Finding\n");
-  print_row("FP", fmt::format("{}", clear.false_positives), "reported boxes where nothing is");
-  print_row("FN", fmt::format("{}", clear.misses), "true boxes that were missed");
-  print_row("DetA", percent(result.hota.detection), "HOTA's share for finding");
+  print_box_row("FP", fmt::format("{}", clear.false_positives), "reported boxes where nothing is");
+  print_box_row("FN", fmt::format("{}", clear.misses), "true boxes that were missed");
+  print_box_row("DetA", percent(result.hota.detection), "HOTA's share for finding");
   fmt::print("Naming\n");
-  print_row("IDSW", fmt::format("{}", clear.switches), "times an object's track became another one");
-  print_row("FRAG", fmt::format("{}", clear.fragmentations), "times an object was lost and found again");
-  print_row("IDP", percent(result.identity.precision), "of the reported boxes bear the right name");
-  print_row("IDR", percent(result.identity.recall), "of the true boxes bear the right name");
-  print_row("AssA", percent(result.hota.association), "HOTA's share for naming");
+  print_box_row("IDSW", fmt::format("{}", clear.switches), "times an object's track became another one");
+  print_box_row("FRAG", fmt::format("{}", clear.fragmentations), "times an object was lost and found again");
+  print_box_row("IDP", percent(result.identity.precision), "of the reported boxes bear the right name");
+  print_box_row("IDR", percent(result.identity.recall), "of the true boxes bear the right name");
+  print_box_row("AssA", percent(result.hota.association), "HOTA's share for naming");
   fmt::print("Placing\n");
-  print_row("MOTP", clear.motp ? fmt::format("{:.3f}", *clear.motp) : "none",
-            "mean distance 1 - IoU of the boxes found; 0 is perfect");
-  print_row("LocA", percent(result.hota.localisation), "mean overlap of HOTA's matches");
+  print_box_row("MOTP", clear.motp ? fmt::format("{:.3f}", *clear.motp) : "none",
+                "mean distance 1 - IoU of the boxes found; 0 is perfect");
+  print_box_row("LocA", percent(result.hota.localisation), "mean overlap of HOTA's matches");
   fmt::print("Objects\n");
-  print_row("MT", fmt::format("{}", clear.mostly_tracked), "mostly tracked: found in 80 % of their frames or more");
-  print_row("PT", fmt::format("{}", clear.partially_tracked), "partially tracked");
-  print_row("ML", fmt::format("{}", clear.mostly_lost), "mostly lost: found in less than 20 %");
+  print_box_row("MT", fmt::format("{}", clear.mostly_tracked), "mostly tracked: found in 80 % of their frames or more");
+  print_box_row("PT", fmt::format("{}", clear.partially_tracked), "partially tracked");
+  print_box_row("ML", fmt::format("{}", clear.mostly_lost), "mostly lost: found in less than 20 %");
   fmt::print("\n{}\n", verdict(result));
 }
 

@@ -76,7 +76,7 @@ Json as_json(const pipeline::MatchJudgement& judgement, double distance, const s
   return json;
 }
 
-void print_row(const char* name, const std::string& value, const char* meaning) {
+void print_ground_row(const char* name, const std::string& value, const char* meaning) {
   fmt::print("  {:<9} {:>24}   {}\n", name, value, meaning);
 }
 
@@ -90,23 +90,24 @@ void print_table(const pipeline::MatchJudgement& judgement, double distance) {
   fmt::print("{} instants; truth: {} people, {} places; tracks: {}, {} places. Someone counts as found within {} m.\n\n",
              scores.frames, scores.objects, scores.true_boxes, scores.tracks, scores.track_boxes, distance);
   fmt::print("Finding\n");
-  print_row("found", percent(clear.recall), fmt::format("of the true places; {} missed", clear.misses).c_str());
-  print_row("false", percent(share_false(clear)),
-            fmt::format("of the reported places: {} where nobody is", clear.false_positives).c_str());
-  print_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true places");
+  print_ground_row("found", percent(clear.recall), fmt::format("of the true places; {} missed", clear.misses).c_str());
+  print_ground_row("false", percent(share_false(clear)),
+                   fmt::format("of the reported places: {} where nobody is", clear.false_positives).c_str());
+  print_ground_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true places");
   fmt::print("Naming\n");
-  print_row("kept", percent(share_kept(judgement.evaluation.people)),
-            "of the people: one track in 80 % of their instants and no switch");
-  print_row("IDSW", fmt::format("{}", clear.switches), "times a person's track became another one");
-  print_row("IDF1", percent(scores.identity.f1), "places that bear the right name throughout, of both files' places");
-  print_row("IDP, IDR", percent(scores.identity.precision) + ", " + percent(scores.identity.recall),
-            "the same, of the reported places and of the true ones");
-  print_row("HOTA", percent(scores.hota.hota), "finding and naming weighed alike");
+  print_ground_row("kept", percent(share_kept(judgement.evaluation.people)),
+                   "of the people: one track in 80 % of their instants and no switch");
+  print_ground_row("IDSW", fmt::format("{}", clear.switches), "times a person's track became another one");
+  print_ground_row("IDF1", percent(scores.identity.f1), "places that bear the right name throughout, of both files' places");
+  print_ground_row("IDP, IDR", percent(scores.identity.precision) + ", " + percent(scores.identity.recall),
+                   "the same, of the reported places and of the true ones");
+  print_ground_row("HOTA", percent(scores.hota.hota), "finding and naming weighed alike");
   fmt::print("Measuring: root mean square / median / 95 % of the errors\n");
-  print_row("position", words_of(judgement.evaluation.position), "m");
-  print_row("speed", judgement.has_speed ? words_of(judgement.evaluation.speed) : "none", "m/s");
-  print_row("velocity", judgement.has_speed ? words_of(judgement.evaluation.velocity) : "none", "m/s, its direction too");
-  print_row("distance", percent(judgement.distance_error), "by which the ways that people ran come out wrong, of their length");
+  print_ground_row("position", words_of(judgement.evaluation.position), "m");
+  print_ground_row("speed", judgement.has_speed ? words_of(judgement.evaluation.speed) : "none", "m/s");
+  print_ground_row("velocity", judgement.has_speed ? words_of(judgement.evaluation.velocity) : "none", "m/s, its direction too");
+  print_ground_row("distance", percent(judgement.distance_error),
+                   "by which the ways that people ran come out wrong, of their length");
 }
 
 /// What a user should know before believing the figures.

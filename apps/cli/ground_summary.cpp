@@ -10,10 +10,6 @@
 namespace marey::cli {
 namespace {
 
-Json path_or_null(const std::string& path) {
-  return path.empty() ? Json() : Json(path);
-}
-
 std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
   std::int64_t sum = 0;
   for (const auto& camera : summary.cameras) sum += camera.frames;

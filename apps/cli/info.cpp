@@ -72,7 +72,7 @@ std::int64_t span_of(const RecordingSummary& summary) {
   return summary.first_index ? *summary.last_index - *summary.first_index + 1 : 0;
 }
 
-void row(const char* name, const std::string& value) {
+void row_if_any(const char* name, const std::string& value) {
   if (!value.empty()) fmt::print("  {:<13} {}\n", name, value);
 }
 
@@ -101,7 +101,7 @@ void print_calibration(const Rig& rig) {
   std::string words = rig.calibration->method;
   if (rig.calibration->rms_px) words += fmt::format(", {:.3f} px RMS", *rig.calibration->rms_px);
   if (rig.calibration->grade) words += ", " + *rig.calibration->grade;
-  row("calibration", words);
+  row_if_any("calibration", words);
 }
 
 void print_tracks(const RecordingSummary& summary) {
@@ -125,32 +125,33 @@ void print_motion(const std::string& path, format::motion::MotionFormat format, 
                   const RecordingSummary& summary) {
   fmt::print("{}: {}{}\n", path, words_of(format),
              summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
-  row("name", info.header.name);
-  row("made by", info.header.made_by.program);
-  row("recorded", info.header.recorded_at);
+  row_if_any("name", info.header.name);
+  row_if_any("made by", info.header.made_by.program);
+  row_if_any("recorded", info.header.recorded_at);
   const std::int64_t frames = span_of(summary);
   const double length_s = summary.first_time ? seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz : 0;
-  row("length",
+  row_if_any(
+      "length",
       fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
                   summary.instants < frames ? fmt::format(", {} of them left out", counted(frames - summary.instants)) : ""));
-  if (summary.first_index) row("frames", fmt::format("{} to {}, counted from 0", *summary.first_index, *summary.last_index));
+  if (summary.first_index) row_if_any("frames", fmt::format("{} to {}, counted from 0", *summary.first_index, *summary.last_index));
   const auto labelled =
       std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.name.label.empty(); });
-  row("tracks", fmt::format("{}, {} with a label", summary.tracks.size(), labelled));
+  row_if_any("tracks", fmt::format("{}, {} with a label", summary.tracks.size(), labelled));
   std::int64_t filled = 0, predicted = 0;
   for (const auto& count : summary.tracks) {
     filled += count.of(Provenance::filled);
     predicted += count.of(Provenance::predicted);
   }
-  row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.samples),
-                            percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
-                            percent(predicted, summary.samples)));
-  if (format == format::motion::MotionFormat::take) row("observations", counted(summary.seen));
-  row("positions", to_string(info.header.frame));
-  if (info.up) row("up", *info.up == format::motion::UpAxis::y ? "y" : "z");
-  for (const Edit& edit : info.edits) row("edit", fmt::format("{} {}", edit.operation, edit.payload));
+  row_if_any("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.samples),
+                                   percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
+                                   percent(predicted, summary.samples)));
+  if (format == format::motion::MotionFormat::take) row_if_any("observations", counted(summary.seen));
+  row_if_any("positions", to_string(info.header.frame));
+  if (info.up) row_if_any("up", *info.up == format::motion::UpAxis::y ? "y" : "z");
+  for (const Edit& edit : info.edits) row_if_any("edit", fmt::format("{} {}", edit.operation, edit.payload));
   if (info.header.rig) {
-    row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
+    row_if_any("cameras", fmt::format("{}", info.header.rig->cameras.size()));
     print_calibration(*info.header.rig);
     fmt::print("\n");
     print_cameras(*info.header.rig);

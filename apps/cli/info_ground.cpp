@@ -92,7 +92,7 @@ Json as_json(const format::match::GroundMatch& match, format::match::GroundForma
   return result;
 }
 
-void row(const char* name, const std::string& value) {
+void ground_row(const char* name, const std::string& value) {
   fmt::print("  {:<13} {}\n", name, value);
 }
 
@@ -100,19 +100,19 @@ void print_table(const std::string& file, const format::match::GroundMatch& matc
                  const Extent& extent) {
   const Recording& recording = match.recording;
   fmt::print("{}: {}\n", file, words_of(format));
-  if (recording.samples() == 0) return row("people", "nobody is in it");
+  if (recording.samples() == 0) return ground_row("people", "nobody is in it");
   const auto &first = recording.instants().front(), &last = recording.instants().back();
   const double rate_hz = recording.header.rate_hz;
-  row("length",
-      fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz", seconds(last.time) - seconds(first.time) + 1 / rate_hz,
-                  recording.instants().size(), first.index, last.index, rate_hz));
+  ground_row("length", fmt::format("{:.2f} s: {} instants, frames {} to {} at {:g} Hz",
+                                   seconds(last.time) - seconds(first.time) + 1 / rate_hz, recording.instants().size(), first.index,
+                                   last.index, rate_hz));
   for (const format::match::GroundPeriod& period : match.periods)
-    row("period", fmt::format("{}: frames {} to {}", period.number, period.first_frame, period.last_frame));
-  row("pitch", fmt::format("{:g} x {:g} m", match.pitch.length, match.pitch.width));
+    ground_row("period", fmt::format("{}: frames {} to {}", period.number, period.first_frame, period.last_frame));
+  ground_row("pitch", fmt::format("{:g} x {:g} m", match.pitch.length, match.pitch.width));
   const char* unit = recording.header.frame.metric() ? "m" : "px";
-  row("places", fmt::format("{0}, x {2:.2f} to {3:.2f} {1}, y {4:.2f} to {5:.2f} {1}", recording.samples(), unit, extent.low.x(),
-                            extent.high.x(), extent.low.y(), extent.high.y()));
-  if (!match.home.empty() || !match.away.empty()) row("teams", fmt::format("{} at home, {}", match.home, match.away));
+  ground_row("places", fmt::format("{0}, x {2:.2f} to {3:.2f} {1}, y {4:.2f} to {5:.2f} {1}", recording.samples(), unit,
+                                   extent.low.x(), extent.high.x(), extent.low.y(), extent.high.y()));
+  if (!match.home.empty() || !match.away.empty()) ground_row("teams", fmt::format("{} at home, {}", match.home, match.away));
   fmt::print("\n  {:>6}  {:<24}  {:<24}  {:>9}\n", "id", "label", "team", "instants");
   for (const std::size_t i : format::match::listed_tracks(match)) {
     const TrackColumns& track = recording.tracks()[i];

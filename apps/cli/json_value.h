@@ -67,6 +67,11 @@ class Json {
   Value value_ = nullptr;
 };
 
+/// Null where it is empty.
+inline Json path_or_null(const std::string& path) {
+  return path.empty() ? Json() : Json(path);
+}
+
 /// On standard output, two blanks deep, with a newline behind it. Bytes that are no UTF-8 become U+FFFD.
 void print(const Json& json);
 

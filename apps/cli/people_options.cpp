@@ -8,9 +8,6 @@
 namespace marey::cli {
 namespace {
 
-/// The filters' own parameters are in pixels, for things that move as people do who are this high.
-constexpr double kBodyHeight = 100;
-
 constexpr int kMostControlPoints = 64, kMostLines = 512;
 
 track::contour::OutlineOptions outline_options(const PeopleFlags& flags) {
@@ -48,7 +45,7 @@ pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const 
   pipeline::PeopleInPictureOptions options;
   options.background = detect::background::parse_background(flags.background);
   if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
-    options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyHeight);
+    options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyPixels);
   }
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;

@@ -55,7 +55,7 @@ Json as_json(const pipeline::Summary& summary, const std::string& out) {
   return json;
 }
 
-void print_summary(const pipeline::Summary& summary, const std::string& out) {
+void print_points_summary(const pipeline::Summary& summary, const std::string& out) {
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
@@ -84,7 +84,7 @@ void run(const ReconstructCommand& command) {
         if (command.json) {
           print(as_json(summary, command.out));
         } else if (!command.quiet) {
-          print_summary(summary, command.out);
+          print_points_summary(summary, command.out);
         }
       });
 }

@@ -33,7 +33,7 @@ struct SimulateRoom {
   bool quiet = false;
 };
 
-std::vector<double> wand_of(const std::string& text) {
+std::vector<double> marker_places_of(const std::string& text) {
   if (text == "led") return {0};
   std::vector<double> wand = numbers_in(text, ',', closed(-100, 100), "the markers' places in m, as 0,0.12,0.30, or led");
   if (std::adjacent_find(wand.begin(), wand.end(), std::greater_equal<>()) != wand.end())
@@ -52,7 +52,7 @@ simulate::room::RoomOptions room_of(const SimulateRoom& command) {
   simulate::room::RoomOptions room = command.room;
   room.picture = {command.size[0], command.size[1]};
   room.volume = {command.volume[0], command.volume[1], command.volume[2]};
-  if (!command.wand.empty()) room.wand = wand_of(command.wand);
+  if (!command.wand.empty()) room.wand = marker_places_of(command.wand);
   if (!command.bump.empty()) room.bump = bump_of(command.bump);
   if (room.bump && room.bump->camera >= room.cameras)
     throw WrongUsage("--bump {}: there are {} cameras", command.bump, room.cameras);
@@ -93,7 +93,7 @@ void add_scene(Command& room, SimulateRoom& options) {
   room.whole("--cameras", scene.cameras, "N", 1, 256, "how many, round the volume");
   room.whole("--markers", scene.markers, "N", 1, 2000, "how many, on the body or free");
   room.text("--wand", options.wand, "the wand's markers, m along it, as 0,0.12,0.30 (default), or led: a single light")
-      .check(wand_of);
+      .check(marker_places_of);
   room.whole("--frames", scene.frames, "N", 1, 100'000'000, "length");
   room.number("--rate", scene.rate_hz, "Hz", closed(1, 10000), "frames a second");
   room.wholes("--size", options.size, "px", 64, 8192, "of the pictures: width and height");

@@ -17,8 +17,6 @@
 namespace marey::cli {
 namespace {
 
-/// The filters' own parameters are in pixels, for things that move as people do who are this high.
-constexpr double kBodyHeight = 100;
 constexpr double kBodyMetres = 1.75;
 
 pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
@@ -61,7 +59,7 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
-  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyHeight);
+  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
   options.tracker.associate =
       flags.associate.empty() ? usual_association(rig, command.live) : track::ground::ground_association_named(flags.associate);
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";

@@ -11,10 +11,6 @@
 namespace marey::cli {
 namespace {
 
-Json path_or_null(const std::string& path) {
-  return path.empty() ? Json() : Json(path);
-}
-
 std::int64_t left_out(const pipeline::Summary& summary, std::string_view reason) {
   const auto found = summary.left_out.find(reason);
   return found != summary.left_out.end() ? found->second : 0;

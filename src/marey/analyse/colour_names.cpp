@@ -13,7 +13,7 @@ namespace marey::analyse {
 namespace {
 
 // Shirts in the open, filmed from afar: duller than a painter's colours.
-constexpr std::array<ColourName, 14> names = {{
+constexpr std::array<ColourName, 14> kColourNames = {{
     {"white", {80, 0, 0}},
     {"black", {18, 0, 0}},
     {"grey", {46, 0, 0}},
@@ -44,7 +44,7 @@ std::string lower(std::string_view text) {
 }  // namespace
 
 std::span<const ColourName> colour_names() {
-  return names;
+  return kColourNames;
 }
 
 Appearance colour_named(std::string_view name) {
@@ -59,19 +59,19 @@ Appearance colour_named(std::string_view name) {
     word = word.substr(prefix.size());
     break;
   }
-  for (const ColourName& known : names) {
+  for (const ColourName& known : kColourNames) {
     if (known.word != word) continue;
     Appearance colour = known.typical;
     colour.lightness = std::clamp(colour.lightness + shift, 5.0F, 97.0F);
     return colour;
   }
   std::string all;
-  for (const ColourName& known : names) all += fmt::format("{}{}", all.empty() ? "" : ", ", known.word);
+  for (const ColourName& known : kColourNames) all += fmt::format("{}{}", all.empty() ? "" : ", ", known.word);
   throw Error(fmt::format("\"{}\" is no colour that is known here; there are {}, each also light or dark", name, all));
 }
 
 std::string name_of_colour(const Appearance& colour) {
-  const auto nearest = std::min_element(names.begin(), names.end(), [&](const ColourName& a, const ColourName& b) {
+  const auto nearest = std::min_element(kColourNames.begin(), kColourNames.end(), [&](const ColourName& a, const ColourName& b) {
     return colours_apart(a.typical, colour) < colours_apart(b.typical, colour);
   });
   return std::string(nearest->word);

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::analyse {
 namespace {
@@ -98,6 +100,17 @@ void low_pass(std::vector<Vector<2>>& values, double cutoff_hz, double rate_hz) 
 // --- Savitzky-Golay
 // ---------------------------------------------------------------------------------------------------------------
 
+/// Of N x = v with N symmetric and not negative; the shortest where several solve it, as with fewer places than coefficients.
+Eigen::Matrix<double, 3, 2> least_norm_solution(const Matrix<3>& N, const Eigen::Matrix<double, 3, 2>& v) {
+  const auto [values, vectors] = geometry::eigenpairs<3>(N);
+  const double least = 3 * std::numeric_limits<double>::epsilon() * values[2];
+  Eigen::Matrix<double, 3, 2> x = Eigen::Matrix<double, 3, 2>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (values[i] > least) x += vectors.col(i) * (vectors.col(i).transpose() * v / values[i]);
+  }
+  return x;
+}
+
 void savitzky_golay(Path& path, double window_s) {
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(window_s / path.step_s / 2));
   const auto count = static_cast<std::ptrdiff_t>(path.place.size());
@@ -111,7 +124,7 @@ void savitzky_golay(Path& path, double window_s) {
       N += basis * basis.transpose();
       v += basis * path.place[static_cast<std::size_t>(j)].transpose();
     }
-    const Eigen::Matrix<double, 3, 2> fit = N.completeOrthogonalDecomposition().solve(v);
+    const Eigen::Matrix<double, 3, 2> fit = least_norm_solution(N, v);
     place[static_cast<std::size_t>(i)] = fit.row(0);
     velocity[static_cast<std::size_t>(i)] = fit.row(1);
     acceleration[static_cast<std::size_t>(i)] = fit.row(2);

@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "marey/calibrate/rays.h"
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate {
 namespace {
@@ -154,10 +154,10 @@ class Matcher {
 
 void check_frame(std::span<const Vector<3>> frame, bool free_scale) {
   if (frame.size() < 3) throw Error("a ground frame has three markers or more; {} are given", frame.size());
-  Eigen::Matrix3Xd from_first(3, frame.size());
-  for (std::size_t m = 0; m < frame.size(); ++m) from_first.col(static_cast<Eigen::Index>(m)) = frame[m] - frame[0];
-  const Vector<3> extent = Eigen::JacobiSVD<Eigen::Matrix3Xd>(from_first).singularValues();
-  if (extent[1] < 0.02 * extent[0])
+  Matrix<3> spread = Matrix<3>::Zero();
+  for (const Vector<3>& marker : frame) spread += (marker - frame[0]) * (marker - frame[0]).transpose();
+  const Vector<3> extent = geometry::eigenpairs<3>(spread).values.cwiseMax(0).cwiseSqrt();
+  if (extent[1] < 0.02 * extent[2])
     throw Error("{}", "the ground frame's markers lie on a line: the floor could turn about it; use an L");
   if (Matcher({frame.begin(), frame.end()}, frame, free_scale).matches().size() > 1) {
     throw Error("{}", "the ground frame looks the same when it is turned: use one whose markers all have distances of their own");

@@ -9,11 +9,8 @@
 namespace marey::calibrate {
 namespace {
 
+using board::in_cube;
 using board::Noise;
-
-Vector<3> in_cube(Noise& noise, double half) {
-  return {noise.uniform(-half, half), noise.uniform(-half, half), noise.uniform(-half, half)};
-}
 
 /// Lines from all round that miss `point` by some `sigma` rad.
 std::vector<SightLine> lines_to(const Vector<3>& point, int count, double sigma, Noise& noise) {

@@ -7,16 +7,14 @@
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
+#include "marey/calibrate/draw_below.h"
+
 namespace marey::calibrate {
 namespace {
 
-constexpr double kGate = 4;          // standard deviations within which a wand is explained
+constexpr double kWandGate = 4;      // standard deviations within which a wand is explained
 constexpr double kLeastAhead = 0.2;  // of a bearing's z, to be used in OpenCV's plane of pictures
 constexpr std::size_t kLeastWands = 4;
-
-std::size_t draw(std::mt19937_64& engine, std::size_t end) {
-  return static_cast<std::size_t>(static_cast<double>(engine() >> 11) * 0x1.0p-53 * static_cast<double>(end));
-}
 
 /// Mean squared angle of a wand in units of the noise, the better way round.
 double error(const Rigid3& pose, const SeenWand& wand, const ResectionOptions& options, bool& turned) {
@@ -38,7 +36,7 @@ double error(const Rigid3& pose, const SeenWand& wand, const ResectionOptions& o
 double cost(const Rigid3& pose, std::span<const SeenWand> wands, const ResectionOptions& options) {
   double sum = 0;
   bool turned = false;
-  for (const SeenWand& wand : wands) sum += std::min(kGate * kGate, error(pose, wand, options, turned));
+  for (const SeenWand& wand : wands) sum += std::min(kWandGate * kWandGate, error(pose, wand, options, turned));
   return sum;
 }
 
@@ -47,9 +45,9 @@ std::vector<Rigid3> propose(std::span<const SeenWand> wands, const ResectionOpti
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> seen;
   for (int i = 0; i < 3; ++i) {
-    const SeenWand& wand = wands[draw(engine, wands.size())];
-    const std::size_t marker = draw(engine, options.markers);
-    const bool turned = options.reversible && draw(engine, 2) == 1;
+    const SeenWand& wand = wands[draw_below(engine, wands.size())];
+    const std::size_t marker = draw_below(engine, options.markers);
+    const bool turned = options.reversible && draw_below(engine, 2) == 1;
     const Vector<3>& bearing = wand.bearing[turned ? options.markers - 1 - marker : marker];
     if (bearing.z() < kLeastAhead) return {};
     points.emplace_back(wand.world[marker].x(), wand.world[marker].y(), wand.world[marker].z());
@@ -86,7 +84,7 @@ std::optional<Resection> resect(std::span<const SeenWand> wands, const Resection
   if (!std::isfinite(best_cost)) return std::nullopt;
   for (const SeenWand& wand : wands) {
     bool turned = false;
-    best.inlier.push_back(error(best.camera_from_world, wand, options, turned) <= kGate * kGate);
+    best.inlier.push_back(error(best.camera_from_world, wand, options, turned) <= kWandGate * kWandGate);
     best.turned.push_back(turned);
     best.inliers += static_cast<std::size_t>(best.inlier.back());
   }

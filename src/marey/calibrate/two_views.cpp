@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "marey/calibrate/draw_below.h"
 #include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate {
@@ -18,11 +19,6 @@ using Ray = Vector<3>;
 struct Match {
   Ray a, b;
 };
-
-/// Uniform integers below `end`, the same on every machine.
-std::size_t draw(std::mt19937_64& engine, std::size_t end) {
-  return static_cast<std::size_t>(static_cast<double>(engine() >> 11) * 0x1.0p-53 * static_cast<double>(end));
-}
 
 /// A linear map that makes the bearings' second moments equal in all directions.
 Matrix<3> whitening(std::span<const Match> matches, Ray Match::* side) {
@@ -78,7 +74,7 @@ Matrix<3> rotation_of(std::span<const Match> matches) {
   return svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose();
 }
 
-constexpr double kGate = 3;  // standard deviations within which a match is one
+constexpr double kMatchGate = 3;  // standard deviations within which a match is one
 
 double angle_between(const Vector<3>& a, const Vector<3>& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -89,7 +85,7 @@ double explained(std::span<const Match> matches, const Matrix<3>& map, double si
   std::size_t count = 0;
   for (const Match& match : matches) {
     const double off = angle_between(map * match.a, match.b);
-    count += std::min(off, std::acos(-1.0) - off) < kGate * sigma ? 1 : 0;
+    count += std::min(off, std::acos(-1.0) - off) < kMatchGate * sigma ? 1 : 0;
   }
   return static_cast<double>(count) / static_cast<double>(matches.size());
 }
@@ -127,7 +123,7 @@ class Relation {
   double cost(const Matrix<3>& E, std::span<const std::size_t> sample) const {
     double sum = 0;
     bool turned = false;
-    for (const std::size_t pair : sample) sum += std::min(error(E, pair, turned), kGate * kGate);
+    for (const std::size_t pair : sample) sum += std::min(error(E, pair, turned), kMatchGate * kMatchGate);
     return sum;
   }
 
@@ -167,14 +163,14 @@ std::optional<Matrix<3>> Relation::search() const {
   for (int i = 0; i < std::min(needed, most_draws); ++i) {
     std::vector<Match> drawn;
     for (std::size_t w = 0; w < wands; ++w) {
-      const std::size_t pair = draw(engine, pairs_.size());
-      const bool turned = options_.reversible && draw(engine, 2) == 1;
+      const std::size_t pair = draw_below(engine, pairs_.size());
+      const bool turned = options_.reversible && draw_below(engine, 2) == 1;
       for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
     }
     Matrix<3> E = essential_of(drawn);
     double cost_here = cost(E, sample);
     if (cost_here >= best_cost) continue;
-    for (const double gate : {2 * kGate, kGate, kGate}) {
+    for (const double gate : {2 * kMatchGate, kMatchGate, kMatchGate}) {
       const auto matches = inliers(E, sample, gate);
       if (matches.size() < 16) break;
       const Matrix<3> refitted = essential_of(matches);
@@ -183,7 +179,7 @@ std::optional<Matrix<3>> Relation::search() const {
     }
     best = E, best_cost = cost_here;
     const double good =
-        static_cast<double>(inliers(E, sample, kGate).size()) / static_cast<double>(sample.size() * options_.markers);
+        static_cast<double>(inliers(E, sample, kMatchGate).size()) / static_cast<double>(sample.size() * options_.markers);
     const double orientations = options_.reversible ? std::pow(0.5, static_cast<double>(wands) - 1) : 1;
     const double hit = std::pow(good, static_cast<double>(wands)) * orientations;
     if (hit > 0) needed = std::max(60, static_cast<int>(std::log(1e-4) / std::log1p(-std::min(hit, 0.999999))));
@@ -201,8 +197,8 @@ double Relation::share_of_a_plane() const {
   for (int i = 0; i < draws; ++i) {
     std::vector<Match> drawn;
     for (std::size_t w = 0; w < wands; ++w) {
-      const std::size_t pair = draw(engine, pairs_.size());
-      const bool turned = options_.reversible && draw(engine, 2) == 1;
+      const std::size_t pair = draw_below(engine, pairs_.size());
+      const bool turned = options_.reversible && draw_below(engine, 2) == 1;
       for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
     }
     Matrix<3> H = homography_of(drawn);
@@ -259,12 +255,12 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
   std::size_t count = 0;
   for (const std::size_t pair : all) {
     bool turned = false;
-    views.inlier.push_back(error(E, pair, turned) <= kGate * kGate);
+    views.inlier.push_back(error(E, pair, turned) <= kMatchGate * kMatchGate);
     views.turned.push_back(turned);
     count += static_cast<std::size_t>(views.inlier.back());
   }
   views.share = static_cast<double>(count) / static_cast<double>(pairs_.size());
-  const auto matches = inliers(E, all, kGate);
+  const auto matches = inliers(E, all, kMatchGate);
   views.b_from_a = pose_of(E, matches);
   std::vector<double> angles;
   for (const Match& match : matches) angles.push_back(angle_between(views.b_from_a.rotation * match.a, match.b));

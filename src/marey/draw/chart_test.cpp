@@ -2,14 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "support/text.h"
+
 namespace marey::draw {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t found = 0;
-  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
-  return found;
-}
 
 TEST(Chart, BarsHaveHeightsInProportionAndMissingOnesAreNotDrawn) {
   BarChart chart;
@@ -17,7 +13,7 @@ TEST(Chart, BarsHaveHeightsInProportionAndMissingOnesAreNotDrawn) {
   chart.series = {"paper", "ours"};
   chart.groups = {{"slow", {Bar{4, {}, {}}, Bar{2, 1.0, 3.0}}}, {"rapid", {std::nullopt, Bar{0, {}, {}}}}};
   const std::string svg = to_svg(chart);
-  EXPECT_EQ(count(svg, "<title>"), 3u);
+  EXPECT_EQ(test::count_of("<title>", svg), 3u);
   EXPECT_NE(svg.find("Losses &lt; 20 &amp; more"), std::string::npos);
   EXPECT_NE(svg.find(R"(height="270.0")"), std::string::npos) << "the largest bar reaches the top of a 0-4 axis";
   EXPECT_NE(svg.find(R"(height="135.0")"), std::string::npos);
@@ -30,15 +26,15 @@ TEST(Chart, LinesGoThroughTheirPointsOnBothKindsOfAxis) {
   for (const bool logarithmic : {false, true}) {
     chart.logarithmic_y = logarithmic;
     const std::string svg = to_svg(chart);
-    EXPECT_EQ(count(svg, "<circle"), 2u);
+    EXPECT_EQ(test::count_of("<circle", svg), 2u);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);
   }
 }
 
 TEST(Chart, AnEmptyChartIsStillAPicture) {
-  EXPECT_EQ(count(to_svg(LineChart{}), "</svg>"), 1u);
-  EXPECT_EQ(count(to_svg(BarChart{}), "</svg>"), 1u);
+  EXPECT_EQ(test::count_of("</svg>", to_svg(LineChart{})), 1u);
+  EXPECT_EQ(test::count_of("</svg>", to_svg(BarChart{})), 1u);
 }
 
 }  // namespace

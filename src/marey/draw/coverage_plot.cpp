@@ -12,8 +12,8 @@ namespace marey::draw {
 namespace {
 
 constexpr int kColumns = 10, kRows = 8;
-constexpr double kWidth = 900, kMargin = 20, kHead = 50;  // of the drawing
-constexpr int kFull = 20;                                 // marks in a field from which it is darkest
+constexpr double kWidth = 900, kCoverageMargin = 20, kHead = 50;  // of the drawing
+constexpr int kFull = 20;                                         // marks in a field from which it is darkest
 
 /// How many times errors are magnified: a typical one becomes a hundredth of the picture's width.
 double magnification(const CoveragePlot& plot) {
@@ -45,7 +45,7 @@ std::string fields(const CoveragePlot& plot, double scale) {
       svg += fmt::format(
           "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" fill-opacity=\"{:.2f}\" "
           "stroke=\"#ddd\"/>\n",
-          kMargin + x * width, kHead + y * height, width, height, marks ? "#2a7de1" : "#fff",
+          kCoverageMargin + x * width, kHead + y * height, width, height, marks ? "#2a7de1" : "#fff",
           marks ? 0.08 + 0.3 * std::min(marks, kFull) / kFull : 1.0);
     }
   }
@@ -55,8 +55,8 @@ std::string fields(const CoveragePlot& plot, double scale) {
 }  // namespace
 
 std::string to_svg(const CoveragePlot& plot) {
-  const double scale = (kWidth - 2 * kMargin) / plot.size.width;
-  const double height = kHead + scale * plot.size.height + kMargin;
+  const double scale = (kWidth - 2 * kCoverageMargin) / plot.size.width;
+  const double height = kHead + scale * plot.size.height + kCoverageMargin;
   const double times = magnification(plot);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
@@ -64,10 +64,10 @@ std::string to_svg(const CoveragePlot& plot) {
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<text x=\"{2}\" y=\"22\" font-size=\"16\">{3}</text>\n"
       "<text x=\"{2}\" y=\"41\" font-size=\"12\" fill=\"#555\">errors drawn {4:.0f} times as long as they are; red: not used; "
       "white fields: nothing was seen there</text>\n",
-      kWidth, height, kMargin, escaped(plot.title), times);
+      kWidth, height, kCoverageMargin, escaped(plot.title), times);
   svg += fields(plot, scale);
   for (const CoveragePlot::Mark& mark : plot.marks) {
-    const double x = kMargin + scale * (mark.pixel.x() + 0.5), y = kHead + scale * (mark.pixel.y() + 0.5);
+    const double x = kCoverageMargin + scale * (mark.pixel.x() + 0.5), y = kHead + scale * (mark.pixel.y() + 0.5);
     const Vector<2> end = Vector<2>(x, y) + scale * times * mark.error;
     const char* colour = mark.used ? "#123" : "#d22";
     svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.4\" fill=\"{}\"/>", x, y, colour);

@@ -14,7 +14,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr double kMargin = 3;          // m round the pitch
+constexpr double kPitchMargin = 3;     // m round the pitch
 constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
 
 const char* const kStyle = R"(
@@ -25,9 +25,9 @@ svg { width: 100%; height: auto } details { margin: .5em 0 } summary { cursor: p
 .two { display: grid; grid-template-columns: 1fr 1fr; gap: 1em } h2 { margin-top: 1.5em }
 )";
 
-class Page {
+class ReportPage {
  public:
-  explicit Page(const MatchReport& report) : report_(report) {
+  explicit ReportPage(const MatchReport& report) : report_(report) {
     for (const MatchReport::Person& person : report.people) teams_.try_emplace(person.team, static_cast<int>(teams_.size()));
   }
 
@@ -80,9 +80,9 @@ class Page {
 
   void open_pitch() {
     const Vector<2>& c = report_.corner;
-    add(R"(<svg viewBox="{:.2f} {:.2f} {:.2f} {:.2f}">)", c.x() - kMargin, c.y() - kMargin, report_.pitch.length + 2 * kMargin,
-        report_.pitch.width + 2 * kMargin);
-    add(R"(<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#5f9469"/>)", c.x() - kMargin, c.y() - kMargin);
+    add(R"(<svg viewBox="{:.2f} {:.2f} {:.2f} {:.2f}">)", c.x() - kPitchMargin, c.y() - kPitchMargin,
+        report_.pitch.length + 2 * kPitchMargin, report_.pitch.width + 2 * kPitchMargin);
+    add(R"(<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#5f9469"/>)", c.x() - kPitchMargin, c.y() - kPitchMargin);
   }
 
   void close_pitch() { add(R"(<use href="#lines"/></svg>)"); }
@@ -194,7 +194,7 @@ class Page {
 }  // namespace
 
 std::string to_html(const MatchReport& report) {
-  return Page(report).write();
+  return ReportPage(report).write();
 }
 
 }  // namespace marey::draw

@@ -13,7 +13,7 @@ Picture grey(int width, int height) {
   return Picture(cv::Mat(height, width, CV_8UC1, cv::Scalar(128)));
 }
 
-Sample at(int id, double left, double top, Provenance provenance = Provenance::measured) {
+Sample box_of(int id, double left, double top, Provenance provenance = Provenance::measured) {
   Sample sample;
   sample.track = TrackId{id};
   sample.box = Box{left, top, 20, 50};
@@ -68,7 +68,7 @@ TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   Picture last;
   for (int i = 0; i <= 10; ++i) {
-    last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{at(7, 20 + 10.0 * i, 40)}, {});
+    last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{box_of(7, 20 + 10.0 * i, 40)}, {});
   }
   EXPECT_GT(changed(empty, last, {119, 39, 22, 52}), 200) << "the box";
   EXPECT_GT(changed(empty, last, {115, 15, 30, 22}), 50) << "the number above it";
@@ -79,7 +79,7 @@ TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
 
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
   const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
-  Sample sample = at(1, 50, 40);
+  Sample sample = box_of(1, 50, 40);
   auto outline = std::make_shared<Outline>();
   outline->control_points = {{60, 40}, {70, 65}, {60, 90}, {50, 65}};
   outline->deviations.assign(4, {1, 1});
@@ -96,8 +96,8 @@ TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
 TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
   const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   const cv::Rect all(0, 42, 200, 60);
-  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40)}, {});
-  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{at(1, 50, 40, Provenance::predicted)}, {});
+  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40)}, {});
+  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40, Provenance::predicted)}, {});
   EXPECT_LT(changed(empty, predicted, all), changed(empty, seen, all));
   EXPECT_GT(changed(empty, predicted, all), 50);
 }

@@ -13,7 +13,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr Colour kModel{230, 40, 40}, kPaint{250, 220, 40}, kFits{60, 220, 90}, kMisfit{255, 90, 0};
+constexpr Colour kModel{230, 40, 40}, kModelPaint{250, 220, 40}, kFits{60, 220, 90}, kMisfit{255, 90, 0};
 
 cv::Point2f point(const Vector<2>& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y())};
@@ -50,7 +50,7 @@ Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vect
   canvas.strokes(strokes, kModel, unit);
   strokes.clear();
   for (const Vector<2>& found : paint) strokes.push_back({point(found), point(found)});
-  canvas.strokes(strokes, kPaint, 1.5 * unit);
+  canvas.strokes(strokes, kModelPaint, 1.5 * unit);
   for (const DrawnClick& click : clicks) {
     const auto size = static_cast<float>(5 * unit);
     const cv::Point2f at = point(click.pixel);

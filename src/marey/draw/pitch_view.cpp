@@ -5,7 +5,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr Colour kGrass{52, 110, 58}, kStripe{57, 118, 63}, kPaint{235, 240, 235}, kInk{15, 15, 15};
+constexpr Colour kGrass{52, 110, 58}, kStripe{57, 118, 63}, kLinePaint{235, 240, 235}, kInk{15, 15, 15};
 constexpr double kStripeWidth = 5.25;  // m; twenty to the usual length
 constexpr double kGrid = 5;            // m
 constexpr double kDisc = 0.011;        // radius, of the picture's width
@@ -49,13 +49,13 @@ void PitchView::draw_ground() {
     for (const geometry::PitchLine& line : geometry::pitch_lines(pitch, 0.1)) {
       for (std::size_t i = 1; i < line.points.size(); ++i) strokes.push_back({pixel(line.points[i - 1]), pixel(line.points[i])});
     }
-    canvas.strokes(strokes, kPaint, 1.5 * unit);
+    canvas.strokes(strokes, kLinePaint, 1.5 * unit);
   } else {
     for (double x = std::ceil(options_.low.x() / kGrid) * kGrid; x <= options_.high.x(); x += kGrid)
       strokes.push_back({pixel({x, options_.low.y()}), pixel({x, options_.high.y()}), 0.35});
     for (double y = std::ceil(options_.low.y() / kGrid) * kGrid; y <= options_.high.y(); y += kGrid)
       strokes.push_back({pixel({options_.low.x(), y}), pixel({options_.high.x(), y}), 0.35});
-    canvas.strokes(strokes, kPaint, unit);
+    canvas.strokes(strokes, kLinePaint, unit);
   }
   ground_ = canvas.take();
 }
@@ -69,7 +69,7 @@ Picture PitchView::draw(Timestamp now, std::span<const Mark> marks) {
     const cv::Point2f at = pixel(mark.place);
     canvas.discs({at}, radius, mark.observed ? kInk : mark.colour);
     canvas.discs({at}, 0.86 * radius, mark.observed ? mark.colour : kGrass);
-    canvas.text(mark.text, at, is_light(mark.colour) && mark.observed ? kInk : kPaint, 0.85 * radius);
+    canvas.text(mark.text, at, is_light(mark.colour) && mark.observed ? kInk : kLinePaint, 0.85 * radius);
   }
   return canvas.take();
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kShortest = 0.5;     // px; a step
 constexpr double kLongestSide = 900;  // units of the picture
 constexpr double kLeastSpan = 20;     // px shown at least, where nobody moves
-constexpr double kMargin = 56, kTop = 40, kBottom = 48;
+constexpr double kPlotMargin = 56, kPlotTop = 40, kPlotBottom = 48;
 
 double round_step(double span) {
   const double magnitude = std::pow(10, std::floor(std::log10(span / 5)));
@@ -31,11 +31,11 @@ Box window_of(const Vector<2>& low, const Vector<2>& high) {
   return {middle.x() - span.x() / 2, middle.y() - span.y() / 2, span.x(), span.y()};
 }
 
-class Page {
+class PlotPage {
  public:
-  explicit Page(const Box& window) : window_(window), scale_(kLongestSide / std::max(window.width, window.height)) {
+  explicit PlotPage(const Box& window) : window_(window), scale_(kLongestSide / std::max(window.width, window.height)) {
     add(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {:.0f} {:.0f}" font-family="sans-serif" font-size="12">)",
-        scale_ * window.width + kMargin + 20, scale_ * window.height + kTop + kBottom);
+        scale_ * window.width + kPlotMargin + 20, scale_ * window.height + kPlotTop + kPlotBottom);
     add(R"(<rect width="100%" height="100%" fill="white"/>)");
   }
 
@@ -45,22 +45,22 @@ class Page {
     text_ += '\n';
   }
 
-  double x(double column) const { return kMargin + scale_ * (column - window_.left); }
-  double y(double row) const { return kTop + scale_ * (row - window_.top); }
+  double x(double column) const { return kPlotMargin + scale_ * (column - window_.left); }
+  double y(double row) const { return kPlotTop + scale_ * (row - window_.top); }
 
   void axes(const std::string& title) {
-    add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kMargin, escaped(title));
+    add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kPlotMargin, escaped(title));
     const double bottom = y(window_.bottom());
     for (const double tick : ticks(window_.left, window_.right())) {
-      add(R"(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1}" y2="{2:.1f}" stroke="#ddd"/>)", x(tick), kTop, bottom);
+      add(R"(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1}" y2="{2:.1f}" stroke="#ddd"/>)", x(tick), kPlotTop, bottom);
       add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle">{:g}</text>)", x(tick), bottom + 16, tick);
     }
     for (const double tick : ticks(window_.top, window_.bottom())) {
-      add(R"(<line x1="{0}" x2="{1:.1f}" y1="{2:.1f}" y2="{2:.1f}" stroke="#ddd"/>)", kMargin, x(window_.right()), y(tick));
-      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)", kMargin - 6, y(tick) + 4, tick);
+      add(R"(<line x1="{0}" x2="{1:.1f}" y1="{2:.1f}" y2="{2:.1f}" stroke="#ddd"/>)", kPlotMargin, x(window_.right()), y(tick));
+      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)", kPlotMargin - 6, y(tick) + 4, tick);
     }
-    add(R"(<rect x="{}" y="{}" width="{:.1f}" height="{:.1f}" fill="none" stroke="#888"/>)", kMargin, kTop, scale_ * window_.width,
-        scale_ * window_.height);
+    add(R"(<rect x="{}" y="{}" width="{:.1f}" height="{:.1f}" fill="none" stroke="#888"/>)", kPlotMargin, kPlotTop,
+        scale_ * window_.width, scale_ * window_.height);
     add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle">x, px</text>)", x(window_.left + window_.width / 2), bottom + 36);
     add(R"svg(<text transform="translate(14 {:.1f}) rotate(-90)" text-anchor="middle">y, px (down)</text>)svg",
         y(window_.top + window_.height / 2));
@@ -115,7 +115,7 @@ std::string TrajectoryPlot::to_svg(const std::string& title) const {
     }
   }
   if (ways_.empty()) low = high = Vector<2>::Zero();
-  Page page(window_of(low, high));
+  PlotPage page(window_of(low, high));
   page.axes(title);
   for (const auto& [id, way] : ways_) {
     const std::string colour = css(colour_of(number(id)));

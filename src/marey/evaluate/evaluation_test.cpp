@@ -7,7 +7,7 @@
 namespace marey::evaluate {
 namespace {
 
-LabelledBox at(int frame, int id, double left) {
+LabelledBox box_at(int frame, int id, double left) {
   return {frame, id, {left, 0, 10, 10}, 1};
 }
 
@@ -16,8 +16,8 @@ TEST(Evaluation, PerfectTracksArePerfectWhateverTheirNames) {
   std::vector<LabelledBox> tracks;
   for (int frame = 0; frame < 10; ++frame) {
     for (int id = 0; id < 3; ++id) {
-      truth.push_back(at(frame, id, 20.0 * id + frame));
-      tracks.push_back(at(frame, 100 - id, 20.0 * id + frame));
+      truth.push_back(box_at(frame, id, 20.0 * id + frame));
+      tracks.push_back(box_at(frame, 100 - id, 20.0 * id + frame));
     }
   }
   const Evaluation result = evaluate(truth, tracks);
@@ -34,11 +34,11 @@ TEST(Evaluation, PerfectTracksArePerfectWhateverTheirNames) {
 TEST(Evaluation, SwitchAndGapCountedByHand) {
   // One object, ten frames: track 1 in frames 0–3, nothing in 4 and 5, track 2 in 6–9, and a false box in frame 0.
   std::vector<LabelledBox> truth;
-  std::vector<LabelledBox> tracks{at(0, 9, 500)};
+  std::vector<LabelledBox> tracks{box_at(0, 9, 500)};
   for (int frame = 0; frame < 10; ++frame) {
-    truth.push_back(at(frame, 1, 0));
-    if (frame < 4) tracks.push_back(at(frame, 1, 0));
-    if (frame >= 6) tracks.push_back(at(frame, 2, 0));
+    truth.push_back(box_at(frame, 1, 0));
+    if (frame < 4) tracks.push_back(box_at(frame, 1, 0));
+    if (frame >= 6) tracks.push_back(box_at(frame, 2, 0));
   }
   const Evaluation result = evaluate(truth, tracks);
   EXPECT_EQ(result.clear.switches, 1);
@@ -55,14 +55,14 @@ TEST(Evaluation, SwitchAndGapCountedByHand) {
 }
 
 TEST(Evaluation, LastMatchIsKeptAgainstANearerTrack) {
-  const std::vector<LabelledBox> truth{at(0, 1, 0), at(1, 1, 0)};
-  const std::vector<LabelledBox> tracks{at(0, 1, 0), at(1, 1, 2), at(1, 2, 0)};
+  const std::vector<LabelledBox> truth{box_at(0, 1, 0), box_at(1, 1, 0)};
+  const std::vector<LabelledBox> tracks{box_at(0, 1, 0), box_at(1, 1, 2), box_at(1, 2, 0)};
   EXPECT_EQ(evaluate(truth, tracks).clear.switches, 0);
   EXPECT_EQ(evaluate(truth, tracks, 0.9).clear.switches, 1) << "the last match no longer overlaps enough";
 }
 
 TEST(Evaluation, NothingToJudge) {
-  const std::vector<LabelledBox> some{at(0, 1, 0), at(1, 1, 0)};
+  const std::vector<LabelledBox> some{box_at(0, 1, 0), box_at(1, 1, 0)};
   const Evaluation none = evaluate({}, {});
   EXPECT_EQ(none.frames, 0);
   EXPECT_FALSE(none.clear.mota || none.clear.motp || none.identity.f1);
@@ -78,8 +78,8 @@ TEST(Evaluation, NothingToJudge) {
 }
 
 TEST(Evaluation, FramesThatDoNotMeet) {
-  const std::vector<LabelledBox> truth{at(0, 1, 0)};
-  const std::vector<LabelledBox> tracks{at(7, 1, 0)};
+  const std::vector<LabelledBox> truth{box_at(0, 1, 0)};
+  const std::vector<LabelledBox> tracks{box_at(7, 1, 0)};
   const Evaluation result = evaluate(truth, tracks);
   EXPECT_EQ(result.frames, 2);
   EXPECT_EQ(result.common_frames, 0);

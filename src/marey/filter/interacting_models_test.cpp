@@ -14,14 +14,14 @@ INSTANTIATE_TYPED_TEST_SUITE_P(InteractingModels, FilterInvariants, Interacting)
 
 /// The slow twin: full matrices, mixing by the definition, likelihoods by the density.
 template <int D>
-struct Textbook {
+struct TextbookMixture {
   static constexpr int N = 3 * D;
   InteractingModelsOptions options;
   std::array<Vector<N>, 4> x;
   std::array<Matrix<N>, 4> P;
   std::array<double, 4> mu;
 
-  Textbook(const InteractingModelsOptions& o, const Vector<D>& z, const Matrix<D>& R)
+  TextbookMixture(const InteractingModelsOptions& o, const Vector<D>& z, const Matrix<D>& R)
       : options(o), mu({o.shares[0], o.shares[1], o.shares[2], 0}) {
     for (std::size_t j = 0; j < 4; ++j) {
       x[j].setZero();
@@ -124,7 +124,7 @@ TYPED_TEST(InteractingTwin, AgreesWithTheTextbook) {
   const InteractingModelsOptions options;
   const Matrix<D> R0 = this->random_covariance(0.3) + 0.1 * Matrix<D>::Identity();
   TypeParam fast(options, Vector<D>::Constant(10), R0);
-  Textbook<D> slow(options, Vector<D>::Constant(10), R0);
+  TextbookMixture<D> slow(options, Vector<D>::Constant(10), R0);
   Vector<D> place = Vector<D>::Constant(10);
   Vector<D> velocity = this->random_vector(200);
   for (int step = 0; step < 200; ++step) {

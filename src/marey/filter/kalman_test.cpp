@@ -14,14 +14,14 @@ INSTANTIATE_TYPED_TEST_SUITE_P(Kalman, FilterInvariants, Kalmans);
 
 /// The slow twin: the paper's eq. 4-8 with the matrices A, H and Q written out.
 template <int D>
-struct Textbook {
+struct TextbookKalman {
   using State = Eigen::Matrix<double, 2 * D, 1>;
   using Square = Eigen::Matrix<double, 2 * D, 2 * D>;
   State x = State::Zero();
   Square P = Square::Zero();
   double density;
 
-  Textbook(const KalmanOptions& options, const Vector<D>& z, const Matrix<D>& R)
+  TextbookKalman(const KalmanOptions& options, const Vector<D>& z, const Matrix<D>& R)
       : density(options.acceleration_noise * options.acceleration_noise) {
     x.template head<D>() = z;
     P.template topLeftCorner<D, D>() = R;
@@ -59,7 +59,7 @@ TYPED_TEST(KalmanTwin, AgreesWithTheTextbook) {
   const Vector<D> start = this->random_vector(100);
   const Matrix<D> R0 = this->random_covariance(2);
   TypeParam fast(options, start, R0);
-  Textbook<D> slow(options, start, R0);
+  TextbookKalman<D> slow(options, start, R0);
   for (int i = 0; i < 200; ++i) {
     const double dt = 0.01 * (1 + i % 9);
     fast.predict(dt);

@@ -32,7 +32,7 @@ struct Row {
   bool seen = true;  ///< false where x and y are blank or NaN
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view bare_field(std::string_view text) {
   while (!text.empty() && static_cast<unsigned char>(text.front()) <= ' ') text.remove_prefix(1);
   while (!text.empty() && static_cast<unsigned char>(text.back()) <= ' ') text.remove_suffix(1);
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
@@ -43,7 +43,7 @@ void split(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   for (;;) {
     const auto comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
+    fields.push_back(bare_field(line.substr(0, comma)));
     if (comma == std::string_view::npos) return;
     line.remove_prefix(comma + 1);
   }
@@ -82,7 +82,7 @@ class Table {
   bool next(Row& row) {
     while (std::getline(in_, line_)) {
       ++number_;
-      if (trimmed(line_).empty()) continue;
+      if (bare_field(line_).empty()) continue;
       split(line_, fields_);
       row = {};
       row.camera = field(0);

@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "marey/calibrate/board/board_detector.h"
 #include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 #include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
@@ -47,9 +46,9 @@ calibrate::GroundFound board_on_ground(const Rig& rig, const calibrate::board::B
     turn += one.rotation;
     origin += one.translation / static_cast<double>(found.size());
   }
-  const Eigen::JacobiSVD<Matrix<3>> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const geometry::SingularValues3 svd = geometry::singular_values(turn);
   calibrate::GroundFound ground;
-  ground.ground_from_world = Rigid3{svd.matrixU() * svd.matrixV().transpose(), origin}.inverse();
+  ground.ground_from_world = Rigid3{svd.U * svd.V.transpose(), origin}.inverse();
   double square = 0;
   for (const Rigid3& one : found) square += (one.translation - origin).squaredNorm();
   ground.rms_mm = 1000 * std::sqrt(square / static_cast<double>(found.size()));

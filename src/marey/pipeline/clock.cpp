@@ -10,10 +10,10 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
-constexpr double kHalf = 0.505;   // of a frame
-constexpr double kFarthest = 60;  // px that a detection may move in a frame and still be found again
-constexpr int kAtOnce = 4;        // frames that a camera that detects is asked for
+constexpr double kInStep = 0.02;    // of a frame: what moves no marker by more than noise
+constexpr double kHalf = 0.505;     // of a frame
+constexpr double kFarthest = 60;    // px that a detection may move in a frame and still be found again
+constexpr int kDetectedAtOnce = 4;  // frames that a camera that detects is asked for
 
 std::optional<std::size_t> closest(const Vector<2>& place, const std::vector<Detection>& among) {
   std::optional<std::size_t> best;
@@ -76,7 +76,7 @@ bool Clock::begin() {
 
 void Clock::read(std::size_t number, Timestamp until, std::vector<CameraFrame>& read) {
   Lane& lane = lanes_[number];
-  const int at_once = feeds_[number].detector() != nullptr ? kAtOnce : 1;
+  const int at_once = feeds_[number].detector() != nullptr ? kDetectedAtOnce : 1;
   Timestamp last = lane.waiting.empty() ? Timestamp::min() : lane.waiting.back().frame.time;
   while (!lane.ended && (last <= until || std::ssize(read) < at_once)) {
     auto frame = feeds_[number].next();

@@ -14,11 +14,11 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/format/tracks/mot.h"
+#include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
 namespace {
 
-constexpr double kUsualRate = 25;
 /// The share of detections, by rank, that is too weak to begin a track (TrackerOptions::confident).
 constexpr double kWeakShare = 0.25;
 constexpr double kConfident = 0.5;

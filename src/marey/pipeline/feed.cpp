@@ -1,7 +1,6 @@
 #include "marey/pipeline/feed.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <deque>
 #include <filesystem>
@@ -16,20 +15,15 @@
 #include "marey/pipeline/detections_input.h"
 #include "marey/pipeline/read_ahead.h"
 #include "marey/pipeline/rig_sources.h"
+#include "marey/pipeline/stopwatch.h"
 #include "marey/source/open_source.h"
 #include "marey/source/region_source.h"
 
 namespace marey::pipeline {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 constexpr double kObservationRate = 100;  // Hz; of observations of which nobody says it
 constexpr double kJitter = 0.25;          // of a frame, by which times of files are rounded
-
-double since(SteadyClock::time_point begin) {
-  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
-}
 
 cv::Rect within(const cv::Rect& region, cv::Size picture, const std::string& source) {
   if ((region & cv::Rect({}, picture)) == region && region.area() > 0) return region;
@@ -212,22 +206,22 @@ void Feed::find(std::unique_ptr<detect::Detector> detector) {
 }
 
 std::optional<CameraFrame> Feed::next() {
-  const auto begin = SteadyClock::now();
+  const Stopwatch decoding;
   auto result = input_->next();
   if (!result) {
     state_ = FeedState::ended;
     return std::nullopt;
   }
   state_ = FeedState::live;
-  result->decode_s = since(begin);
+  result->decode_s = decoding.seconds();
   Frame& frame = result->frame;
   frame.camera = id_;
   if (options_.steady_times) frame.time = timestamp_from_seconds(steady(seconds(frame.time)));
   frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
   if (detector_ == nullptr) return result;
-  const auto decoded = SteadyClock::now();
+  const Stopwatch detecting;
   result->detections = detector_->detect(frame, {}).detections;
-  result->detect_s = since(decoded);
+  result->detect_s = detecting.seconds();
   return result;
 }
 

@@ -60,6 +60,8 @@ class Feed {
   Feed again() const;
   /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is.
   std::vector<Frame> sample(int count, double seconds, int most_frames) const;
+  /// What a detector learns the empty scene from: thirty frames of thirty seconds, of which 300 frames are read at most.
+  std::vector<Frame> sample_beginning() const { return sample(30, 30, 300); }
 
   /// What went wrong so far without stopping it, one sentence each, with the camera's name where it has one.
   std::vector<std::string> warnings() const;

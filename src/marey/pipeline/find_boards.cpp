@@ -10,7 +10,7 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr std::size_t kAtOnce = 16;  // frames
+constexpr std::size_t kFramesAtOnce = 16;  // frames
 
 }  // namespace
 
@@ -36,7 +36,7 @@ BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& de
   std::int64_t count = 0;
   while (auto next = feed.next()) {
     if (count++ % options.every == 0) batch.push_back(std::move(next->frame));
-    if (batch.size() < kAtOnce) continue;
+    if (batch.size() < kFramesAtOnce) continue;
     look();
     if (options.progress) options.progress(count, feed.info().frame_count);
   }

@@ -16,11 +16,6 @@ constexpr double kSmallest = 12;   // px; a smaller body has no shape
 constexpr double kBeyondArea = 5;  // m; who stands so far outside is followed until it is plain whether they come in
 constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of the foot, others' boxes where they like
 
-// A detector learns the empty scene from this many pictures, spread over this long a beginning.
-constexpr int kSamples = 30;
-constexpr double kSampledSeconds = 30;
-constexpr int kMostFramesRead = 300;
-
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
 detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
   const GroundView view(camera);
@@ -90,7 +85,7 @@ GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area
   }
   detector_ = std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), people);
   if (!options.prime) return;
-  std::vector<Frame> samples = feed.sample(kSamples, kSampledSeconds, kMostFramesRead);
+  std::vector<Frame> samples = feed.sample_beginning();
   for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
   detector_->prime(samples);
 }

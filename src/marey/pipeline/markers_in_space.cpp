@@ -1,7 +1,6 @@
 #include "marey/pipeline/markers_in_space.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/pipeline/set_labels.h"
 #include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/stopwatch.h"
 #include "marey/reconstruct/learned_noise.h"
 #include "marey/track/gap_filler.h"
 
@@ -20,12 +20,6 @@ namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
 constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
-
-using SteadyClock = std::chrono::steady_clock;
-
-double since(SteadyClock::time_point begin) {
-  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
-}
 
 /// What still waited for the end of gaps when the cameras had ended.
 class Waiting final : public InstantSource {
@@ -58,23 +52,23 @@ class MarkersInSpace final : public Stage {
   RecordingHeader header() const override { return header_; }
 
   std::span<const Instant> step(const FrameSet& frames) override {
-    const auto begin = SteadyClock::now();
+    const Stopwatch chain;
     see(frames);
     const reconstruct::Correspondences& found = correspond(frames);
-    const auto matched = SteadyClock::now();
-    corresponding_.add(std::chrono::duration<double>(matched - begin).count());
+    corresponding_.add(chain.seconds());
+    const Stopwatch tracking;
     points_.clear();
     for (const reconstruct::Placed& placed : found.points) {
       points_.push_back({.value = placed.point.position, .covariance = placed.point.covariance, .box = {}});
     }
     const auto tracks = tracker_->step(frames.time, points_);
     labels_.give(tracks);
-    tracking_.add(since(matched));
+    tracking_.add(tracking.seconds());
     filler_.add(instant_of(frames, found, tracks), tracks);
     known_.clear();
     while (auto instant = filler_.next()) known_.push_back(std::move(*instant));
     ++frames_;
-    chain_.add(since(begin));
+    chain_.add(chain.seconds());
     return known_;
   }
 

@@ -13,11 +13,6 @@
 namespace marey::pipeline {
 namespace {
 
-// A detector learns the empty scene from this many pictures, spread over this long a beginning.
-constexpr int kSamples = 30;
-constexpr double kSampledSeconds = 30;
-constexpr int kMostFramesRead = 300;
-
 std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
   std::vector<Expected> result;
   for (const Track<2>& track : tracks) {
@@ -85,7 +80,7 @@ class PeopleInPicture final : public Stage {
     if (feed.has_pictures() && feed.detector() == nullptr) {
       people_ =
           std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
-      if (!options.live) people_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
+      if (!options.live) people_->prime(feed.sample_beginning());
     }
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);

@@ -14,7 +14,7 @@ namespace {
 struct FreeFrame {
   void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
-using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
+using ScaledFrame = std::unique_ptr<AVFrame, FreeFrame>;
 
 /// Keeps the planes alive for as long as the Picture lives.
 std::shared_ptr<const void> share(const AVFrame& decoded) {
@@ -100,7 +100,7 @@ Picture PictureMaker::converted(const AVFrame& decoded, cv::Size size, bool full
   const bool full = full_range && !grey;
   SwsContext* scaler = scaler_->get({decoded.width, decoded.height, decoded.format, size.width, size.height, target, full});
   if (scaler == nullptr) return {};
-  const FramePtr result(av_frame_alloc());
+  const ScaledFrame result(av_frame_alloc());
   result->format = target;
   result->width = size.width;
   result->height = size.height;

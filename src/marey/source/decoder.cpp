@@ -21,7 +21,7 @@ namespace {
 
 using FormatPtr = std::unique_ptr<AVFormatContext, CDeleter<AVFormatContext, avformat_close_input>>;
 using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>>;
-using FramePtr = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
+using DecodedFrame = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
 using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 
 /// A decoder that is out of packets may refuse this many pictures in a row before it is given up.
@@ -70,7 +70,7 @@ struct Decoder::Parts {
   CodecPtr codec;
   AVStream* stream = nullptr;
   PacketPtr packet{av_packet_alloc()};
-  FramePtr frame{av_frame_alloc()};
+  DecodedFrame frame{av_frame_alloc()};
   PictureMaker maker;
   cv::Size coded_size;
   int turn = 0;

@@ -13,6 +13,9 @@ struct AVFrame;
 
 namespace marey::source {
 
+/// Hz: what a file without a rate is counted at.
+constexpr double kUsualRate = 25;
+
 /// FFmpeg's libraries behind five verbs: opens the best video stream of a file and yields its pictures in order of display.
 /// What is damaged is passed over and counted; only a file that cannot be opened at all throws.
 class Decoder {

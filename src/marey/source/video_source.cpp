@@ -12,9 +12,6 @@
 namespace marey::source {
 namespace {
 
-/// What a file without a rate is counted at.
-constexpr double kUsualRate = 25;
-
 class VideoSource final : public Source {
  public:
   VideoSource(const std::string& path, std::optional<double> rate_hz) : decoder_(path), given_rate_(rate_hz) {

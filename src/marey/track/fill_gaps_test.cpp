@@ -11,7 +11,7 @@ Timestamp frame_time(int frame) {
 
 /// A target on a parabola, seen where `seen(frame)`.
 template <typename Seen>
-Recording record(int frames, Seen&& seen) {
+Recording record_of(int frames, Seen&& seen) {
   Recording recording;
   for (int i = 0; i < frames; ++i) {
     const double t = i / 30.0;
@@ -30,7 +30,7 @@ Recording record(int frames, Seen&& seen) {
 }
 
 TEST(FillGaps, AGapIsFilledFromBothEnds) {
-  Recording recording = record(30, [](int i) { return i < 10 || i >= 20; });
+  Recording recording = record_of(30, [](int i) { return i < 10 || i >= 20; });
   const auto rows = fill_gaps(recording);
   ASSERT_EQ(rows.size(), 30u);
   for (const TrackRow& row : rows) {
@@ -43,7 +43,7 @@ TEST(FillGaps, AGapIsFilledFromBothEnds) {
 }
 
 TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
-  Recording recording = record(30, [](int i) { return i >= 5 && i < 12; });
+  Recording recording = record_of(30, [](int i) { return i >= 5 && i < 12; });
   const auto rows = fill_gaps(recording);
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows.front().frame, 5);
@@ -51,9 +51,9 @@ TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
 }
 
 TEST(FillGaps, ALongGapStaysOpenAndAFewSightingsAreNobody) {
-  Recording long_gap = record(90, [](int i) { return i < 5 || i >= 80; });
+  Recording long_gap = record_of(90, [](int i) { return i < 5 || i >= 80; });
   EXPECT_EQ(fill_gaps(long_gap).size(), 15u);
-  Recording brief = record(10, [](int i) { return i < 2; });
+  Recording brief = record_of(10, [](int i) { return i < 2; });
   EXPECT_TRUE(fill_gaps(brief).empty());
 }
 

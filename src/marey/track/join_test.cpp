@@ -11,7 +11,7 @@
 namespace marey::track {
 namespace {
 
-constexpr double rate = 10;  // Hz
+constexpr double join_rate = 10;  // Hz
 
 Track<2> walker(int id, double x, double y, Track<2>::State state = Track<2>::State::observed, bool confirmed = true) {
   Track<2> track;
@@ -24,11 +24,11 @@ Track<2> walker(int id, double x, double y, Track<2>::State state = Track<2>::St
   return track;
 }
 
-Recording record(int frames, auto&& tracks_of) {
+Recording record_tracks(int frames, auto&& tracks_of) {
   Recording recording;
   for (int k = 0; k < frames; ++k) {
     const std::vector<Track<2>> tracks = tracks_of(k);
-    recording.add(k, timestamp_from_seconds(k / rate), tracks);
+    recording.add(k, timestamp_from_seconds(k / join_rate), tracks);
   }
   return recording;
 }
@@ -40,7 +40,7 @@ std::set<int> ids(const std::vector<TrackRow>& rows) {
 }
 
 TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
-  Recording recording = record(60, [](int k) {
+  Recording recording = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(3, 100 + 5 * k, 200));
     if (k >= 35) tracks.push_back(walker(7, 100 + 5 * k, 201));
@@ -56,7 +56,7 @@ TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
 }
 
 TEST(Join, OneWhoComesFromElsewhereIsAnother) {
-  Recording recording = record(60, [](int k) {
+  Recording recording = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(1, 100 + 5 * k, 200));
     if (k >= 35) tracks.push_back(walker(2, 600 - 5 * k, 330));
@@ -66,7 +66,7 @@ TEST(Join, OneWhoComesFromElsewhereIsAnother) {
 }
 
 TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
-  Recording recording = record(60, [](int k) {
+  Recording recording = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     const bool hidden = k >= 20 && k < 32;
     if (!hidden) {
@@ -85,7 +85,7 @@ TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
 }
 
 TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
-  Recording recording = record(30, [](int k) {
+  Recording recording = record_tracks(30, [](int k) {
     std::vector<Track<2>> tracks{walker(1, 100 + 5 * k, 200)};
     if (k < 20) tracks.push_back(walker(2, 400, 300, Track<2>::State::observed, false));
     if (k == 10 || k == 11) tracks.push_back(walker(3, 600, 100));
@@ -98,12 +98,12 @@ TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
 
 TEST(Join, FirstFramesBeforeConfirmationAreReported) {
   Recording recording =
-      record(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
+      record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
   EXPECT_EQ(join(recording).front().frame, 0);
 }
 
 TEST(Join, TailsWithoutAnObservationAreCut) {
-  Recording recording = record(30, [](int k) {
+  Recording recording = record_tracks(30, [](int k) {
     return std::vector{walker(1, 100 + 5 * k, 200, k < 18 ? Track<2>::State::observed : Track<2>::State::predicted)};
   });
   EXPECT_EQ(join(recording).back().frame, 17);
@@ -119,7 +119,7 @@ TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
 }
 
 TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
-  Recording recording = record(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
+  Recording recording = record_tracks(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
   const auto rows = join(recording, {.smoothing = 0.3});
   for (const TrackRow& row : rows) {
     if (row.frame < 10 || row.frame >= 90) continue;

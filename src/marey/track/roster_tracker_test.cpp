@@ -20,7 +20,7 @@ std::vector<Observation<2>> at(const Places& places) {
   return seen;
 }
 
-Timestamp frame(int index) {
+Timestamp time_at_30_hz(int index) {
   return timestamp_from_seconds(index / 30.0);
 }
 
@@ -40,7 +40,7 @@ Vector<2> place_of(std::span<const Track<2>> tracks, const std::string& label) {
 
 TEST(RosterTracker, LabelsGoFromLeftToRightAndInOneColumnFromTheTop) {
   const auto tracker = make_roster_tracker<2>(with_labels({"a", "b", "c"}));
-  const auto tracks = tracker->step(frame(0), at({{300, 10}, {50, 90}, {50, 20}}));
+  const auto tracks = tracker->step(time_at_30_hz(0), at({{300, 10}, {50, 90}, {50, 20}}));
   EXPECT_EQ(place_of(tracks, "a"), Vector<2>(50, 20));
   EXPECT_EQ(place_of(tracks, "b"), Vector<2>(50, 90));
   EXPECT_EQ(place_of(tracks, "c"), Vector<2>(300, 10));
@@ -48,21 +48,21 @@ TEST(RosterTracker, LabelsGoFromLeftToRightAndInOneColumnFromTheTop) {
 
 TEST(RosterTracker, LabelsThatDoNotFitAreRefused) {
   EXPECT_THROW(make_roster_tracker<2>(with_labels({"a", "a"})), Error);
-  EXPECT_THROW(make_roster_tracker<2>(with_labels({"a", "b"}))->step(frame(0), at({{1, 1}})), Error);
+  EXPECT_THROW(make_roster_tracker<2>(with_labels({"a", "b"}))->step(time_at_30_hz(0), at({{1, 1}})), Error);
 }
 
 TEST(RosterTracker, TimesMustGrow) {
   const auto tracker = make_roster_tracker<2>({});
-  tracker->step(frame(3), at({{1, 1}}));
-  EXPECT_THROW(tracker->step(frame(3), at({{1, 1}})), Error);
+  tracker->step(time_at_30_hz(3), at({{1, 1}}));
+  EXPECT_THROW(tracker->step(time_at_30_hz(3), at({{1, 1}})), Error);
 }
 
 TEST(RosterTracker, AMarkerThatComesBackAfterTwoSecondsHasItsName) {
   const auto tracker = make_roster_tracker<2>(with_labels({"hip", "knee"}));
-  for (int i = 0; i < 30; ++i) tracker->step(frame(i), at({{100 + 2.0 * i, 100}, {400, 300}}));
-  for (int i = 30; i < 90; ++i) tracker->step(frame(i), at({{400, 300}}));
+  for (int i = 0; i < 30; ++i) tracker->step(time_at_30_hz(i), at({{100 + 2.0 * i, 100}, {400, 300}}));
+  for (int i = 30; i < 90; ++i) tracker->step(time_at_30_hz(i), at({{400, 300}}));
   std::span<const Track<2>> tracks;
-  for (int i = 90; i < 96; ++i) tracks = tracker->step(frame(i), at({{400, 300}, {250 - 2.0 * (i - 90), 180}}));
+  for (int i = 90; i < 96; ++i) tracks = tracker->step(time_at_30_hz(i), at({{400, 300}, {250 - 2.0 * (i - 90), 180}}));
   EXPECT_NEAR((place_of(tracks, "hip") - Vector<2>(240, 180)).norm(), 0, 1);
   EXPECT_NEAR((place_of(tracks, "knee") - Vector<2>(400, 300)).norm(), 0, 1);
 }
@@ -74,7 +74,7 @@ TEST(RosterTracker, TwoThatPassThroughEachOtherKeepTheirCourses) {
     const Vector<2> a(100 + 4.0 * i, 200), b(340 - 4.0 * i, 203);
     // While they overlap by more than half, one blob is seen between them.
     const bool merged = (a - b).norm() < 6;
-    tracks = tracker->step(frame(i), merged ? at({(a + b) / 2}) : at({a, b}));
+    tracks = tracker->step(time_at_30_hz(i), merged ? at({(a + b) / 2}) : at({a, b}));
   }
   EXPECT_NEAR(place_of(tracks, "right").x(), 340, 1);
   EXPECT_NEAR(place_of(tracks, "left").x(), 100, 1);
@@ -86,7 +86,7 @@ TEST(RosterTracker, ASharpCornerAtSpeedLosesNobody) {
   std::span<const Track<2>> tracks;
   for (int i = 0; i < 40; ++i) {
     place += (i / 5) % 2 == 0 ? Vector<2>(25, 10) : Vector<2>(-22, 14);
-    tracks = tracker->step(frame(i), at({place}));
+    tracks = tracker->step(time_at_30_hz(i), at({place}));
     ASSERT_EQ(tracks.size(), 1u);
     ASSERT_TRUE(tracks[0].observation) << "frame " << i;
   }
@@ -98,7 +98,7 @@ TEST(RosterTracker, ALightOfOneFrameIsNotReported) {
     Places places{{100 + 3.0 * i, 100}};
     if (i == 8) places.push_back({500, 400});
     int confirmed = 0;
-    for (const Track<2>& track : tracker->step(frame(i), at(places))) confirmed += track.confirmed ? 1 : 0;
+    for (const Track<2>& track : tracker->step(time_at_30_hz(i), at(places))) confirmed += track.confirmed ? 1 : 0;
     EXPECT_EQ(confirmed, 1) << "frame " << i;
   }
 }
@@ -108,7 +108,7 @@ TEST(RosterTracker, TheSameInputGivesTheSameBits) {
     const auto tracker = make_roster_tracker<2>({});
     Vector<2> last;
     for (int i = 0; i < 50; ++i) {
-      for (const Track<2>& track : tracker->step(frame(i), at({{100 + 5.0 * i, 90 + i % 3}, {400 - 4.0 * i, 95}})))
+      for (const Track<2>& track : tracker->step(time_at_30_hz(i), at({{100 + 5.0 * i, 90 + i % 3}, {400 - 4.0 * i, 95}})))
         last = track.position;
     }
     return last;
@@ -118,9 +118,9 @@ TEST(RosterTracker, TheSameInputGivesTheSameBits) {
 
 TEST(RosterTracker, ExpectedDoesNotMoveAnybody) {
   const auto tracker = make_roster_tracker<2>({});
-  for (int i = 0; i < 10; ++i) tracker->step(frame(i), at({{100 + 5.0 * i, 90}}));
-  const Vector<2> ahead = tracker->expected(frame(12))[0].position;
-  EXPECT_EQ(tracker->expected(frame(12))[0].position, ahead);
+  for (int i = 0; i < 10; ++i) tracker->step(time_at_30_hz(i), at({{100 + 5.0 * i, 90}}));
+  const Vector<2> ahead = tracker->expected(time_at_30_hz(12))[0].position;
+  EXPECT_EQ(tracker->expected(time_at_30_hz(12))[0].position, ahead);
   EXPECT_NEAR(ahead.x(), 160, 2);
 }
 

@@ -16,8 +16,8 @@
 namespace marey::track {
 namespace {
 
-constexpr double rate = 10;  // Hz
-constexpr double tall = 80;  // px
+constexpr double frame_rate = 10;  // Hz
+constexpr double tall = 80;        // px
 
 using Seen = std::vector<Observation<2>>;
 
@@ -33,7 +33,7 @@ Observation<2> person(double x, double y, double score = 0.9, double width = 0.4
 void run(int frames, const std::function<Seen(int)>& scene, const std::function<void(int, std::span<const Track<2>>)>& look,
          const TrackerOptions& options = {}) {
   const auto tracker = make_tracker(options);
-  for (int frame = 0; frame < frames; ++frame) look(frame, tracker->step(timestamp_from_seconds(frame / rate), scene(frame)));
+  for (int frame = 0; frame < frames; ++frame) look(frame, tracker->step(timestamp_from_seconds(frame / frame_rate), scene(frame)));
 }
 
 /// The confirmed track nearest to a place, if any lies within half a body.
@@ -150,12 +150,12 @@ TEST(Tracker, BirthTakesEvidenceAndDeathTheLackOfIt) {
       });
   EXPECT_FALSE(confirmed_at_once);
   EXPECT_GT(last_alive, 22);
-  EXPECT_LT(last_alive, 20 + rate * TrackerOptions{}.patience + 1);
+  EXPECT_LT(last_alive, 20 + frame_rate * TrackerOptions{}.patience + 1);
 }
 
 TEST(Tracker, NoTargetJumpsFasterThanTheLimit) {
   std::optional<TrackId> before, after;
-  const double step = 1.5 * TrackerOptions{}.max_speed * tall / rate;  // px a frame
+  const double step = 1.5 * TrackerOptions{}.max_speed * tall / frame_rate;  // px a frame
   run(
       20, [&](int k) { return Seen{person(k < 10 ? 100 : 100 + step * 3, 200)}; },
       [&](int k, std::span<const Track<2>> tracks) {
@@ -246,9 +246,9 @@ TEST(Tracker, TheOrderOfObservationsDoesNotMatter) {
   const auto backward = make_tracker({});
   for (int k = 0; k < 60; ++k) {
     Seen seen = noisy_crowd(random, k);
-    const auto a = forward->step(timestamp_from_seconds(k / rate), seen);
+    const auto a = forward->step(timestamp_from_seconds(k / frame_rate), seen);
     std::reverse(seen.begin(), seen.end());
-    const auto b = backward->step(timestamp_from_seconds(k / rate), seen);
+    const auto b = backward->step(timestamp_from_seconds(k / frame_rate), seen);
     ASSERT_EQ(a.size(), b.size()) << k;
     const auto place = [](const Track<2>& track) { return std::pair(track.position.x(), track.position.y()); };
     std::set<std::pair<double, double>> places_a, places_b;
@@ -314,7 +314,7 @@ TEST(Tracker, SaysWhichTrackEachObservationBelongsTo) {
   const auto tracker = make_tracker({});
   for (int k = 0; k < 5; ++k) {
     const Seen seen{person(400 - 3.0 * k, 200), person(100 + 3.0 * k, 200)};
-    const auto tracks = tracker->step(timestamp_from_seconds(k / rate), seen);
+    const auto tracks = tracker->step(timestamp_from_seconds(k / frame_rate), seen);
     ASSERT_EQ(tracker->matches().size(), 2U);
     for (const ObservationMatch& match : tracker->matches()) {
       EXPECT_EQ(match.view, 0);

@@ -25,7 +25,7 @@ namespace {
 
 using Control = std::array<double, 7>;
 
-constexpr int kRounds = 6;  // of judging outliers and clocks
+constexpr int kRejectionRounds = 6;  // of judging outliers and clocks
 
 struct View {
   std::size_t camera = 0;
@@ -329,7 +329,7 @@ BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> ca
   Motion motion(board, cameras, poses, start, options);
   motion.solve(2);
   motion.expect_jitter();
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRejectionRounds; ++round) {
     motion.solve(round == 0 ? 2 : 0);
     motion.judge();
   }

@@ -28,6 +28,11 @@ class Noise {
   std::uint64_t state_;
 };
 
+/// A place in the cube round the origin with sides of twice `half`.
+inline Vector<3> in_cube(Noise& noise, double half) {
+  return {noise.uniform(-half, half), noise.uniform(-half, half), noise.uniform(-half, half)};
+}
+
 /// What a camera sees of a board that stands at `world_from_board`; nothing where a corner is out of the picture. With a rolling
 /// shutter, rows are exposed one after the other: `pose_of(share)` is the board's pose at that share of the picture's height, -0.5
 /// to 0.5.

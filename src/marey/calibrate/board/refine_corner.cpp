@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLeastHalf = 3, kMostHalf = 12;  // px
 constexpr double kShare = 0.4;                 // of the way to the next corner
-constexpr int kRounds = 30;
+constexpr int kMostIterations = 30;
 constexpr double kEdgeWidth = 1.5;    // px: how far a blurred edge reaches to each side
 constexpr double kLeastCross = 0.02;  // of det/trace²: below, all edges run one way
 
@@ -59,7 +59,7 @@ std::optional<Vector<2>> refine_corner(const cv::Mat& grey, const Vector<2>& sta
   const double farthest = std::max(1.5, 0.3 * spacing);
   Vector<2> p = start;
   double reach = std::max(kEdgeWidth, half / 3.0);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostIterations; ++round) {
     if (!within(grey, p, half)) return std::nullopt;
     const Sums sums = sums_around(grey, p, half, reach);
     const double trace = sums.A.trace();

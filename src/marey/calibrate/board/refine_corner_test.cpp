@@ -9,13 +9,13 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kSide = 64;
+constexpr int kPatchSide = 64;
 
 /// Four squares that meet at `corner`, turned by `turn` rad, each pixel the mean of 8 × 8 places; grey levels 50 and 200.
 cv::Mat four_squares(const Vector<2>& corner, double turn, Noise* noise = nullptr, double sigma = 0) {
-  cv::Mat grey(kSide, kSide, CV_8UC1);
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+  cv::Mat grey(kPatchSide, kPatchSide, CV_8UC1);
+  for (int y = 0; y < kPatchSide; ++y) {
+    for (int x = 0; x < kPatchSide; ++x) {
       int bright = 0;
       for (int i = 0; i < 64; ++i) {
         const Vector<2> d = Vector<2>(x - 0.5 + (i % 8 + 0.5) / 8, y - 0.5 + (i / 8 + 0.5) / 8) - corner;  // NOLINT
@@ -31,8 +31,8 @@ cv::Mat four_squares(const Vector<2>& corner, double turn, Noise* noise = nullpt
 
 /// One straight edge through the middle.
 cv::Mat edge() {
-  cv::Mat grey(kSide, kSide, CV_8UC1, cv::Scalar(50));
-  grey.colRange(kSide / 2, kSide).setTo(200);
+  cv::Mat grey(kPatchSide, kPatchSide, CV_8UC1, cv::Scalar(50));
+  grey.colRange(kPatchSide / 2, kPatchSide).setTo(200);
   return grey;
 }
 
@@ -50,7 +50,7 @@ TEST(RefineCorner, FindsTheCornerToAFewHundredthsOfAPixel) {
 
 TEST(RefineCorner, NoCornerIsNothing) {
   EXPECT_FALSE(refine_corner(edge(), {32, 32}, 20)) << "an edge runs one way";
-  EXPECT_FALSE(refine_corner(cv::Mat(kSide, kSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 20)) << "nothing at all";
+  EXPECT_FALSE(refine_corner(cv::Mat(kPatchSide, kPatchSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 20)) << "nothing at all";
   EXPECT_FALSE(refine_corner(four_squares({32, 32}, 0.2), {3, 3}, 20)) << "at the picture's border";
   EXPECT_FALSE(refine_corner(four_squares({32, 32}, 0.2), {44, 20}, 20)) << "the corner is out of reach";
 }
@@ -58,7 +58,7 @@ TEST(RefineCorner, NoCornerIsNothing) {
 TEST(OppositeLikeness, TellsCornersFromEdges) {
   for (const double turn : {0.0, 0.3, 0.7}) EXPECT_GT(opposite_likeness(four_squares({32.3, 31.8}, turn), {32.3, 31.8}, 8), 0.9);
   EXPECT_LT(opposite_likeness(edge(), {31.5, 32}, 8), -0.8);
-  EXPECT_EQ(opposite_likeness(cv::Mat(kSide, kSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 8), 0) << "no contrast";
+  EXPECT_EQ(opposite_likeness(cv::Mat(kPatchSide, kPatchSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 8), 0) << "no contrast";
   EXPECT_EQ(opposite_likeness(four_squares({32, 32}, 0), {2, 2}, 8), 0) << "the picture ends";
 }
 

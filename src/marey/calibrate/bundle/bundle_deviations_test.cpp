@@ -12,10 +12,6 @@ namespace {
 
 using board::Noise;
 
-Vector<3> in_cube(Noise& noise, double half) {
-  return {noise.uniform(-half, half), noise.uniform(-half, half), noise.uniform(-half, half)};
-}
-
 /// Three cameras round wands; the first camera's pose is the frame.
 Bundle three_cameras(Noise& noise, int wands) {
   Bundle bundle;
@@ -27,7 +23,7 @@ Bundle three_cameras(Noise& noise, int wands) {
     bundle.cameras.back().refine_pose = c > 0;
   }
   for (int b = 0; b < wands; ++b) {
-    bundle.bodies.emplace_back(WandPose{in_cube(noise, 0.7), in_cube(noise, 1).normalized()});
+    bundle.bodies.emplace_back(WandPose{board::in_cube(noise, 0.7), board::in_cube(noise, 1).normalized()});
     for (int c = 0; c < 3; ++c) {
       for (int m = 0; m < 3; ++m) bundle.observations.push_back({c, b, m});
     }
@@ -45,7 +41,7 @@ TEST(BundleDeviations, TheCentresDerivativesAreThoseOfDifferences) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Noise noise(seed);
-    const Vector<3> turn = in_cube(noise, 1.5), shift = in_cube(noise, 3);
+    const Vector<3> turn = board::in_cube(noise, 1.5), shift = board::in_cube(noise, 3);
     const auto centre = [](const Eigen::Matrix<double, 6, 1>& p) {
       return Vector<3>(-(geometry::rotation_from(p.head<3>()).transpose() * p.tail<3>()));
     };

@@ -13,10 +13,6 @@ namespace {
 
 using board::Noise;
 
-Vector<3> in_cube(Noise& noise, double half) {
-  return {noise.uniform(-half, half), noise.uniform(-half, half), noise.uniform(-half, half)};
-}
-
 const std::vector<geometry::Lens> kLenses{geometry::BrownLens{{900, 910}, {640, 480}, {-0.2, 0.05, 0.001, -0.001, 0.01}},
                                           geometry::FisheyeLens{{500, 505}, {640, 480}, {0.02, -0.01, 0.003, 0}},
                                           geometry::TsaiLens{{900, 905}, {640, 480}, {-0.1}}};
@@ -34,7 +30,7 @@ TEST(BundleResidual, NumbersComeBackAsTheyWere) {
     for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_NEAR(again[i], numbers[i], 1e-12) << i;
   }
   for (int i = 0; i < 20; ++i) {
-    const Rigid3 pose{geometry::rotation_from(in_cube(noise, 1.7)), in_cube(noise, 5)};
+    const Rigid3 pose{geometry::rotation_from(board::in_cube(noise, 1.7)), board::in_cube(noise, 5)};
     const Rigid3 back = pose_from(numbers_of(pose).data());
     EXPECT_LT((back.rotation - pose.rotation).norm() + (back.translation - pose.translation).norm(), 1e-9);
     for (const Body& body :
@@ -53,7 +49,7 @@ TEST(BundleResidual, TheLeftJacobianIsThatOfDifferences) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Noise noise(seed);
-    const Vector<3> turn = seed == 1 ? Vector<3>(0, 0, 0) : in_cube(noise, 1.5), v = in_cube(noise, 2);
+    const Vector<3> turn = seed == 1 ? Vector<3>(0, 0, 0) : board::in_cube(noise, 1.5), v = board::in_cube(noise, 2);
     const Vector<3> turned = geometry::rotation_from(turn) * v;
     const Matrix<3> J = left_jacobian(turn);
     for (int k = 0; k < 3; ++k) {

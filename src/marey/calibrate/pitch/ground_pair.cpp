@@ -21,8 +21,8 @@ constexpr double kSegment_s = 2;                    // long enough to show how a
 constexpr double kStride_s = 1;                     // from one segment to the next: they overlap,
 constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
 constexpr double kSample_s = 0.2;                   // between the places that are compared
-constexpr int kSamples = 10;                        // of a segment,
-constexpr std::size_t kLeastSamples = 5;            // where one of both was not seen throughout
+constexpr int kSegmentSamples = 10;                 // of a segment,
+constexpr std::size_t kLeastSegmentSamples = 5;     // where one of both was not seen throughout
 constexpr double kMemory_s = 0.5;                   // errors hang together for about so long
 constexpr double kFloor_m = 0.05;                   // noise that a smoothed place has at least
 constexpr double kDifferent_m = 1.0;                // how much the distance of two different people changes within a segment
@@ -88,11 +88,11 @@ void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (double begin = a[i].begin_s(); begin < a[i].end_s(); begin += kStride_s) {
       Segment segment{i, {}, {}};
-      for (int k = 0; k < kSamples; ++k) {
+      for (int k = 0; k < kSegmentSamples; ++k) {
         const double time = begin + kSample_s * k;
         if (const auto state = a[i].at(time)) segment.times_s.push_back(time), segment.states.push_back(*state);
       }
-      if (segment.states.size() < kLeastSamples) continue;
+      if (segment.states.size() < kLeastSegmentSamples) continue;
       const auto common = std::count_if(segment.states.begin(), segment.states.end(),
                                         [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.place)); });
       const double common_s = kWeight * kSample_s * static_cast<double>(common);
@@ -122,7 +122,7 @@ std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const
     square += apart * apart.transpose();
     noise += noise_scale_ * (segment.states[k].noise + there->noise);
   }
-  if (count < kLeastSamples) return std::nullopt;
+  if (count < kLeastSegmentSamples) return std::nullopt;
   mean /= count;
   noise = noise / count + kFloor_m * kFloor_m * Matrix<2>::Identity();
   const Matrix<2> spread = square / count - mean * mean.transpose();

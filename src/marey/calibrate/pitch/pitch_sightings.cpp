@@ -14,11 +14,11 @@ namespace {
 constexpr double kStep = 0.5;         // px between readings along a normal
 constexpr double kBlur = 2;           // px: how much optics and compression widen paint
 constexpr double kLeastContrast = 3;  // grey levels above the brighter side
-constexpr double kPaintSigma = 0.35;  // px: how well a peak's place is known
+constexpr double kPeakSigma = 0.35;   // px: how well a peak's place is known
 constexpr double kTolerance = 0.8;    // units: off the smooth curve
 constexpr double kFaint = 0.3;        // of the contrast of a line's brighter fifth
 constexpr double kLeastShare = 0.25;  // of a line's samples in the picture
-constexpr int kLeastSamples = 6;
+constexpr int kLeastPeaks = 6;
 constexpr int kDraws = 300;
 constexpr std::size_t kTrail = 12;       // samples that predict where paint goes on
 constexpr int kLongestGap = 8;           // samples without paint, as where a person stood
@@ -177,7 +177,7 @@ std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t sam
   }
   for (int round = 0; round < kBendings && best.size() > 2 * kBent; ++round)
     best = near(fit(all, best, round == 0 ? kParabola : kBent));
-  if (best.size() < std::max<std::size_t>(kLeastSamples, static_cast<std::size_t>(kLeastShare * static_cast<double>(samples))))
+  if (best.size() < std::max<std::size_t>(kLeastPeaks, static_cast<std::size_t>(kLeastShare * static_cast<double>(samples))))
     return {};
   return best;
 }
@@ -224,13 +224,13 @@ void find_piece(const cv::Mat& luma, const std::vector<Sample>& samples, int lin
                             offset / samples[i].unit(), contrast});
   }
   drop_faint(candidates);
-  if (candidates.size() < static_cast<std::size_t>(kLeastSamples)) return;
+  if (candidates.size() < static_cast<std::size_t>(kLeastPeaks)) return;
   std::vector<int> paint = on_one_curve(candidates, samples.size(), reach);
   for (const int step : {1, -1}) walk_on(candidates, paint, step);
   for (const int which : paint) {
     const Sample& sample = samples[candidates[which].sample];
     found.push_back({sample.ground, sample.pixel + candidates[which].offset * sample.unit() * sample.normal, sample.normal,
-                     sample.width / geometry::kPitchLineWidth, kPaintSigma, line});
+                     sample.width / geometry::kPitchLineWidth, kPeakSigma, line});
   }
 }
 

@@ -8,16 +8,17 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-const cv::Size kSize(960, 540);
-const geometry::PitchSize kPitch{105, 68};
+const cv::Size kPaintedSize(960, 540);
+const geometry::PitchSize kPaintedPitch{105, 68};
 
-Camera on_the_stand(const Vector<3>& off = {0, 0, 0}) {
-  return {geometry::BrownLens{{800, 800}, {479.5, 269.5}, {}}, board::looking(Vector<3>(30, -15, 14) + off, {30, 30, 0}), kSize};
+Camera above_the_corner(const Vector<3>& off = {0, 0, 0}) {
+  return {geometry::BrownLens{{800, 800}, {479.5, 269.5}, {}}, board::looking(Vector<3>(30, -15, 14) + off, {30, 30, 0}),
+          kPaintedSize};
 }
 
 /// Grass with the lines painted as wide as they are where the camera sees them, drawn in sixteenths of a pixel.
 cv::Mat painted(const Camera& camera, const std::vector<geometry::PitchLine>& lines) {
-  cv::Mat luma(kSize, CV_8UC1, cv::Scalar(80));
+  cv::Mat luma(kPaintedSize, CV_8UC1, cv::Scalar(80));
   for (const geometry::PitchLine& line : lines) {
     for (std::size_t i = 1; i < line.points.size(); ++i) {
       std::vector<cv::Point> corners;
@@ -36,12 +37,12 @@ cv::Mat painted(const Camera& camera, const std::vector<geometry::PitchLine>& li
 }
 
 const std::vector<geometry::PitchLine>& lines() {
-  static const auto all = geometry::pitch_lines(kPitch, 0.25);
+  static const auto all = geometry::pitch_lines(kPaintedPitch, 0.25);
   return all;
 }
 
 TEST(PitchSightings, PaintIsFoundWhereItIs) {
-  const Camera truth = on_the_stand();
+  const Camera truth = above_the_corner();
   const auto found = find_lines(painted(truth, lines()), truth, lines(), 10);
   ASSERT_GT(found.size(), 200U);
   std::vector<double> off;
@@ -57,7 +58,7 @@ TEST(PitchSightings, PaintIsFoundWhereItIs) {
 }
 
 TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
-  const Camera truth = on_the_stand(), guess = on_the_stand({0.3, 0.2, 0.1});
+  const Camera truth = above_the_corner(), guess = above_the_corner({0.3, 0.2, 0.1});
   const auto found = find_lines(painted(truth, lines()), guess, lines(), 20);
   ASSERT_GT(found.size(), 150U);
   std::vector<double> expected, seen;
@@ -73,11 +74,11 @@ TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
 }
 
 TEST(PitchSightings, BareGrassAndNoiseShowNoLine) {
-  const Camera camera = on_the_stand();
-  EXPECT_TRUE(find_lines(cv::Mat(kSize, CV_8UC1, cv::Scalar(80)), camera, lines(), 10).empty());
+  const Camera camera = above_the_corner();
+  EXPECT_TRUE(find_lines(cv::Mat(kPaintedSize, CV_8UC1, cv::Scalar(80)), camera, lines(), 10).empty());
   EXPECT_TRUE(find_lines(painted(camera, lines()), camera, {}, 10).empty());
   board::Noise noise(5);
-  cv::Mat rough(kSize, CV_8UC1);
+  cv::Mat rough(kPaintedSize, CV_8UC1);
   for (int y = 0; y < rough.rows; ++y) {
     for (int x = 0; x < rough.cols; ++x) rough.at<unsigned char>(y, x) = cv::saturate_cast<unsigned char>(80 + noise.gaussian(2));
   }
@@ -85,8 +86,8 @@ TEST(PitchSightings, BareGrassAndNoiseShowNoLine) {
 }
 
 TEST(PitchSightings, AStripeThatIsNoPaintIsNotTaken) {
-  const Camera camera = on_the_stand();
-  cv::Mat luma(kSize, CV_8UC1, cv::Scalar(80));
+  const Camera camera = above_the_corner();
+  cv::Mat luma(kPaintedSize, CV_8UC1, cv::Scalar(80));
   luma.colRange(300, 420).setTo(110);  // the mower's
   EXPECT_LT(find_lines(luma, camera, lines(), 10).size(), 10U);
 }

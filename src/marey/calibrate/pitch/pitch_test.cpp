@@ -14,18 +14,18 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr geometry::PitchSize kPitch{105, 68};
-const cv::Size kSize(1536, 864);
+constexpr geometry::PitchSize kUsualPitch{105, 68};
+const cv::Size kClickedSize(1536, 864);
 
 /// On a stand at the half-way line, 15 m off, 8 m up, turned towards one goal; the world's y points away from the stand.
-Camera on_the_stand(double turn) {
+Camera turned_on_the_stand(double turn) {
   const double tilt = 0.12;
   const Vector<3> ahead(std::sin(turn) * std::cos(tilt), std::cos(turn) * std::cos(tilt), -std::sin(tilt));
   const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
   Matrix<3> rotation;
   rotation << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
   const geometry::BrownLens lens{{1050, 1050}, {772, 428}, {-0.33, 0.12, 0, 0, -0.015}};
-  return {lens, {rotation, -rotation * Vector<3>(52, -15, 8)}, kSize};
+  return {lens, {rotation, -rotation * Vector<3>(52, -15, 8)}, kClickedSize};
 }
 
 /// What a user clicks: corners and crossings in view, `sigma` px off. `left_handed`: his y grows towards the camera.
@@ -46,18 +46,18 @@ std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_han
 
 /// Grass with the lines painted on it: every pixel looks at its own place on the ground, 4 × 4 times.
 cv::Mat painted(const Camera& camera) {
-  cv::Mat picture(kSize, CV_8UC1, cv::Scalar(90));
+  cv::Mat picture(kClickedSize, CV_8UC1, cv::Scalar(90));
   const GroundView view(camera);
-  for (int y = 0; y < kSize.height; ++y) {
-    for (int x = 0; x < kSize.width; ++x) {
+  for (int y = 0; y < kClickedSize.height; ++y) {
+    for (int x = 0; x < kClickedSize.width; ++x) {
       const auto middle = view.place({static_cast<double>(x), static_cast<double>(y)});
       if (!middle) continue;
       const double pixel = std::max(middle->by_pixel.col(0).norm(), middle->by_pixel.col(1).norm());
-      if (pixel > 5 || geometry::distance_to_line(kPitch, middle->ground) > 0.06 + pixel) continue;
+      if (pixel > 5 || geometry::distance_to_line(kUsualPitch, middle->ground) > 0.06 + pixel) continue;
       int white = 0;
       for (int i = 0; i < 16; ++i) {
         const auto place = view.place({x - 0.375 + i % 4 * 0.25, y - 0.375 + i / 4 * 0.25});
-        if (place) white += geometry::distance_to_line(kPitch, place->ground) < 0.06;
+        if (place) white += geometry::distance_to_line(kUsualPitch, place->ground) < 0.06;
       }
       picture.at<unsigned char>(y, x) = static_cast<unsigned char>(90 + 110 * white / 16);
     }
@@ -83,9 +83,9 @@ double worst_on_the_ground(const Camera& found, const Camera& truth, const Matri
 }
 
 TEST(PitchCalibration, PerfectClicksGiveTheCameraBack) {
-  const Camera truth = on_the_stand(-0.45);
+  const Camera truth = turned_on_the_stand(-0.45);
   for (const bool left_handed : {false, true}) {
-    const auto result = calibrate_pitch({{"left", kSize, clicks(truth, 0, left_handed, 1), {}, {}}}, {kPitch});
+    const auto result = calibrate_pitch({{"left", kClickedSize, clicks(truth, 0, left_handed, 1), {}, {}}}, {kUsualPitch});
     EXPECT_EQ(result.ground_from_world(1, 1), left_handed ? -1 : 1);
     EXPECT_LT(worst_on_the_ground(result.views[0].camera, truth, result.ground_from_world, left_handed), 0.15);
     EXPECT_GT(result.views[0].camera.centre().z(), 0) << "the camera looks down upon the pitch";
@@ -93,11 +93,11 @@ TEST(PitchCalibration, PerfectClicksGiveTheCameraBack) {
 }
 
 TEST(PitchCalibration, LinesCorrectWhatClicksGetWrong) {
-  const Camera truth = on_the_stand(-0.45);
+  const Camera truth = turned_on_the_stand(-0.45);
   const cv::Mat ground = painted(truth);
   const auto points = clicks(truth, 2, true, 3);
-  const auto clicked = calibrate_pitch({{"left", kSize, points, {}, {}}}, {kPitch});
-  const auto refined = calibrate_pitch({{"left", kSize, points, {}, ground}}, {kPitch});
+  const auto clicked = calibrate_pitch({{"left", kClickedSize, points, {}, {}}}, {kUsualPitch});
+  const auto refined = calibrate_pitch({{"left", kClickedSize, points, {}, ground}}, {kUsualPitch});
   const double before = worst_on_the_ground(clicked.views[0].camera, truth, clicked.ground_from_world, true);
   const double after = worst_on_the_ground(refined.views[0].camera, truth, refined.ground_from_world, true);
   EXPECT_LT(after, 0.3);
@@ -107,7 +107,7 @@ TEST(PitchCalibration, LinesCorrectWhatClicksGetWrong) {
 }
 
 TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
-  const Camera truth = on_the_stand(-0.45);
+  const Camera truth = turned_on_the_stand(-0.45);
   std::vector<PitchPoint> few;
   for (const PitchPoint& point : clicks(truth, 1.5, true, 7)) {
     if (few.size() < 8) few.push_back(point);
@@ -124,20 +124,20 @@ TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
       if (pixel && truth.in_picture(*pixel)) line.pixels.push_back(*pixel + Vector<2>(noise(random), noise(random)));
     }
   }
-  const auto without = calibrate_pitch({{"left", kSize, few, {}, {}}}, {kPitch});
-  const auto with = calibrate_pitch({{"left", kSize, few, lines, {}}}, {kPitch});
+  const auto without = calibrate_pitch({{"left", kClickedSize, few, {}, {}}}, {kUsualPitch});
+  const auto with = calibrate_pitch({{"left", kClickedSize, few, lines, {}}}, {kUsualPitch});
   EXPECT_LT(worst_on_the_ground(with.views[0].camera, truth, with.ground_from_world, true),
             0.5 * worst_on_the_ground(without.views[0].camera, truth, without.ground_from_world, true));
 }
 
 TEST(PitchCalibration, WrongNamesAreFoundAndNamed) {
-  const Camera truth = on_the_stand(-0.45);
+  const Camera truth = turned_on_the_stand(-0.45);
   auto points = clicks(truth, 1, true, 5);
   ASSERT_GT(points.size(), 15u);
   const Vector<2> right_place = points[3].ground;
   points[3].ground.y() = 68 - points[3].ground.y() == points[3].ground.y() ? 0 : 68 - points[3].ground.y();
   points[9].pixel += Vector<2>(60, -40);
-  const auto result = calibrate_pitch({{"left", kSize, points, {}, {}}}, {kPitch});
+  const auto result = calibrate_pitch({{"left", kClickedSize, points, {}, {}}}, {kUsualPitch});
   const auto& view = result.views[0];
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(view.inlier[i] != 0, i != 3 && i != 9) << i << " " << view.error_px[i];
   ASSERT_TRUE(view.better_name[3]);
@@ -146,7 +146,7 @@ TEST(PitchCalibration, WrongNamesAreFoundAndNamed) {
 
 std::string error_of(const std::vector<PitchView>& views) {
   try {
-    calibrate_pitch(views, {kPitch});
+    calibrate_pitch(views, {kUsualPitch});
   } catch (const Error& error) {
     return error.what();
   }
@@ -154,24 +154,27 @@ std::string error_of(const std::vector<PitchView>& views) {
 }
 
 TEST(PitchCalibration, WhatCannotBeCalibratedIsRefusedWithItsCause) {
-  const Camera left = on_the_stand(-0.45), right = on_the_stand(0.45);
+  const Camera left = turned_on_the_stand(-0.45), right = turned_on_the_stand(0.45);
   auto three = clicks(left, 0, true, 1);
   three.resize(3);
-  EXPECT_NE(error_of({{"left", kSize, three, {}, {}}}).find("at least 4"), std::string::npos);
+  EXPECT_NE(error_of({{"left", kClickedSize, three, {}, {}}}).find("at least 4"), std::string::npos);
   std::vector<PitchPoint> line;
   for (const PitchPoint& point : clicks(left, 0, true, 1)) {
     if (point.ground.x() == 0) line.push_back(point);
   }
-  EXPECT_NE(error_of({{"left", kSize, line, {}, {}}}).find("on one line"), std::string::npos);
+  EXPECT_NE(error_of({{"left", kClickedSize, line, {}, {}}}).find("on one line"), std::string::npos);
   auto mirrored = clicks(right, 0, true, 1);
   for (PitchPoint& point : mirrored) point.ground.x() = 105 - point.ground.x();
-  EXPECT_NE(error_of({{"left", kSize, clicks(left, 0, true, 1), {}, {}}, {"right", kSize, mirrored, {}, {}}}).find("mirrored"),
+  EXPECT_NE(error_of({{"left", kClickedSize, clicks(left, 0, true, 1), {}, {}}, {"right", kClickedSize, mirrored, {}, {}}})
+                .find("mirrored"),
             std::string::npos);
-  EXPECT_EQ(error_of({{"left", kSize, clicks(left, 0, true, 1), {}, {}}, {"right", kSize, clicks(right, 0, true, 1), {}, {}}}), "");
+  EXPECT_EQ(error_of({{"left", kClickedSize, clicks(left, 0, true, 1), {}, {}},
+                      {"right", kClickedSize, clicks(right, 0, true, 1), {}, {}}}),
+            "");
   std::vector<PitchPoint> nonsense = clicks(left, 0, true, 1);
   std::mt19937 random(11);
   for (PitchPoint& point : nonsense) point.pixel = Vector<2>(random() % 1536, random() % 864);
-  EXPECT_NE(error_of({{"left", kSize, nonsense, {}, {}}}), "");
+  EXPECT_NE(error_of({{"left", kClickedSize, nonsense, {}, {}}}), "");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr int kDarkest = 24;     // levels over black: darker ones tell little o
 constexpr int kBrightest = 235;  // brighter ones may be clipped
 constexpr float kNoticeable = 0.03F;
 constexpr float kGreatest = 2.5F;  // beyond, and below its inverse, something covers the camera or its scene is another
-constexpr std::size_t kFewest = 12;
+constexpr std::size_t kFewestRatios = 12;
 
 float median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -47,7 +47,7 @@ void LightMeter::sample(const cv::Mat& luma, const ScenePlane& scene, int black)
 void LightMeter::judge(Cell& cell, float overall_gain) {
   cell.gain = overall_gain;
   cell.sure = false;
-  if (cell.ratios.size() < kFewest) return;
+  if (cell.ratios.size() < kFewestRatios) return;
   const float gain = median(cell.ratios);
   const auto agree =
       std::count_if(cell.ratios.begin(), cell.ratios.end(), [&](float ratio) { return std::abs(ratio - gain) < 0.08F * gain; });
@@ -76,7 +76,7 @@ cv::Mat LightMeter::smoothed(float overall_gain) const {
 
 std::optional<LightChange> LightMeter::measure(const cv::Mat& luma, const ScenePlane& scene, int black) {
   sample(luma, scene, black);
-  if (all_.size() < kFewest) return std::nullopt;
+  if (all_.size() < kFewestRatios) return std::nullopt;
   const float overall_gain = median(all_);
   for (Cell& cell : cells_) judge(cell, overall_gain);
   const auto sure = std::count_if(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.sure; });

@@ -21,7 +21,7 @@ constexpr double kForget = 0.998;        // a frame
 constexpr double kTexture = 25;          // squared levels: the scene's variance within a textured cell
 constexpr double kNoise = 10;            // squared levels left unexplained in a smooth cell
 constexpr double kCorrelation = 0.8;     // squared: how much of a textured cell's frame the scene explains
-constexpr int kFewest = 8;               // pixels of a cell to judge it by
+constexpr int kFewestCellPixels = 8;     // pixels of a cell to judge it by
 constexpr int kEdge = 100;               // 1/1024 of the light: how much deeper than its neighbour a shadow's pixel may be
 constexpr double kColour = 6;            // levels of chroma
 constexpr double kColourful = 8;         // levels of chroma left in a shadow, from which on a pixel is judged by them alone
@@ -89,7 +89,7 @@ bool ShadowFinder::is_usual(double ratio) const {
 ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes& frame, const SceneView& scene) {
   Cell& cell = cells_[index];
   if (cell.darker * 10 < cell.count * 9 || cell.scene2 == 0) return Label::thing;
-  if (cell.count < kFewest) return Label::unsure;
+  if (cell.count < kFewestCellPixels) return Label::unsure;
   const double n = cell.count;
   const double ratio = static_cast<double>(cell.both) / cell.scene2;
   if (ratio < kDeepest || ratio > kShallowest || !same_colour(index, ratio, frame, scene)) return Label::thing;

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kMargin = 2.5;      // px beyond the blob
 constexpr double kUsualBlur = 0.65;  // px; a sharp lens, and the pixel
-constexpr int kMostSteps = 12;
-constexpr double kSettled = 1e-3;         // px
+constexpr int kMostFitSteps = 12;
+constexpr double kFitSettled = 1e-3;      // px
 constexpr double kWorstMisfit = 0.2;      // of the contrast
 constexpr double kFloorDeviation = 3e-3;  // px; pixels are not quite alike
 
@@ -72,7 +72,7 @@ Fit minimise(const MarkerWindow& window, const Vector6& start, const Prior& prio
   Fit fit{start, linearise(window, start, kernels)};
   double damping = 1e-4;
   double best = cost(fit.last, fit.parameters, prior);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostFitSteps; ++step) {
     Matrix6 information = fit.last.information;
     information.diagonal() += prior.weight + damping * fit.last.information.diagonal();
     const Vector6 gradient = fit.last.gradient - prior.weight.cwiseProduct(fit.parameters - prior.mean);
@@ -80,7 +80,7 @@ Fit minimise(const MarkerWindow& window, const Vector6& start, const Prior& prio
     if (!change.allFinite()) break;
     const Vector6 moved = fit.parameters + change;
     const double shift = std::max(std::abs(change[kX]), std::abs(change[kY]));
-    const bool there_already = damping < 0.1 && shift < kSettled;
+    const bool there_already = damping < 0.1 && shift < kFitSettled;
     if (sensible(moved, window.reach)) {
       if (there_already) {  // this step still counts; the next would be a hundredth of it
         fit.parameters = moved;

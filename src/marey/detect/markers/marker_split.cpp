@@ -19,8 +19,8 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr int kMostDiscs = 4;
-constexpr int kMostSteps = 20;
-constexpr double kSettled = 5e-3;         // px; the next step would be a hundredth of it
+constexpr int kMostSplitSteps = 20;
+constexpr double kSplitSettled = 5e-3;    // px; the next step would be a hundredth of it
 constexpr double kClearly = 0.5;          // of the squares that one swept disc leaves
 constexpr double kClearlyExpected = 0.8;  // where the tracker knows of several
 constexpr double kSurely = 20;            // noise variances: where discs fit to the noise, by how much they must fit better
@@ -31,10 +31,10 @@ constexpr double kFlat = 4.5;             // blurs from the edge beyond which it
 constexpr double kMostUnlike = 2.2;       // larger radius over smaller
 
 // Parameters: contrast, background, blur, then either x, y, radius of each disc, or x, y, radius and the half axis of a swept one.
-enum { kContrast, kBackground, kBlur, kFirst };
+enum { kDiscsContrast, kDiscsBackground, kDiscsBlur, kFirstDisc };
 
 // On the stack, whatever the number of discs.
-constexpr int kMostParameters = kFirst + 3 * kMostDiscs;
+constexpr int kMostParameters = kFirstDisc + 3 * kMostDiscs;
 using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostParameters, 1>;
 using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters>;
 
@@ -62,17 +62,17 @@ Edge edge(double dx, double dy, double radius, double blur) {
 
 /// The model at a pixel; `slope` becomes its derivatives.
 double swept_share(const Model& model, double x, double y, Parameters& slope) {
-  const double hx = model.p[kFirst + 3], hy = model.p[kFirst + 4];
-  const double dx = x - model.p[kFirst], dy = y - model.p[kFirst + 1];
+  const double hx = model.p[kFirstDisc + 3], hy = model.p[kFirstDisc + 4];
+  const double dx = x - model.p[kFirstDisc], dy = y - model.p[kFirstDisc + 1];
   const double length = hx * hx + hy * hy;
   const double t = length > 1e-9 ? std::clamp((dx * hx + dy * hy) / length, -1.0, 1.0) : 0;
-  const Edge e = edge(dx - t * hx, dy - t * hy, model.p[kFirst + 2], model.p[kBlur]);
-  slope[kBlur] = e.slope_blur;
-  slope[kFirst] = e.slope_x;
-  slope[kFirst + 1] = e.slope_y;
-  slope[kFirst + 2] = e.slope_radius;
-  slope[kFirst + 3] = t * e.slope_x;
-  slope[kFirst + 4] = t * e.slope_y;
+  const Edge e = edge(dx - t * hx, dy - t * hy, model.p[kFirstDisc + 2], model.p[kDiscsBlur]);
+  slope[kDiscsBlur] = e.slope_blur;
+  slope[kFirstDisc] = e.slope_x;
+  slope[kFirstDisc + 1] = e.slope_y;
+  slope[kFirstDisc + 2] = e.slope_radius;
+  slope[kFirstDisc + 3] = t * e.slope_x;
+  slope[kFirstDisc + 4] = t * e.slope_y;
   return e.share;
 }
 
@@ -80,18 +80,18 @@ double union_share(const Model& model, double x, double y, Parameters& slope) {
   std::array<Edge, kMostDiscs> edges;
   double outside = 1;
   for (int i = 0; i < model.discs; ++i) {
-    const auto disc = model.p.segment<3>(kFirst + 3 * i);
-    edges[i] = edge(x - disc[0], y - disc[1], disc[2], model.p[kBlur]);
+    const auto disc = model.p.segment<3>(kFirstDisc + 3 * i);
+    edges[i] = edge(x - disc[0], y - disc[1], disc[2], model.p[kDiscsBlur]);
     outside *= 1 - edges[i].share;
   }
-  slope[kBlur] = 0;
+  slope[kDiscsBlur] = 0;
   for (int i = 0; i < model.discs; ++i) {
     double others = 1;
     for (int j = 0; j < model.discs; ++j) others *= j == i ? 1 : 1 - edges[j].share;
-    slope[kFirst + 3 * i] = others * edges[i].slope_x;
-    slope[kFirst + 3 * i + 1] = others * edges[i].slope_y;
-    slope[kFirst + 3 * i + 2] = others * edges[i].slope_radius;
-    slope[kBlur] += others * edges[i].slope_blur;
+    slope[kFirstDisc + 3 * i] = others * edges[i].slope_x;
+    slope[kFirstDisc + 3 * i + 1] = others * edges[i].slope_y;
+    slope[kFirstDisc + 3 * i + 2] = others * edges[i].slope_radius;
+    slope[kDiscsBlur] += others * edges[i].slope_blur;
   }
   return 1 - outside;
 }
@@ -99,15 +99,15 @@ double union_share(const Model& model, double x, double y, Parameters& slope) {
 /// Discs whose light adds up, as far as the sensor goes.
 double sum_share(const Model& model, double x, double y, Parameters& slope) {
   double sum = 0;
-  slope[kBlur] = 0;
+  slope[kDiscsBlur] = 0;
   for (int i = 0; i < model.discs; ++i) {
-    const auto disc = model.p.segment<3>(kFirst + 3 * i);
-    const Edge e = edge(x - disc[0], y - disc[1], disc[2], model.p[kBlur]);
+    const auto disc = model.p.segment<3>(kFirstDisc + 3 * i);
+    const Edge e = edge(x - disc[0], y - disc[1], disc[2], model.p[kDiscsBlur]);
     sum += e.share;
-    slope.segment<3>(kFirst + 3 * i) << e.slope_x, e.slope_y, e.slope_radius;
-    slope[kBlur] += e.slope_blur;
+    slope.segment<3>(kFirstDisc + 3 * i) << e.slope_x, e.slope_y, e.slope_radius;
+    slope[kDiscsBlur] += e.slope_blur;
   }
-  const double most = (model.ceiling - model.p[kBackground]) / model.p[kContrast];
+  const double most = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
   if (sum <= most) return sum;
   slope.setZero();
   return most;
@@ -130,10 +130,10 @@ Normal linearise(const Model& model, const MarkerWindow& window, const std::vect
   Parameters slope(n);
   for (int i = 0; i < window.count; ++i) {
     const double share = share_at(model, window.x[i], window.y[i], slope);
-    const double residual = value[i] - model.p[kBackground] - model.p[kContrast] * share;
-    slope.tail(n - kBlur) *= model.p[kContrast];
-    slope[kContrast] = share;
-    slope[kBackground] = 1;
+    const double residual = value[i] - model.p[kDiscsBackground] - model.p[kDiscsContrast] * share;
+    slope.tail(n - kDiscsBlur) *= model.p[kDiscsContrast];
+    slope[kDiscsContrast] = share;
+    slope[kDiscsBackground] = 1;
     for (Eigen::Index a = 0; a < n; ++a) {
       if (slope[a] == 0) continue;  // most discs are far from most pixels
       for (Eigen::Index b = 0; b <= a; ++b) normal.information(a, b) += slope[a] * slope[b];
@@ -149,10 +149,11 @@ Normal linearise(const Model& model, const MarkerWindow& window, const std::vect
 
 bool sensible(const Model& model, double reach) {
   const auto& p = model.p;
-  if (!p.allFinite() || p[kBlur] < 0.2 || p[kBlur] > reach || p[kContrast] < 0.1 || p[kContrast] > 10) return false;
+  if (!p.allFinite() || p[kDiscsBlur] < 0.2 || p[kDiscsBlur] > reach || p[kDiscsContrast] < 0.1 || p[kDiscsContrast] > 10)
+    return false;
   for (int i = 0; i < model.discs; ++i) {
-    const double radius = p[kFirst + 3 * i + 2];
-    if (radius < 0.2 || radius > reach || p.segment<2>(kFirst + 3 * i).norm() > reach) return false;
+    const double radius = p[kFirstDisc + 3 * i + 2];
+    if (radius < 0.2 || radius > reach || p.segment<2>(kFirstDisc + 3 * i).norm() > reach) return false;
   }
   return true;
 }
@@ -164,16 +165,16 @@ struct Solution {
 
 /// `stiffness` pulls the blur to where it began: two close discs hardly tell it.
 Solution minimise(Model model, const MarkerWindow& window, const std::vector<float>& value, double stiffness) {
-  const double blur = model.p[kBlur];
-  const auto cost = [&](const Model& m, const Normal& n) { return n.squares + stiffness * std::pow(m.p[kBlur] - blur, 2); };
+  const double blur = model.p[kDiscsBlur];
+  const auto cost = [&](const Model& m, const Normal& n) { return n.squares + stiffness * std::pow(m.p[kDiscsBlur] - blur, 2); };
   Solution best{model, linearise(model, window, value)};
   double damping = 1e-2;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostSplitSteps; ++step) {
     Information information = best.normal.information;
     information.diagonal() += damping * best.normal.information.diagonal() + Parameters::Constant(model.p.size(), 1e-9);
-    information(kBlur, kBlur) += stiffness;
+    information(kDiscsBlur, kDiscsBlur) += stiffness;
     Parameters gradient = best.normal.gradient;
-    gradient[kBlur] -= stiffness * (best.model.p[kBlur] - blur);
+    gradient[kDiscsBlur] -= stiffness * (best.model.p[kDiscsBlur] - blur);
     const Parameters change = information.llt().solve(gradient);
     model.p = best.model.p + change;
     if (sensible(model, window.reach)) {
@@ -181,7 +182,7 @@ Solution minimise(Model model, const MarkerWindow& window, const std::vector<flo
       if (cost(model, there) < cost(best.model, best.normal)) {
         best = {model, std::move(there)};
         damping *= 0.2;
-        if (change.cwiseAbs().maxCoeff() < kSettled) break;
+        if (change.cwiseAbs().maxCoeff() < kSplitSettled) break;
         continue;
       }
     }
@@ -230,7 +231,7 @@ std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<flo
 bool distinct(const Model& model) {
   for (int i = 0; i < model.discs; ++i) {
     for (int j = 0; j < i; ++j) {
-      const auto a = model.p.segment<3>(kFirst + 3 * i), b = model.p.segment<3>(kFirst + 3 * j);
+      const auto a = model.p.segment<3>(kFirstDisc + 3 * i), b = model.p.segment<3>(kFirstDisc + 3 * j);
       const double apart = (a.head<2>() - b.head<2>()).norm();
       if (apart < kLeastApart * (a[2] + b[2]) / 2) return false;
       if (std::max(a[2], b[2]) > kMostUnlike * std::min(a[2], b[2])) return false;
@@ -242,19 +243,19 @@ bool distinct(const Model& model) {
 std::vector<MarkerShape> shapes(const Solution& solution, const MarkerWindow& window, double stiffness) {
   const Model& model = solution.model;
   Information information = solution.normal.information;
-  information(kBlur, kBlur) += stiffness;
+  information(kDiscsBlur, kDiscsBlur) += stiffness;
   information.diagonal().array() += 1e-9;
   const double left = solution.normal.squares / std::max<double>(1, window.count - static_cast<double>(model.p.size()));
   const Information spread = information.llt().solve(Information::Identity(model.p.size(), model.p.size())) * left;
   std::vector<MarkerShape> result;
   for (int i = 0; i < model.discs; ++i) {
     MarkerShape shape;
-    const int at = kFirst + 3 * i;
+    const int at = kFirstDisc + 3 * i;
     shape.centre = window.origin + model.p.segment<2>(at);
     shape.covariance = spread.block<2, 2>(at, at) + Matrix<2>::Identity() * 1e-4;
     shape.radius = model.p[at + 2];
-    shape.blur = model.p[kBlur];
-    shape.contrast = model.p[kContrast] * window.scale;
+    shape.blur = model.p[kDiscsBlur];
+    shape.contrast = model.p[kDiscsContrast] * window.scale;
     shape.misfit = std::sqrt(solution.normal.squares / window.count);
     shape.fitted = true;
     result.push_back(shape);
@@ -287,7 +288,7 @@ std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerB
     for (float& v : value) v = std::min(v, 1.05f * *overlap);
   }
 
-  Model swept{Parameters(kFirst + 5), 1, true};
+  Model swept{Parameters(kFirstDisc + 5), 1, true};
   const Vector<2> reach = along * std::max(half_length - half_width, 0.3);
   swept.p << 0.9, 0.0, blur, window.centroid.x(), window.centroid.y(), std::max(half_width - 0.3, 0.4), reach.x(), reach.y();
   const Solution rival = minimise(swept, window, value, stiffness);
@@ -297,17 +298,17 @@ std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerB
   double to_beat = rival.normal.squares;
   std::vector<MarkerShape> best;
   for (int k = 2; k <= kMostDiscs; ++k) {
-    Model discs{Parameters(kFirst + 3 * k), k};
+    Model discs{Parameters(kFirstDisc + 3 * k), k};
     discs.ceiling = std::abs(around.white - window.background) / window.scale;
     if (around.dark) discs.ceiling = window.background / window.scale;
-    discs.p.head<kFirst>() << 0.9, 0.0, blur;
+    discs.p.head<kFirstDisc>() << 0.9, 0.0, blur;
     const double radius = std::max(0.4, std::sqrt(window.half_area / (k * std::numbers::pi)));
     const auto places = centres(window, value, k, along * half_length * (1 - 1.0 / k));
-    for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirst + 3 * i) << places[i].x(), places[i].y(), radius;
+    for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirstDisc + 3 * i) << places[i].x(), places[i].y(), radius;
     Solution solution = minimise(discs, window, value, stiffness);
     if (bright_overlap && k == 2) {  // more discs that add up could tell any streak
       discs.adds = true;
-      discs.p[kContrast] = level;
+      discs.p[kDiscsContrast] = level;
       Solution sum = minimise(discs, window, whole, stiffness);
       if (sum.normal.squares < std::min(floor, solution.normal.squares)) solution = std::move(sum);
     }

@@ -11,10 +11,10 @@
 namespace marey::detect::people {
 namespace {
 
-const cv::Size kImage(200, 160);
+const cv::Size kFitImage(200, 160);
 
 FitScene scene_of(double height) {
-  return {kImage, [height](double, double) { return PersonSize{height, 0.36 * height}; }};
+  return {kFitImage, [height](double, double) { return PersonSize{height, 0.36 * height}; }};
 }
 
 double best_iou(const std::vector<Placed>& placed, const Box& truth) {
@@ -71,7 +71,7 @@ TEST(FitPeople, TheFirstPersonIsWhereTheSlowTwinFindsTheBestPlace) {
     std::mt19937 random(seed);
     const double height = std::floor(bodies::uniform(random, 28, 46));  // a cell is one pixel
     const Box truth = bodies::person(bodies::uniform(random, 20, 180), bodies::uniform(random, 50, 150), height);
-    cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+    cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
     bodies::draw(mask, truth, bodies::uniform(random, 0, 1));
     for (int i = 0; i < 300; ++i) {  // noise, in the body and round it
       mask.at<std::uint8_t>(static_cast<int>(bodies::uniform(random, truth.top, truth.bottom())),
@@ -80,8 +80,8 @@ TEST(FitPeople, TheFirstPersonIsWhereTheSlowTwinFindsTheBestPlace) {
     const FitScene scene = scene_of(height);
     const auto placed = fit_people(bodies::runs(mask), {}, scene, options);
     double best = -1;
-    for (double y = 0; y < kImage.height + 40; ++y) {
-      for (double x = -20; x < kImage.width + 20; ++x) {
+    for (double y = 0; y < kFitImage.height + 40; ++y) {
+      for (double x = -20; x < kFitImage.width + 20; ++x) {
         best = std::max(best, value_at(mask, scene.size_at(x, y)->box_at(x, y), options));
       }
     }
@@ -100,7 +100,7 @@ TEST(FitPeople, GroupsAreSplitIntoWholeBodies) {
     std::mt19937 random(seed);
     const double height = 60;
     const int people = 2 + static_cast<int>(seed % 2);
-    cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+    cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
     std::vector<Box> truth;
     for (int i = 0; i < people; ++i) {
       truth.push_back(bodies::person(50 + i * bodies::uniform(random, 17, 20), bodies::uniform(random, 100, 112), height));
@@ -114,7 +114,7 @@ TEST(FitPeople, GroupsAreSplitIntoWholeBodies) {
 
 TEST(FitPeople, KnownPeopleKeepTheirPlacesWhereOneHidesHalfOfTheOther) {
   const Box front = bodies::person(80, 120, 60), behind = bodies::person(90, 112, 60);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
   bodies::draw(mask, front);
   bodies::draw(mask, behind);
   const std::array<Box, 2> known = {Box{front.left - 2, front.top, front.width, front.height},
@@ -132,7 +132,7 @@ TEST(FitPeople, KnownPeopleKeepTheirPlacesWhereOneHidesHalfOfTheOther) {
 TEST(FitPeople, WhatIsKnownToHideIsNoReasonToDoubt) {
   const Box truth = bodies::person(80, 120, 60);
   const cv::Rect sign(60, 76, 40, 28);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
   bodies::draw(mask, truth);
   mask(sign).setTo(0);
   FitScene scene = scene_of(60);
@@ -145,7 +145,7 @@ TEST(FitPeople, WhatIsKnownToHideIsNoReasonToDoubt) {
 
 TEST(FitPeople, APersonCutByTheBorderHasAWholeBody) {
   const Box truth = bodies::person(4, 120, 60);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
   bodies::draw(mask, truth);
   const auto placed = fit_people(bodies::runs(mask), {}, scene_of(60));
   ASSERT_EQ(placed.size(), 1u);
@@ -156,8 +156,8 @@ TEST(FitPeople, NothingComesOfNothing) {
   EXPECT_TRUE(fit_people({}, {}, scene_of(60)).empty());
   const std::array<PixelRun, 1> pixel = {PixelRun{80, 100, 101}};
   EXPECT_TRUE(fit_people(pixel, {}, scene_of(60)).empty());
-  const FitScene unknown{kImage, [](double, double) { return std::optional<PersonSize>(); }};
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  const FitScene unknown{kFitImage, [](double, double) { return std::optional<PersonSize>(); }};
+  cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
   bodies::draw(mask, bodies::person(80, 120, 60));
   EXPECT_TRUE(fit_people(bodies::runs(mask), {}, unknown).empty());
 }

@@ -9,7 +9,7 @@
 namespace marey::detect::people {
 namespace {
 
-constexpr int kCellsAcross = 192;
+constexpr int kMaskCellsAcross = 192;
 constexpr std::int32_t kMemory = 120;  // frames with a body, then all is halved
 constexpr double kInnerLeft = 0.3, kInnerRight = 0.7, kInnerTop = 0.12, kInnerBottom = 0.9;
 
@@ -19,7 +19,7 @@ void HiddenPlaces::note(const Box& person, const cv::Mat& mask) {
   if (mask.empty()) return;
   if (image_ != mask.size()) {
     image_ = mask.size();
-    side_ = std::max(1, image_.width / kCellsAcross);
+    side_ = std::max(1, image_.width / kMaskCellsAcross);
     columns_ = (image_.width + side_ - 1) / side_;
     cells_.assign(static_cast<std::size_t>(columns_) * ((image_.height + side_ - 1) / side_), {});
   }

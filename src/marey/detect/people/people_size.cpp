@@ -20,7 +20,7 @@
 namespace marey::detect::people {
 namespace {
 
-constexpr int kCellsAcross = 8;
+constexpr int kSizeCellsAcross = 8;
 constexpr std::size_t kBoxesInCell = 12;
 constexpr double kSmallestHeight = 12;           // px; below this a body has no shape
 constexpr double kFlattest = 1.2, kTallest = 5;  // height over width of what may be one upright person
@@ -61,13 +61,13 @@ void PersonSizeModel::see(const Box& region, cv::Size image) {
   if (image_ != image) {
     *this = {};
     image_ = image;
-    cells_.resize(kCellsAcross * kCellsAcross);
+    cells_.resize(kSizeCellsAcross * kSizeCellsAcross);
     next_.resize(cells_.size(), 0);
   }
   const auto foot = region.foot();
-  const int column = std::clamp(static_cast<int>(foot.x() * kCellsAcross / image.width), 0, kCellsAcross - 1);
-  const int row = std::clamp(static_cast<int>(foot.y() * kCellsAcross / image.height), 0, kCellsAcross - 1);
-  const std::size_t cell = static_cast<std::size_t>(row) * kCellsAcross + column;
+  const int column = std::clamp(static_cast<int>(foot.x() * kSizeCellsAcross / image.width), 0, kSizeCellsAcross - 1);
+  const int row = std::clamp(static_cast<int>(foot.y() * kSizeCellsAcross / image.height), 0, kSizeCellsAcross - 1);
+  const std::size_t cell = static_cast<std::size_t>(row) * kSizeCellsAcross + column;
   std::vector<Box>& boxes = cells_[cell];
   for (const Box& known : boxes) {
     if (geometry::iou(known, region) > 0.7) return;  // someone who stands says nothing new

@@ -11,7 +11,7 @@
 namespace marey::detect::people {
 namespace {
 
-const cv::Size kImage(768, 576);
+const cv::Size kSceneImage(768, 576);
 
 /// Foreground is what is not black: the tests draw it.
 class Drawn final : public background::Background {
@@ -37,7 +37,7 @@ PeopleDetector trained(int frames, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Frame> samples;
   for (int i = 0; i < frames; ++i) {
-    cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+    cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
     for (int column = 0; column < 5; ++column) {
       bodies::draw(mask, walker_at(80 + 150 * column + bodies::uniform(random, -20, 20), bodies::uniform(random, 150, 560)),
                    bodies::uniform(random, 0, 1));
@@ -64,7 +64,7 @@ TEST(PeopleDetector, LearnsTheSizeWhilePrimed) {
 
 TEST(PeopleDetector, FindsPeopleAloneInGroupsInPiecesAndAtTheBorder) {
   PeopleDetector detector = trained(30, 2);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
   const std::vector<Box> truth = {walker_at(100, 300), walker_at(300, 400), walker_at(330, 405), walker_at(362, 398),
                                   walker_at(550, 350), walker_at(3, 450),   walker_at(650, 595)};
   for (const Box& one : truth) bodies::draw(mask, one);
@@ -82,7 +82,7 @@ TEST(PeopleDetector, FindsPeopleAloneInGroupsInPiecesAndAtTheBorder) {
 
 TEST(PeopleDetector, ShadowsAtTheFeetDoNotWidenABox) {
   PeopleDetector detector = trained(30, 3);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
   const Box truth = walker_at(300, 400);
   bodies::draw(mask, truth, 0.2);
   cv::rectangle(mask, cv::Point(310, 392), cv::Point(360, 400), 255, cv::FILLED);
@@ -93,7 +93,7 @@ TEST(PeopleDetector, ShadowsAtTheFeetDoNotWidenABox) {
 
 TEST(PeopleDetector, CarsAndLeavesAreLeftOutAndCounted) {
   PeopleDetector detector = trained(30, 4);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
   cv::rectangle(mask, cv::Rect(100, 420, 240, 30), 255, cv::FILLED);  // a long, flat thing
   cv::rectangle(mask, cv::Rect(500, 300, 5, 5), 255, cv::FILLED);
   const auto result = detector.detect(frame_of(mask), {});
@@ -104,7 +104,7 @@ TEST(PeopleDetector, CarsAndLeavesAreLeftOutAndCounted) {
 
 TEST(PeopleDetector, ReportsRegionsThemselvesWhileNoSizeIsKnown) {
   PeopleDetector detector(std::make_unique<Drawn>());
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
   const Box truth = walker_at(300, 400);
   bodies::draw(mask, truth);
   const auto result = detector.detect(frame_of(mask), {});
@@ -117,7 +117,7 @@ TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
   PeopleDetector detector = trained(30, 5);
   std::mt19937 random(6);
   for (int round = 0; round < 30; ++round) {
-    cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+    cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
     for (int i = 0; i < 12; ++i) {
       bodies::draw(mask, walker_at(bodies::uniform(random, -20, 780), bodies::uniform(random, 150, 620)),
                    bodies::uniform(random, 0, 1));
@@ -139,8 +139,8 @@ TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
       EXPECT_GT(one.covariance(1, 1), 0);
       EXPECT_GE(one.box.left, 0);
       EXPECT_GE(one.box.top, 0);
-      EXPECT_LE(one.box.right(), kImage.width);
-      EXPECT_LE(one.box.bottom(), kImage.height);
+      EXPECT_LE(one.box.right(), kSceneImage.width);
+      EXPECT_LE(one.box.bottom(), kSceneImage.height);
       EXPECT_FALSE(one.box.empty());
     }
   }
@@ -148,7 +148,7 @@ TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
 
 TEST(PeopleDetector, TheCentreIsThatOfThePixelsSeen) {
   PeopleDetector detector = trained(30, 8);
-  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
   bodies::draw(mask, walker_at(400, 400));
   const auto result = detector.detect(frame_of(mask), {});
   ASSERT_EQ(result.detections.size(), 1u);
@@ -160,10 +160,10 @@ TEST(PeopleDetector, TheCentreIsThatOfThePixelsSeen) {
 
 TEST(PeopleDetector, EmptyFullAndTinyPicturesDoNoHarm) {
   PeopleDetector detector = trained(30, 7);
-  EXPECT_TRUE(detector.detect(frame_of(cv::Mat::zeros(kImage, CV_8UC1)), {}).detections.empty());
-  detector.detect(frame_of(cv::Mat(kImage, CV_8UC1, cv::Scalar(255))), {});
+  EXPECT_TRUE(detector.detect(frame_of(cv::Mat::zeros(kSceneImage, CV_8UC1)), {}).detections.empty());
+  detector.detect(frame_of(cv::Mat(kSceneImage, CV_8UC1, cv::Scalar(255))), {});
   const std::array<Expected, 2> nowhere = {Expected{{-500, -500, 20, 50}}, Expected{{10, 10, 0, 0}}};
-  detector.detect(frame_of(cv::Mat(kImage, CV_8UC1, cv::Scalar(255))), nowhere);
+  detector.detect(frame_of(cv::Mat(kSceneImage, CV_8UC1, cv::Scalar(255))), nowhere);
   PeopleDetector fresh(std::make_unique<Drawn>());
   fresh.prime({});
   for (const int value : {0, 255}) {

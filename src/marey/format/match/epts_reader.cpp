@@ -11,6 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/match/epts_periods.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
@@ -21,7 +22,6 @@ namespace marey::format::match {
 namespace {
 
 constexpr int kDeepest = 16;  // registers in registers
-constexpr std::array<const char*, 4> kPeriodNames = {"first_half", "second_half", "first_extra_half", "second_extra_half"};
 
 /// What a line is made of: a register that splits it further, or the channel of a player's that stands there, or neither.
 struct Register {
@@ -32,9 +32,10 @@ struct Register {
   bool frame = false;
 };
 
-class Reader {
+class EptsReader {
  public:
-  Reader(const std::string& name, const std::string& metadata_name) : name_(name), metadata_name_(metadata_name), builder_(name) {}
+  EptsReader(const std::string& name, const std::string& metadata_name)
+      : name_(name), metadata_name_(metadata_name), builder_(name) {}
 
   GroundMatch read(std::string_view text, std::string_view metadata) {
     const pugi::xml_document document = parse_xml(metadata, metadata_name_);
@@ -71,9 +72,9 @@ class Reader {
     std::map<std::string, std::string> parameters;
     for (const pugi::xml_node one : global.child("ProviderGlobalParameters").children("ProviderParameter"))
       parameters[one.child_value("Name")] = one.child_value("Value");
-    for (std::size_t i = 0; i < kPeriodNames.size(); ++i) {
-      const auto first = number_of(parameters[fmt::format("{}_start", kPeriodNames[i])]);
-      const auto last = number_of(parameters[fmt::format("{}_end", kPeriodNames[i])]);
+    for (std::size_t i = 0; i < kEptsPeriodNames.size(); ++i) {
+      const auto first = number_of(parameters[fmt::format("{}_start", kEptsPeriodNames[i])]);
+      const auto last = number_of(parameters[fmt::format("{}_end", kEptsPeriodNames[i])]);
       if (!first || !last || !(*first >= 0 && *first <= *last && *last < 1e9)) continue;
       match_.periods.push_back({static_cast<int>(i) + 1, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)});
     }
@@ -196,7 +197,7 @@ class Reader {
 
 GroundMatch parse_epts(std::string_view text, const std::string& name, std::string_view metadata,
                        const std::string& metadata_name) {
-  return Reader(name, metadata_name).read(text, metadata);
+  return EptsReader(name, metadata_name).read(text, metadata);
 }
 
 }  // namespace marey::format::match

@@ -7,6 +7,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/match/epts_periods.h"
 #include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/xml_text.h"
@@ -14,7 +15,6 @@
 namespace marey::format::match {
 namespace {
 
-constexpr std::array<const char*, 4> kPeriodNames = {"first_half", "second_half", "first_extra_half", "second_extra_half"};
 constexpr std::array<const char*, 2> kTeamIds = {"TEAM_A", "TEAM_B"};
 constexpr double kPerHour = 3.6;  // km/h in a m/s
 
@@ -40,8 +40,8 @@ void add_globals(pugi::xml_node& metadata, const GroundMatch& match, const Plan&
   add_text(global, "FrameRate", fmt::format("{}", whole_rate(match.recording.header.rate_hz, "EPTS")));
   pugi::xml_node parameters = global.append_child("ProviderGlobalParameters");
   for (const GroundPeriod& period : plan.periods) {
-    if (period.number < 1 || period.number > static_cast<int>(kPeriodNames.size())) continue;
-    const char* name = kPeriodNames[static_cast<std::size_t>(period.number) - 1];
+    if (period.number < 1 || period.number > static_cast<int>(kEptsPeriodNames.size())) continue;
+    const char* name = kEptsPeriodNames[static_cast<std::size_t>(period.number) - 1];
     add_parameter(parameters, fmt::format("{}_start", name), std::to_string(period.first_frame));
     add_parameter(parameters, fmt::format("{}_end", name), std::to_string(period.last_frame));
   }

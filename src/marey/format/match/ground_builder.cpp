@@ -13,8 +13,6 @@
 namespace marey::format::match {
 namespace {
 
-constexpr double kFarthest = 1e5;  // m
-
 Sample sample_of(const GroundBuilder::Row& row) {
   Sample sample;
   sample.position.head<2>() = row.place;
@@ -72,7 +70,7 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
 }
 
 void GroundBuilder::add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where) {
-  if (!(std::abs(x) <= kFarthest && std::abs(y) <= kFarthest))
+  if (!(std::abs(x) <= kFarthestOnGround && std::abs(y) <= kFarthestOnGround))
     throw Error("{}: ({:g}, {:g}) m is no place near a pitch", where, x, y);
   add(person, {.frame = frame, .time = time, .place = {x, y}});
 }

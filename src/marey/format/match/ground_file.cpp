@@ -22,11 +22,10 @@
 namespace marey::format::match {
 namespace {
 
-enum Column { frame, time_s, id, label, team, x, y, vx, vy, state, cameras, columns };
-constexpr std::array<std::string_view, columns> kNames = {"frame", "time", "id", "label", "team",   "x",
-                                                          "y",     "vx",   "vy", "state", "cameras"};
-constexpr std::array kNeeded = {id, x, y};
-constexpr double kFarthest = 1e5;  // m
+enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kColumns };
+constexpr std::array<std::string_view, kColumns> kNames = {"frame", "time", "id", "label", "team",   "x",
+                                                           "y",     "vx",   "vy", "state", "cameras"};
+constexpr std::array kNeeded = {kId, kX, kY};
 constexpr std::size_t kMostCameras = 64;
 constexpr std::array<std::string_view, 4> kBox = {"left", "top", "width", "height"};  // columns of tracks in a picture
 constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
@@ -47,16 +46,16 @@ double rate_of(std::span<const Recording::Moment> moments) {
   return std::round(1000 * static_cast<double>(frames) / seconds(time)) / 1000;
 }
 
-class Reader {
+class GroundFileReader {
  public:
-  Reader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz), builder_(name) {}
+  GroundFileReader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz), builder_(name) {}
 
   GroundFile read(std::string_view text) {
     TextLines lines(text);
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
     read_header(line);
-    if (!where_[frame]) number_frames(text);
+    if (!where_[kFrame]) number_frames(text);
     while (lines.next(line)) {
       line_ = lines.number();
       if (line.empty()) continue;
@@ -75,7 +74,7 @@ class Reader {
       const auto known = std::find(kNames.begin(), kNames.end(), fields_[i]);
       if (known != kNames.end()) where_[static_cast<std::size_t>(known - kNames.begin())] = i;
     }
-    if (!where_[frame] && !where_[time_s])
+    if (!where_[kFrame] && !where_[kTime])
       throw Error("{}:1: the header has neither a column \"frame\" nor \"time\"; it must read {}", name_, fmt::join(kNames, ","));
     for (const Column needed : kNeeded) {
       if (!where_[needed])
@@ -119,18 +118,20 @@ class Reader {
 
   void add() {
     GroundBuilder::Row row;
-    if (where_[frame]) row.frame = static_cast<std::int32_t>(number(frame, 0, 1e9));
-    row.time = where_[time_s] ? number(time_s, -1e7, 1e7) : row.frame / rate_hz_;
-    if (!where_[frame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
-    const std::int32_t person = builder_.person(static_cast<int>(number(id, 1, 1e9)), text(label), text(team));
-    row.place = {number(x, -kFarthest, kFarthest), number(y, -kFarthest, kFarthest)};
-    if (field(vx) && field(vy)) row.velocity = Vector<2>(number(vx, -kFarthest, kFarthest), number(vy, -kFarthest, kFarthest));
+    if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, 1e9));
+    row.time = where_[kTime] ? number(kTime, -1e7, 1e7) : row.frame / rate_hz_;
+    if (!where_[kFrame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
+    const std::int32_t person = builder_.person(static_cast<int>(number(kId, 1, 1e9)), text(kLabel), text(kTeam));
+    row.place = {number(kX, -kFarthestOnGround, kFarthestOnGround), number(kY, -kFarthestOnGround, kFarthestOnGround)};
+    if (field(kVx) && field(kVy))
+      row.velocity =
+          Vector<2>(number(kVx, -kFarthestOnGround, kFarthestOnGround), number(kVy, -kFarthestOnGround, kFarthestOnGround));
     moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
-    const std::string how = text(state);
+    const std::string how = text(kState);
     if (!how.empty() && how != "observed" && how != "predicted")
       throw Error("{}:{}: state is {}; it must be observed or predicted", name_, line_, shown(how));
     row.observed = how != "predicted";
-    row.cameras = cameras_of(text(cameras));
+    row.cameras = cameras_of(text(kCameras));
     builder_.add(person, row);
   }
 
@@ -144,7 +145,7 @@ class Reader {
       line_ = lines.number();
       if (line.empty()) continue;
       split_fields(line, ',', fields_);
-      times.push_back(number(time_s, -1e7, 1e7));
+      times.push_back(number(kTime, -1e7, 1e7));
     }
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -183,14 +184,14 @@ class Reader {
   bool has_boxes_ = false;
   bool moves_ = false;               // a velocity that is not 0 was read
   double start_s_ = 0, step_s_ = 1;  // of frames that times alone tell
-  std::array<std::optional<std::size_t>, columns> where_;
+  std::array<std::optional<std::size_t>, kColumns> where_;
   std::vector<std::string_view> fields_, names_;
 };
 
 }  // namespace
 
 Recording parse_ground(std::string_view text, const std::string& name, double rate_hz) {
-  return Reader(name, rate_hz).read(text).recording;
+  return GroundFileReader(name, rate_hz).read(text).recording;
 }
 
 Recording read_ground(const std::string& path, double rate_hz) {
@@ -199,9 +200,9 @@ Recording read_ground(const std::string& path, double rate_hz) {
 
 GroundFile read_ground_in_order(const std::string& path, double rate_hz) {
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return Reader(path, rate_hz).read(MappedFile(path).text());
+  if (std::filesystem::is_regular_file(path, error)) return GroundFileReader(path, rate_hz).read(MappedFile(path).text());
   const std::string name = path == "-" ? "standard input" : path;
-  return Reader(name, rate_hz).read(read_file(path));
+  return GroundFileReader(name, rate_hz).read(read_file(path));
 }
 
 Sink::Wants GroundWriter::begin(const RecordingHeader& header) {

@@ -21,14 +21,14 @@ namespace {
 constexpr std::size_t kFirstPlayer = 3;  // columns before it
 constexpr std::size_t kBall = 2;         // columns of it
 
-struct Column {
+struct PersonColumn {
   std::size_t at = 0;
   std::int32_t person = 0;
 };
 
-class Reader {
+class MetricaReader {
  public:
-  Reader(const std::string& name, const geometry::PitchSize& pitch) : builder_(name) { match_.pitch = pitch; }
+  MetricaReader(const std::string& name, const geometry::PitchSize& pitch) : builder_(name) { match_.pitch = pitch; }
 
   void read(std::string_view text, const std::string& name, const char* otherwise, std::string& team) {
     name_ = name;
@@ -41,7 +41,7 @@ class Reader {
     for (const std::string_view field : fields_) numbers.emplace_back(field);
     if (!numbered || !next_fields() || fields_.size() < kFirstPlayer + kBall || fields_[0] != "Period" || fields_[1] != "Frame")
       throw Error("{}:3: must read Period,Frame,Time [s],Player...; it is no tracking file of Metrica", name_);
-    std::vector<Column> columns;
+    std::vector<PersonColumn> columns;
     for (std::size_t at = kFirstPlayer; at + kBall < fields_.size(); at += 2) {
       const auto number = at < numbers.size() ? whole_number_of(numbers[at]) : std::nullopt;
       if (!number || *number < 0 || *number > 100'000) throw Error("{}:2: column {} must hold a shirt's number", name_, at + 1);
@@ -81,7 +81,7 @@ class Reader {
     return *value;
   }
 
-  void read_row(const std::vector<Column>& columns) {
+  void read_row(const std::vector<PersonColumn>& columns) {
     const int period = static_cast<int>(number(0, 1, 9));
     const auto frame = static_cast<std::int32_t>(number(1, 1, 1e9)) - 1;
     number(2, -1e7, 1e7);
@@ -89,7 +89,7 @@ class Reader {
     if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
     known->first_frame = std::min(known->first_frame, frame);
     known->last_frame = std::max(known->last_frame, frame);
-    for (const Column& column : columns) {
+    for (const PersonColumn& column : columns) {
       const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
       if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
       builder_.add(frame, frame / match_.recording.header.rate_hz, column.person,
@@ -175,7 +175,7 @@ void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, co
 
 GroundMatch parse_metrica(std::string_view home, const std::string& home_name, std::string_view away, const std::string& away_name,
                           const geometry::PitchSize& pitch) {
-  Reader reader(home_name, pitch);
+  MetricaReader reader(home_name, pitch);
   std::string home_team, away_team;
   reader.read(home, home_name, "Home", home_team);
   reader.read(away, away_name, "Away", away_team);

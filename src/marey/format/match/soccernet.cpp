@@ -28,9 +28,9 @@ constexpr std::string_view kPerson =
     "\"y_bottom_right\":{:.3f},\"x_bottom_middle\":{:.3f},\"y_bottom_middle\":{:.3f}}}}}";
 constexpr std::int64_t kFirstClip = 1000 * 1'000'000LL;  // what ours begin with
 
-class Reader {
+class SoccernetReader {
  public:
-  Reader(const std::string& name, const GroundReadOptions& options) : name_(name), builder_(name) {
+  SoccernetReader(const std::string& name, const GroundReadOptions& options) : name_(name), builder_(name) {
     match_.pitch = options.pitch;
     match_.recording.header.rate_hz = options.rate_hz;
   }
@@ -140,7 +140,7 @@ std::string images_of(const Recording& recording) {
 
 GroundMatch parse_soccernet(std::string_view text, const std::string& name, const GroundReadOptions& options) {
   try {
-    return Reader(name, options).read(text);
+    return SoccernetReader(name, options).read(text);
   } catch (const json::exception& error) {
     const auto* broken = dynamic_cast<const json::parse_error*>(&error);
     if (broken == nullptr)

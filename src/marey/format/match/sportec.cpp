@@ -36,9 +36,10 @@ std::optional<double> seconds_of_day(std::string_view time) {
   return 3600 * *hours + 60 * *minutes + *seconds;
 }
 
-class Reader {
+class SportecReader {
  public:
-  Reader(const std::string& name, const std::string& metadata_name) : name_(name), metadata_name_(metadata_name), builder_(name) {}
+  SportecReader(const std::string& name, const std::string& metadata_name)
+      : name_(name), metadata_name_(metadata_name), builder_(name) {}
 
   GroundMatch read(std::string_view text, std::string_view metadata) {
     if (!metadata.empty()) read_people(metadata);
@@ -126,7 +127,7 @@ class Reader {
 
 GroundMatch parse_sportec(std::string_view text, const std::string& name, std::string_view metadata,
                           const std::string& metadata_name) {
-  return Reader(name, metadata_name).read(text, metadata);
+  return SportecReader(name, metadata_name).read(text, metadata);
 }
 
 }  // namespace marey::format::match

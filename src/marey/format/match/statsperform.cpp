@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::array<const char*, 5> kTeams = {"Home", "Away", "referee", "Home", "Away"};
 
-class Reader {
+class StatsperformReader {
  public:
-  Reader(const std::string& name, const geometry::PitchSize& pitch) : builder_(name), name_(name) {
+  StatsperformReader(const std::string& name, const geometry::PitchSize& pitch) : builder_(name), name_(name) {
     match_.pitch = pitch;
     match_.home = "Home", match_.away = "Away";
   }
@@ -117,7 +117,7 @@ class Reader {
 }  // namespace
 
 GroundMatch parse_statsperform(std::string_view text, const std::string& name, const geometry::PitchSize& pitch) {
-  return Reader(name, pitch).read(text);
+  return StatsperformReader(name, pitch).read(text);
 }
 
 }  // namespace marey::format::match

@@ -30,9 +30,10 @@ std::optional<double> decimal(std::string text) {
   return number_of(text);
 }
 
-class Reader {
+class TracabReader {
  public:
-  Reader(const std::string& name, const std::string& metadata_name) : name_(name), metadata_name_(metadata_name), builder_(name) {}
+  TracabReader(const std::string& name, const std::string& metadata_name)
+      : name_(name), metadata_name_(metadata_name), builder_(name) {}
 
   GroundMatch read(std::string_view text, std::string_view metadata) {
     read_metadata(metadata);
@@ -200,7 +201,7 @@ constexpr int code_of(Side side) {
 
 GroundMatch parse_tracab(std::string_view text, const std::string& name, std::string_view metadata,
                          const std::string& metadata_name) {
-  return Reader(name, metadata_name).read(text, metadata);
+  return TracabReader(name, metadata_name).read(text, metadata);
 }
 
 std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {

@@ -16,7 +16,6 @@
 namespace marey::format::motion {
 namespace {
 
-constexpr std::size_t kBlock = 512;
 constexpr std::uint8_t kKey = 0x50;
 constexpr std::size_t kMostParameters = 20'000;
 constexpr std::size_t kMostValues = std::size_t{1} << 20;  // eight times what 255 blocks can hold
@@ -170,8 +169,8 @@ C3dHead read_c3d_head(std::span<const std::byte> bytes, const std::string& name)
   const C3dBytes plain(bytes, C3dProcessor::intel);
   if (bytes.size() < 2 || plain.byte(1) != kKey) throw Error("{}: is no C3D file (its second byte is not 0x50)", name);
   // A pointer of 0 is a mistake that some programs make, and means the usual place.
-  const std::size_t section = (plain.byte(0) == 0 ? 1 : plain.byte(0) - std::size_t{1}) * kBlock;
-  if (bytes.size() < kBlock || section + 4 > bytes.size()) {
+  const std::size_t section = (plain.byte(0) == 0 ? 1 : plain.byte(0) - std::size_t{1}) * kC3dBlock;
+  if (bytes.size() < kC3dBlock || section + 4 > bytes.size()) {
     throw Error("{}: is cut off within its header ({} bytes); copy it again", name, bytes.size());
   }
   C3dHead head;
@@ -186,8 +185,8 @@ C3dHead read_c3d_head(std::span<const std::byte> bytes, const std::string& name)
   head.analog_samples = own.word(18);
   head.rate_hz = own.real(20);
   // Some lists have no end but where the frames begin.
-  const std::size_t data = head.data_block * kBlock;
-  const std::size_t end = data > section + kBlock ? std::min(data - kBlock, bytes.size()) : bytes.size();
+  const std::size_t data = head.data_block * kC3dBlock;
+  const std::size_t end = data > section + kC3dBlock ? std::min(data - kC3dBlock, bytes.size()) : bytes.size();
   ParameterWalk(own, section + 4, end, head).run();
   return head;
 }

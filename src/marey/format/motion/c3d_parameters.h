@@ -12,6 +12,9 @@
 
 namespace marey::format::motion {
 
+/// Bytes; the head is one, and what follows begins at a multiple.
+constexpr std::size_t kC3dBlock = 512;
+
 /// Whose numbers a C3D file holds: Intel's (PC), DEC's (VAX: floats of their own, words swapped), SGI's (MIPS: big-endian).
 enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, sgi = 86 };
 

@@ -14,8 +14,6 @@
 namespace marey::format::motion {
 namespace {
 
-constexpr std::size_t kBlock = 512;
-
 /// Where the frames are and what they hold.
 struct Layout {
   bool real = true;
@@ -88,9 +86,9 @@ class LayoutFinder {
     std::size_t block = head_.data_block;
     const auto parameter = head_.number("POINT:DATA_START");
     const std::size_t other = parameter && *parameter >= 1 && *parameter <= 65535 ? static_cast<std::size_t>(*parameter) : 0;
-    if (block < 2 || (block - 1) * kBlock > size_) block = other;
+    if (block < 2 || (block - 1) * kC3dBlock > size_) block = other;
     if (block < 2) throw Error("{}: does not say where its frames begin; it is damaged", name_);
-    layout_.begin = (block - 1) * kBlock;
+    layout_.begin = (block - 1) * kC3dBlock;
   }
 
   void find_points() {
@@ -143,7 +141,7 @@ class LayoutFinder {
   void count_beyond_16_bits(std::int64_t named, std::int64_t there, std::size_t bytes) {
     if (named > 65535 || there <= 65535) return;
     const std::int64_t turned = named + (there - named) / 65536 * 65536;
-    const bool ends_there = static_cast<std::size_t>(there - turned) * bytes < kBlock;
+    const bool ends_there = static_cast<std::size_t>(there - turned) * bytes < kC3dBlock;
     if (named != 65535 && !(turned > named && ends_there)) return;
     layout_.frames = static_cast<std::size_t>(named == 65535 ? there : turned);
     warnings.push_back(fmt::format("it names {} frames, which is as far as it counts; it holds {}", named, layout_.frames));

@@ -9,11 +9,11 @@
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/motion/c3d.h"
+#include "marey/format/motion/c3d_parameters.h"
 
 namespace marey::format::motion {
 namespace {
 
-constexpr std::size_t kBlock = 512;
 constexpr std::size_t kMostNames = 255;  // in one parameter
 constexpr std::size_t kLongestName = 127;
 constexpr std::size_t kMostPoints = 65535;
@@ -63,13 +63,13 @@ class ParameterSection {
   /// Whole blocks. Throws where it is longer than the format allows.
   std::string blocks(const std::string& path) {
     std::string section("\x01\x50", 2);
-    const std::size_t count = (4 + bytes_.size() + 2 + kBlock - 1) / kBlock;
+    const std::size_t count = (4 + bytes_.size() + 2 + kC3dBlock - 1) / kC3dBlock;
     if (count > 255)
       throw Error("{}: its names take {} blocks, and a C3D file has room for 255; use shorter or fewer", path, count);
     put_byte(section, count);
     put_byte(section, 84);
     section += bytes_;
-    section.resize(count * kBlock, '\0');
+    section.resize(count * kC3dBlock, '\0');
     return section;
   }
 
@@ -158,7 +158,7 @@ class C3dWriter : public MotionSink {
     const std::int64_t frames = plan_.last_frame - plan_.first_frame + 1;
     const std::int64_t first = plan_.first_frame + 1, last = plan_.last_frame + 1;
     const std::string section = parameters(up, frames, first, last, 0).blocks(path());
-    const std::size_t data_block = 2 + section.size() / kBlock;
+    const std::size_t data_block = 2 + section.size() / kC3dBlock;
     std::string head("\x02\x50", 2);
     put_word(head, static_cast<std::int64_t>(points_));
     put_word(head, 0);
@@ -169,7 +169,7 @@ class C3dWriter : public MotionSink {
     put_word(head, static_cast<std::int64_t>(data_block));
     put_word(head, 0);
     put_real(head, plan_.info.header.rate_hz);
-    head.resize(kBlock, '\0');
+    head.resize(kC3dBlock, '\0');
     file_->write(head);
     file_->write(parameters(up, frames, first, last, data_block).blocks(path()));
   }

@@ -12,8 +12,8 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kPixel = 64;  // QTM's units in a pixel
-constexpr double kMetre = 1000;
+constexpr double kPixel = 64;          // QTM's units in a pixel
+constexpr double kQtmPerMetre = 1000;  // QTM measures places in mm
 
 struct Node {
   pugi::xml_node node;
@@ -61,7 +61,7 @@ RigCamera camera_of(const pugi::xml_node& node, const std::string& path) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) axes(i, j) = at.number(fmt::format("r{}{}", i + 1, j + 1).c_str());
   }
-  const Vector<3> centre = Vector<3>(at.number("x"), at.number("y"), at.number("z")) / kMetre;
+  const Vector<3> centre = Vector<3>(at.number("x"), at.number("y"), at.number("z")) / kQtmPerMetre;
   const Matrix<3> rotation = Vector<3>(1, -1, -1).asDiagonal() * axes;
   camera.camera_from_world = Rigid3{rotation, -(rotation * centre)};
   return camera;
@@ -88,7 +88,7 @@ void add_camera(pugi::xml_node cameras, const RigCamera& camera) {
     set(view, "bottom", camera.size->height - 1);
   }
   const Matrix<3> axes = Vector<3>(1, -1, -1).asDiagonal() * camera.camera_from_world->rotation;
-  const Vector<3> centre = camera.camera_from_world->inverse().translation * kMetre;
+  const Vector<3> centre = camera.camera_from_world->inverse().translation * kQtmPerMetre;
   pugi::xml_node at = node.append_child("transform");
   for (int i = 0; i < 3; ++i) set(at, std::string(1, "xyz"[i]), centre[i]);
   for (int i = 0; i < 3; ++i) {

@@ -33,10 +33,10 @@ constexpr std::array<NamedFormat, 6> kFormats{{{"marey", RigFormat::marey},
 
 constexpr double kNearEnough = 0.05;  // px RMS, of a lens that stands for another
 
-constexpr double kLargest = 1e9;  // of any number in a rig
+constexpr double kLargestInRig = 1e9;  // of any number in a rig
 
 bool is_sound(double value) {
-  return std::abs(value) < kLargest;
+  return std::abs(value) < kLargestInRig;
 }
 
 bool has(std::string_view text, std::string_view part) {
@@ -173,7 +173,7 @@ void check_imported(Rig& rig, const std::string& path) {
         throw Error("{}: camera \"{}\": focal length is {}; it must be positive", path, camera.name, focal);
       }
       const bool sound =
-          (geometry::principal_of(*camera.lens).array().abs() < kLargest).all() &&
+          (geometry::principal_of(*camera.lens).array().abs() < kLargestInRig).all() &&
           std::visit([](const auto& lens) { return std::all_of(lens.distortion.begin(), lens.distortion.end(), is_sound); },
                      *camera.lens);
       if (!sound) throw Error("{}: camera \"{}\": its lens has numbers that are not finite, or beyond 1e9", path, camera.name);
@@ -181,7 +181,7 @@ void check_imported(Rig& rig, const std::string& path) {
     if (camera.rms_px && !is_sound(*camera.rms_px)) camera.rms_px.reset();
     if (!camera.camera_from_world) continue;
     check_rotation(camera.camera_from_world->rotation, path, camera.name);
-    if (!(camera.camera_from_world->translation.array().abs() < kLargest).all())
+    if (!(camera.camera_from_world->translation.array().abs() < kLargestInRig).all())
       throw Error("{}: camera \"{}\": its place is not finite, or beyond 1e9 m", path, camera.name);
   }
 }

@@ -14,6 +14,7 @@
 
 #include "support/data.h"
 #include "support/files.h"
+#include "support/text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -296,12 +297,6 @@ TEST(SelfCalRig, MatricesAndLensesAreOneLens) {
   EXPECT_LT(median_error(folder.path(), true), 0.56) << "px, where its own matrices leave 0.26";
 }
 
-std::string times(std::string_view text, int count) {
-  std::string result;
-  for (int i = 0; i < count; ++i) result += text;
-  return result;
-}
-
 TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
   constexpr int kMany = 200'000;
   const auto refused = [](auto parse, const std::string& text) {
@@ -312,13 +307,13 @@ TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
     }
     return false;
   };
-  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\na: " + times("[", kMany)));
-  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\n" + times("- ", kMany)));
-  EXPECT_TRUE(refused(parse_opencv_rig, "{\"a\": " + times("[", kMany)));
-  EXPECT_TRUE(refused(parse_opencv_rig, "<?xml version=\"1.0\"?>\n<opencv_storage>" + times("<a>", kMany)));
-  EXPECT_TRUE(refused(parse_aniposelib_rig, "[cam_0]\nmatrix" + times(".a", kMany) + " = 1"));
-  EXPECT_TRUE(refused(parse_qualisys_rig, times("<calibration>", kMany)));
-  EXPECT_TRUE(refused(parse_tsai_rig, times("<Camera>", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\na: " + test::repeated("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "%YAML:1.0\n---\n" + test::repeated("- ", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "{\"a\": " + test::repeated("[", kMany)));
+  EXPECT_TRUE(refused(parse_opencv_rig, "<?xml version=\"1.0\"?>\n<opencv_storage>" + test::repeated("<a>", kMany)));
+  EXPECT_TRUE(refused(parse_aniposelib_rig, "[cam_0]\nmatrix" + test::repeated(".a", kMany) + " = 1"));
+  EXPECT_TRUE(refused(parse_qualisys_rig, test::repeated("<calibration>", kMany)));
+  EXPECT_TRUE(refused(parse_tsai_rig, test::repeated("<Camera>", kMany)));
 }
 
 TEST(RigExchange, NoMessageShowsALibrarysInternals) {

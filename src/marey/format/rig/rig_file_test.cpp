@@ -5,6 +5,7 @@
 #include "marey/core/error.h"
 
 #include "support/files.h"
+#include "support/text.h"
 
 namespace marey::format::rig {
 namespace {
@@ -197,15 +198,9 @@ TEST(RigFile, SourcesLieBesideTheFile) {
   EXPECT_THROW(read_rig(folder.path()), Error);
 }
 
-std::string times(std::string_view text, int count) {
-  std::string result;
-  for (int i = 0; i < count; ++i) result += text;
-  return result;
-}
-
 TEST(RigFile, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
-  for (const std::string& text : {"a" + times(".a", 50'000) + " = 1", "[a" + times(".a", 50'000) + "]",
-                                  "a = " + times("[", 200'000), "a = " + times("{a=", 50'000)}) {
+  for (const std::string& text : {"a" + test::repeated(".a", 50'000) + " = 1", "[a" + test::repeated(".a", 50'000) + "]",
+                                  "a = " + test::repeated("[", 200'000), "a = " + test::repeated("{a=", 50'000)}) {
     EXPECT_NE(problems_of(kExample + text).find("nested more than"), std::string::npos);
   }
 }

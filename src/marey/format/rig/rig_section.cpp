@@ -13,14 +13,14 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kLargest = 1e9;         // of any number in the file
+constexpr double kLargestInFile = 1e9;   // of any number in the file
 constexpr double kRotationSlack = 1e-3;  // what rounding to four digits leaves of RᵀR − I
 constexpr double kRotationExact = 1e-9;  // above, the nearest rotation is taken
 
 std::optional<double> number_of(const toml::node& node) {
   if (!node.is_integer() && !node.is_floating_point()) return std::nullopt;
   const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  if (!(std::abs(value) < kLargest)) return std::nullopt;
+  if (!(std::abs(value) < kLargestInFile)) return std::nullopt;
   return value;
 }
 

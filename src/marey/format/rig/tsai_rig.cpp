@@ -15,7 +15,7 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kMetre = 1000;
+constexpr double kMillimetresPerMetre = 1000;
 
 double number(const pugi::xml_node& node, const char* name, const std::string& path) {
   const pugi::xml_attribute attribute = node.attribute(name);
@@ -48,7 +48,7 @@ Rig parse_tsai_rig(std::string_view text, const std::string& path) {
   lens.distortion = {of(in, "kappa1") * focal * focal};
   camera.lens = lens;
   camera.camera_from_world = Rigid3{rotation_of(of(out, "rx"), of(out, "ry"), of(out, "rz")),
-                                    Vector<3>(of(out, "tx"), of(out, "ty"), of(out, "tz")) / kMetre};
+                                    Vector<3>(of(out, "tx"), of(out, "ty"), of(out, "tz")) / kMillimetresPerMetre};
   check_imported(rig, path);
   return rig;
 }
@@ -75,7 +75,7 @@ void write_tsai_rig(const Rig& rig, const std::string& path) {
   constexpr double kPitch = 0.01;
   const double focal = tsai->focal.y() * kPitch;
   const Matrix<3>& R = whole->camera_from_world().rotation;
-  const Vector<3> t = whole->camera_from_world().translation * kMetre;
+  const Vector<3> t = whole->camera_from_world().translation * kMillimetresPerMetre;
   const double rx = std::atan2(R(2, 1), R(2, 2)), ry = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))),
                rz = std::atan2(R(1, 0), R(0, 0));
   WholeFile file(path);

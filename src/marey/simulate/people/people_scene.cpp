@@ -15,7 +15,7 @@
 namespace marey::simulate::people {
 namespace {
 
-struct Walker {
+struct ScenePerson {
   int id = 0;
   Vector<2> place = Vector<2>::Zero();  // m on the ground: right of the camera's start, ahead of it
   double heading = 0, speed = 0;        // rad, m/s
@@ -37,7 +37,7 @@ class Street {
     while (static_cast<int>(walkers_.size()) < options_.people) enter(true);
     for (int frame = 0; frame < options_.frames; ++frame) {
       now_ = frame * dt;
-      for (const Walker& walker : walkers_) show(frame, walker);
+      for (const ScenePerson& walker : walkers_) show(frame, walker);
       move(dt);
     }
     return std::move(truth_);
@@ -58,7 +58,7 @@ class Street {
   }
 
   void enter(bool anywhere) {
-    Walker walker;
+    ScenePerson walker;
     walker.id = next_id_++;
     const double depth = random_.uniform(options_.nearest, options_.farthest);
     const double half = 0.5 * options_.width / options_.focal * depth;
@@ -68,7 +68,7 @@ class Street {
     walker.speed = std::max(0.5, random_.gaussian(1.3, 0.3));
     walker.heading = (side > 0 ? std::numbers::pi : 0) + random_.gaussian(0, 0.5);
     if (beside && anywhere) {
-      const Walker& friend_of = walkers_.back();
+      const ScenePerson& friend_of = walkers_.back();
       walker.place = friend_of.place + Vector<2>(random_.gaussian(0, 0.3), random_.uniform(0.5, 0.9));
       walker.speed = friend_of.speed;
       walker.heading = friend_of.heading;
@@ -82,7 +82,7 @@ class Street {
     walkers_.push_back(walker);
   }
 
-  std::optional<Box> box_of(const Walker& walker) const {
+  std::optional<Box> box_of(const ScenePerson& walker) const {
     const Vector<2> view = in_view(walker.place);
     if (view.y() < 1) return std::nullopt;
     const double scale = options_.focal / view.y();
@@ -96,7 +96,7 @@ class Street {
     return seen;
   }
 
-  void show(int frame, const Walker& walker) {
+  void show(int frame, const ScenePerson& walker) {
     if (const auto box = box_of(walker)) truth_.push_back({frame, walker.id, *box});
   }
 
@@ -105,12 +105,12 @@ class Street {
     turn_ += -turn_ * dt + options_.camera_turn * std::sqrt(2 * dt) * random_.gaussian();
     eye_.place += options_.camera_speed * dt * Vector<2>(std::sin(eye_.yaw), std::cos(eye_.yaw));
     eye_.pitch = 0.6 * eye_.pitch + 0.8 * options_.camera_shake * random_.gaussian();
-    for (Walker& walker : walkers_) {
+    for (ScenePerson& walker : walkers_) {
       walker.heading += 0.25 * std::sqrt(dt) * random_.gaussian();
       const bool stands = now_ >= walker.stop_at && now_ < walker.stop_until;
       if (!stands) walker.place += walker.speed * dt * Vector<2>(std::cos(walker.heading), std::sin(walker.heading));
     }
-    std::erase_if(walkers_, [this](const Walker& walker) {
+    std::erase_if(walkers_, [this](const ScenePerson& walker) {
       const Vector<2> view = in_view(walker.place);
       const double half = 0.5 * options_.width / options_.focal * view.y() + 1;
       return view.y() < 2 || view.y() > 2 * options_.farthest || std::abs(view.x()) > half;
@@ -125,7 +125,7 @@ class Street {
   double turn_ = 0;
   double now_ = 0;
   int next_id_ = 1;
-  std::vector<Walker> walkers_;  // in the order of ids
+  std::vector<ScenePerson> walkers_;  // in the order of ids
   std::vector<TrueBox> truth_;
 };
 

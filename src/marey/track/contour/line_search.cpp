@@ -14,7 +14,7 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr int kMostReach = 48;       // px
+constexpr int kMostReachPx = 48;     // px
 constexpr int kSide = 3;             // px on either side of a candidate that must agree with it
 constexpr double kAgreement = 3;     // what full agreement is worth, in log-likelihood
 constexpr double kLeastStep = 0.5;   // of the foreground's mean from the inner to the outer side
@@ -22,9 +22,9 @@ constexpr double kPixelNoise = 0.4;  // px, standard deviation of a clean edge o
 constexpr double kFrayed = 1.5;      // px, added for an edge of no agreement
 
 struct Profile {
-  int reach = 0;                                ///< samples at −reach … reach
-  std::array<float, 2 * kMostReach + 1> value;  ///< share of foreground, in [0, 1]
-  std::array<bool, 2 * kMostReach + 1> known;
+  int reach = 0;                                  ///< samples at −reach … reach
+  std::array<float, 2 * kMostReachPx + 1> value;  ///< share of foreground, in [0, 1]
+  std::array<bool, 2 * kMostReachPx + 1> known;
 };
 
 float interpolated(const cv::Mat& mask, double x, double y) {
@@ -38,7 +38,7 @@ float interpolated(const cv::Mat& mask, double x, double y) {
 }
 
 void read_profile(const MeasurementLine& line, const LineScene& scene, Profile& profile) {
-  const int reach = std::clamp(static_cast<int>(std::ceil(line.reach)), 1, kMostReach);
+  const int reach = std::clamp(static_cast<int>(std::ceil(line.reach)), 1, kMostReachPx);
   profile.reach = reach;
   for (int i = 0; i <= 2 * reach; ++i) {
     const Vector<2> at = line.foot + (i - reach) * line.normal;

@@ -33,11 +33,11 @@ constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of b
 constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
 constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
 constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
-                 kHiddenCentre = 4;                   // how the centre swings with the steps; the last: factor
-constexpr double kGrowthNoise = 2;                    // 1/s, of the growth read off two outlines
-constexpr double kGate = 3.5;                         // standard deviations
-constexpr double kLeastReach = 4, kMostReach = 0.25;  // of a line: px; heights
-constexpr double kSeen = 0.6, kPartly = 0.25;         // shares of the lines found
+                 kHiddenCentre = 4;                            // how the centre swings with the steps; the last: factor
+constexpr double kGrowthNoise = 2;                             // 1/s, of the growth read off two outlines
+constexpr double kGate = 3.5;                                  // standard deviations
+constexpr double kLeastReachPx = 4, kMostReachHeights = 0.25;  // of a line: px; heights
+constexpr double kSeen = 0.6, kPartly = 0.25;                  // shares of the lines found
 constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
 constexpr double kShareMemory = 0.05;
 constexpr double kMostUnlike = 1.35;  // factor of a silhouette's size over the usual, from which on it is not believed
@@ -151,7 +151,7 @@ class OutlineFollower::Implementation {
   void observe(FollowedTarget& target, const cv::Mat& mask, double dt) {
     others_.clear();
     target.crowded = false;
-    const Box wide = grown(target.box, 2 + kMostReach * target.height);
+    const Box wide = grown(target.box, 2 + kMostReachHeights * target.height);
     for (const FollowedTarget& other : targets_) {
       if (&other == &target || geometry::intersection(other.box, wide).area() <= 0) continue;
       others_.push_back(&other.footprint);
@@ -252,8 +252,8 @@ class OutlineFollower::Implementation {
       if (!(length > 1e-6)) continue;
       const Vector<2> normal(slope.y() / length, -slope.x() / length);
       const double deviation = std::sqrt(std::max(0.0, target.shape.variance(weights, normal)));
-      const double most = std::max(kLeastReach, kMostReach * target.height);
-      target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kLeastReach, most)});
+      const double most = std::max(kLeastReachPx, kMostReachHeights * target.height);
+      target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kLeastReachPx, most)});
       weights_.push_back(weights);
       deviations_.push_back(deviation);
     }

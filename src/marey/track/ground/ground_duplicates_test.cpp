@@ -7,7 +7,7 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr CameraMask left = 1, right = 2;
+constexpr CameraMask by_left = 1, by_right = 2;
 
 GroundDuplicates::Member member(int id, double x, CameraMask cameras) {
   return {.id = TrackId{id}, .position = {x, 0}, .covariance = 0.01 * Matrix<2>::Identity(), .cameras = cameras};
@@ -25,29 +25,29 @@ std::vector<std::pair<TrackId, TrackId>> merged(double apart, CameraMask first, 
 }
 
 TEST(GroundDuplicates, TwoThatCamerasFeedApartAreOne) {
-  const auto merges = merged(0.6, left, right);
+  const auto merges = merged(0.6, by_left, by_right);
   ASSERT_EQ(merges.size(), 1U);
   EXPECT_EQ(merges[0], std::pair(TrackId{1}, TrackId{2})) << "the older one stays";
 }
 
 TEST(GroundDuplicates, TwoThatOneCameraSeesAreTwo) {
-  EXPECT_TRUE(merged(0.6, left | right, right).empty());
-  EXPECT_TRUE(merged(0.6, left, left).empty());
+  EXPECT_TRUE(merged(0.6, by_left | by_right, by_right).empty());
+  EXPECT_TRUE(merged(0.6, by_left, by_left).empty());
 }
 
 TEST(GroundDuplicates, TwoThatAreFartherApartThanCamerasDisagreeAreTwo) {
-  EXPECT_TRUE(merged(1.8, left, right).empty());
-  EXPECT_TRUE(merged(0.6, left, right, 0.05).empty());
+  EXPECT_TRUE(merged(1.8, by_left, by_right).empty());
+  EXPECT_TRUE(merged(0.6, by_left, by_right, 0.05).empty());
 }
 
 TEST(GroundDuplicates, WhoIsNotSeenIsNotMerged) {
-  EXPECT_TRUE(merged(0.1, 0, right).empty());
+  EXPECT_TRUE(merged(0.1, 0, by_right).empty());
 }
 
 TEST(GroundDuplicates, OfThreeEachGoesOnce) {
   GroundDuplicates duplicates;
   for (int i = 0; i < 50; ++i) {
-    const std::vector members = {member(1, 0, left), member(2, 0.3, right), member(3, 0.5, 4)};
+    const std::vector members = {member(1, 0, by_left), member(2, 0.3, by_right), member(3, 0.5, 4)};
     const auto& merges = duplicates.find(timestamp_from_seconds(i / 25.0), members, 0.3);
     if (merges.empty()) continue;
     for (const auto& [kept, gone] : merges) EXPECT_EQ(kept, TrackId{1}) << number(gone);

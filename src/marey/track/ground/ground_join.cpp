@@ -26,7 +26,7 @@ constexpr double tracker_knows = 2;  // what the tracker thought of a piece that
 constexpr double clothes_vary = 5;   // as perceived, one person's colour from one stretch to another: sun, shade, another camera
 constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
-constexpr std::size_t most_kinds = 300;
+constexpr std::size_t kMostKinds = 300;
 
 template <int N>
 double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
@@ -136,7 +136,7 @@ class Chainer {
 
 GroundColours::GroundColours(std::span<const Seen> seen) : kinds_(seen.begin(), seen.end()) {
   std::stable_sort(kinds_.begin(), kinds_.end(), [](const Seen& a, const Seen& b) { return a.seconds > b.seconds; });
-  if (kinds_.size() > most_kinds) kinds_.resize(most_kinds);
+  if (kinds_.size() > kMostKinds) kinds_.resize(kMostKinds);
 }
 
 double GroundColours::same(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const {

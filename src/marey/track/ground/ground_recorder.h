@@ -40,8 +40,8 @@ class GroundRecorder {
     TrackId person{};  ///< its track in the recording
   };
   struct Joined {
-    Recording recording;        ///< a track a person, smoothed, on the world's ground; every frame that was added is an instant
-    std::vector<Piece> pieces;  ///< by track, then by frame; what is in none was a false alarm
+    marey::Recording recording;  ///< a track a person, smoothed, on the world's ground; every frame that was added is an instant
+    std::vector<Piece> pieces;   ///< by track, then by frame; what is in none was a false alarm
     std::vector<std::optional<Appearance>> wears;  ///< of each of its tracks: the median over all that was seen of it
 
     /// Who it was that the tracker called `track` in `frame`.

@@ -10,10 +10,10 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr Appearance white{.lightness = 90, .a = 0, .b = 0, .deviation = 5};
-constexpr Appearance blue{.lightness = 35, .a = 15, .b = -50, .deviation = 5};
+constexpr Appearance white_shirt{.lightness = 90, .a = 0, .b = 0, .deviation = 5};
+constexpr Appearance blue_shirt{.lightness = 35, .a = 15, .b = -50, .deviation = 5};
 
-struct Seen {
+struct Sighting {
   int track = 0;
   double x = 0, y = 0;
   std::optional<Appearance> wears = {};
@@ -28,12 +28,12 @@ class Story {
  public:
   explicit Story(double rate = 25) : rate_(rate) {}
 
-  void instant(const std::vector<Seen>& seen, double late = 0) {
+  void instant(const std::vector<Sighting>& seen, double late = 0) {
     const Timestamp now = timestamp_from_seconds(frame_ / rate_);
     std::map<CameraId, std::vector<Observation<2>>> observations;
     std::vector<Track<2>> tracks;
     std::vector<std::tuple<CameraId, int, TrackId>> claims;
-    for (const Seen& s : seen) {
+    for (const Sighting& s : seen) {
       Track<2> track;
       track.id = TrackId{s.track};
       track.position = Vector<2>(s.x, s.y);
@@ -137,7 +137,7 @@ TEST(GroundRecorder, LateFramesAreBroughtToTheInstant) {
 TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
   Story story;
   for (int k = 0; k < 250; ++k) {
-    std::vector<Seen> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
+    std::vector<Sighting> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
     if (k < 100) seen.push_back({.track = 2, .x = 50, .y = 50, .confirmed = false});
     if (k >= 30 && k < 40) seen.push_back({.track = 3, .x = 70, .y = 50});
     if (k > 100) seen.push_back({.track = 4, .x = 90, .y = 10, .observed = k % 20 == 0});
@@ -182,8 +182,9 @@ TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
     const bool swapped = k >= 125;
     const Vector<2>& first = swapped ? b : a;
     const Vector<2>& second = swapped ? a : b;
-    story.instant({{.track = 1, .x = first.x() + noise(), .y = first.y() + noise(), .wears = swapped ? blue : white},
-                   {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .wears = swapped ? white : blue}});
+    story.instant(
+        {{.track = 1, .x = first.x() + noise(), .y = first.y() + noise(), .wears = swapped ? blue_shirt : white_shirt},
+         {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .wears = swapped ? white_shirt : blue_shirt}});
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 2U);
@@ -245,7 +246,7 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
     const Vector<2> right = runs_right(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
     const Vector<2> left = runs_left(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
     // The track of the one goes on with the other, whose track ends; the one is found again under a new id.
-    std::vector<Seen> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
+    std::vector<Sighting> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
     if (t < -0.1) seen.push_back({.track = 2, .x = left.x(), .y = left.y()});
     if (t > 0.3) seen.push_back({.track = 3, .x = right.x(), .y = right.y()});
     story.instant(seen);
@@ -270,7 +271,7 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::vector<std::vector<Person>> truth;
   Story story;
   for (int frame = 0; frame < 1500; ++frame) {
-    std::vector<Seen> seen;
+    std::vector<Sighting> seen;
     for (std::size_t k = 0; k < people.size(); ++k) {
       Person& person = people[k];
       person.push = 0.9 * person.push + 0.6 * Vector<2>(normal(engine), normal(engine));

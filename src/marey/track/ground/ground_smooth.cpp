@@ -152,7 +152,7 @@ double weight_of(const GroundSample& sample, const Vector<2>& place) {
 }
 
 /// Samples with what is made of them: each one's weight is its moment's fit, less for errors that it shares with its neighbours.
-struct Evidence {
+struct SmoothingPass {
   std::span<const GroundSample> samples;
   std::span<const Timestamp> times;
   const GroundMotion& motion;
@@ -160,7 +160,7 @@ struct Evidence {
   std::vector<double> echoes;  ///< factor on covariances
   std::vector<double> pushes;  ///< up to the sample, in units of the usual power
 
-  Evidence(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
+  SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
       : samples(s), times(t), motion(m), moments(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
     if (!(motion.error_memory > 0) || samples.size() < 2) return;
     // Samples of an autoregressive process of the first order, ρ from one to the next: n of them tell as much of its mean as
@@ -178,7 +178,7 @@ struct Evidence {
 };
 
 /// The power of the pushes round each moment, from the accelerations found there.
-void weigh_pushes(Evidence& seen) {
+void weigh_pushes(SmoothingPass& seen) {
   const std::size_t n = seen.samples.size();
   const double usual = 2 * settled(seen.motion)(1, 1);
   const auto mix = [&](std::size_t i) { return std::exp(-seen.seconds_to(i) / round_moment); };
@@ -193,7 +193,7 @@ void weigh_pushes(Evidence& seen) {
 }
 
 /// Forwards, keeping each state before its observation; then back with the adjoint.
-void smooth_once(Evidence& seen, std::vector<GroundState>& before) {
+void smooth_once(SmoothingPass& seen, std::vector<GroundState>& before) {
   const std::span<const GroundSample> samples = seen.samples;
   std::vector<GroundMoment>& moments = seen.moments;
   Steps steps(seen.motion);
@@ -218,8 +218,9 @@ void smooth_once(Evidence& seen, std::vector<GroundState>& before) {
   }
 }
 
-Evidence smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion, int passes) {
-  Evidence seen(samples, times, motion);
+SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
+                       int passes) {
+  SmoothingPass seen(samples, times, motion);
   std::vector<GroundState> before(samples.size());
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i) seen.moments[i].fit = weight_of(samples[i], seen.moments[i].place);
@@ -232,7 +233,7 @@ Evidence smoothed(std::span<const GroundSample> samples, std::span<const Timesta
 /// The filter alone, over all samples, from the first or from the last on. Of what comes beyond nothing is known: all push alike.
 GroundState filtered(std::span<const GroundSample> samples, std::span<const Timestamp> times, GroundMotion motion, bool forwards) {
   motion.calm = 1;
-  const Evidence seen = smoothed(samples, times, motion, usual_passes);
+  const SmoothingPass seen = smoothed(samples, times, motion, usual_passes);
   const std::size_t n = seen.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
   Steps steps(seen.motion);

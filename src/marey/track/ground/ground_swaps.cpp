@@ -15,7 +15,7 @@ constexpr double fewest_seconds = 0.3;                           // of each one 
 constexpr double apart = 0.4;                                    // s: who comes near again sooner has not parted
 constexpr double colour_seconds = 10;                            // before and after, over which clothes are looked at
 constexpr GroundStray in_the_open{.place = 0.25, .speed = 0.6};  // before and after a meeting people are in full view
-constexpr std::size_t most_kinds = 60;                           // of colours; more only costs time
+constexpr std::size_t kMostKindsTried = 60;                      // of colours; more only costs time
 
 /// Two who were near each other.
 struct Meeting {
@@ -133,7 +133,7 @@ class Exchanger {
     }
     std::stable_sort(seen.begin(), seen.end(),
                      [](const GroundColours::Seen& a, const GroundColours::Seen& b) { return a.seconds > b.seconds; });
-    if (seen.size() > most_kinds) seen.resize(most_kinds);
+    if (seen.size() > kMostKindsTried) seen.resize(kMostKindsTried);
     return GroundColours(seen);
   }
 
