@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "file_checks.h"
+#include "run_hooks.h"
 #include "spelling.h"
 
 namespace marey::cli {
@@ -404,9 +405,13 @@ int Program::run(int argc, char** argv) {
     parser_->app.parse(words);
     command.check_its_files();
     asked_for = command.given();
+    const StopScope scope(stop_by_signals());
     command.run();
   } catch (const EndWith& end) {
     code = end.code;
+  } catch (const Stopped& stopped) {
+    say(stopped.what());
+    code = kInterrupted;
   } catch (const CommandMissing& missing) {
     fmt::print(stderr, "{}", missing.help);
     code = 2;

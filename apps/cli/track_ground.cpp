@@ -57,7 +57,7 @@ track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
                                            const Rig& rig) {
   pipeline::PeopleOnGroundOptions options;
-  options.background = detect::background::parse_background(people.background);
+  options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
@@ -119,7 +119,7 @@ void track_on_ground(const GroundCommand& command, const GroundFlags& flags, con
   const pipeline::GroundOutput output = output_of(command, flags);
   const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(
-      command.quiet, [&](const pipeline::Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
+      command.quiet, [&](const Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
       [&](const pipeline::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <utility>
 
@@ -42,6 +43,22 @@ cv::Rect within(const cv::Rect& region, cv::Size picture, const std::string& sou
 std::string said_of(const RigCamera& camera, const std::string& sentence) {
   return camera.name.empty() ? sentence : fmt::format("camera \"{}\": {}", camera.name, sentence);
 }
+
+/// Ends the waiting for a silent camera when whoever opened the feed is asked to stop, or lets it go.
+class Feed::Life {
+ public:
+  explicit Life(const std::stop_token& outer) : forward_(outer, [this] { end(); }) {}
+  ~Life() { end(); }
+  Life(const Life&) = delete;
+  Life& operator=(const Life&) = delete;
+
+  std::stop_token token() const { return ends_.get_token(); }
+  void end() { ends_.request_stop(); }
+
+ private:
+  std::stop_source ends_;
+  std::stop_callback<std::function<void()>> forward_;
+};
 
 class Feed::Input {
  public:
@@ -171,6 +188,8 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
     throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
                 camera.name);
   }
+  life_ = std::make_unique<Life>(options.stop);
+  const StopScope scope(life_->token());
   try {
     if (camera.source.empty()) {
       input_ = std::make_unique<Boxes>(open_detections(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
@@ -187,12 +206,15 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
 Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input)
     : camera_(camera), id_(id), options_(options), input_(std::move(input)) {}
 
-Feed::~Feed() = default;
+Feed::~Feed() {
+  if (life_ != nullptr) life_->end();
+}
+
 Feed::Feed(Feed&&) noexcept = default;
 Feed& Feed::operator=(Feed&&) noexcept = default;
 
 const SourceInfo& Feed::info() const {
-  return input_->info();
+  return live_ != nullptr ? live_->info() : input_->info();
 }
 
 double Feed::rate_hz() const {
@@ -200,11 +222,18 @@ double Feed::rate_hz() const {
 }
 
 bool Feed::has_pictures() const {
-  return !camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr;
+  return is_live() || (!camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr);
 }
 
 Feed Feed::absent(const RigCamera& camera, CameraId id) {
   return {camera, id, {}, std::make_unique<Nothing>()};
+}
+
+Feed Feed::live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source) {
+  Feed feed(camera, id, {}, nullptr);
+  fit_to_size(feed.camera_, source->info().size);
+  feed.live_ = std::move(source);
+  return feed;
 }
 
 void Feed::find(std::unique_ptr<detect::Detector> detector) {
@@ -214,21 +243,33 @@ void Feed::find(std::unique_ptr<detect::Detector> detector) {
 std::optional<CameraFrame> Feed::next() {
   const auto begin = SteadyClock::now();
   auto result = input_->next();
-  if (!result) {
-    state_ = FeedState::ended;
-    return std::nullopt;
-  }
-  state_ = FeedState::live;
+  state_ = result ? FeedState::live : FeedState::ended;
+  if (!result) return std::nullopt;
   result->decode_s = since(begin);
-  Frame& frame = result->frame;
-  frame.camera = id_;
-  if (options_.steady_times) frame.time = timestamp_from_seconds(steady(seconds(frame.time)));
-  frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
-  if (detector_ == nullptr) return result;
-  const auto decoded = SteadyClock::now();
-  result->detections = detector_->detect(frame, {}).detections;
-  result->detect_s = since(decoded);
-  return result;
+  if (options_.steady_times) result->frame.time = timestamp_from_seconds(steady(seconds(result->frame.time)));
+  return taken_in(std::move(*result));
+}
+
+/// By the rig's clock, and searched where the feed does that.
+CameraFrame Feed::taken_in(CameraFrame given) {
+  given.frame.camera = id_;
+  given.frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
+  if (detector_ == nullptr) return given;
+  const auto begin = SteadyClock::now();
+  given.detections = detector_->detect(given.frame, {}).detections;
+  given.detect_s = since(begin);
+  return given;
+}
+
+std::vector<CameraFrame> Feed::arrived(const LivePolicy& policy) {
+  std::vector<CameraFrame> frames;
+  for (Frame& frame : live_->arrived()) frames.push_back(taken_in({.frame = std::move(frame), .detections = {}}));
+  if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
+  return frames;
+}
+
+FeedState Feed::state(Timestamp begin, const LivePolicy& policy) const {
+  return live_->ended() ? FeedState::ended : health_.at(policy.time->now(), begin, policy);
 }
 
 /// A file rounds its times, to milliseconds often: a camera that keeps its rate is believed more.
@@ -239,6 +280,7 @@ double Feed::steady(double time) {
 }
 
 bool Feed::can_rewind() const {
+  if (is_live()) return false;
   const std::string& path = camera_.source.empty() ? camera_.detections : camera_.source;
   std::error_code ignored;
   // A pattern of names is no file of that name, and can be read again like a folder.
@@ -252,6 +294,7 @@ Feed Feed::again() const {
 }
 
 std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) const {
+  if (!can_rewind()) return {};
   FeedOptions options = options_;
   options.ahead = 0;
   Feed feed(camera_, id_, options);
@@ -260,6 +303,7 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
   std::vector<Frame> samples;
   while (std::ssize(samples) < count) {
     auto next = feed.next();
+    if (options_.stop.stop_requested()) throw Stopped();
     if (!next) break;
     if (next->frame.index % step == 0) samples.push_back(std::move(next->frame));
   }
@@ -268,7 +312,7 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
 
 std::vector<std::string> Feed::warnings() const {
   std::vector<std::string> all;
-  for (const std::string& warning : input_->warnings()) all.push_back(said_of(camera_, warning));
+  for (const std::string& warning : is_live() ? live_->warnings() : input_->warnings()) all.push_back(said_of(camera_, warning));
   if (detector_ == nullptr) return all;
   for (const std::string& warning : detector_->warnings()) all.push_back(said_of(camera_, info().name + ": " + warning));
   return all;

@@ -23,8 +23,8 @@ class SingleCamera {
  public:
   SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
       : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
-        camera_(feed_, area, {.background = options.background}),
-        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view()})),
+        camera_(feed_, area, {.detector = options.detector}),
+        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view_at(Timestamp{})})),
         seconds_(options.seconds) {}
 
   std::optional<std::int64_t> frames() const {
@@ -72,7 +72,7 @@ std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::v
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (goes_on[i]) goes_on[i] = runs[i]->step() ? 1 : 0;
     });
-    if (hooks.report({"comparing clocks", done, total}) == Continue::no) break;
+    hooks.advance({"comparing clocks", done, total});
   }
   std::vector<std::vector<calibrate::pitch::GroundPath>> paths;
   for (const auto& run : runs) paths.push_back(run->paths());

@@ -83,9 +83,8 @@ class PeopleInPicture final : public Stage {
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
-      people_ =
-          std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
-      if (!options.live) people_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
+      detector_ = detect::make_detector(options.detector);
+      if (!options.live) detector_->prime(feed.sample(kSamples, kSampledSeconds, kMostFramesRead));
     }
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
@@ -120,15 +119,16 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
-    if (people_ == nullptr) return;
-    summary.left_out["noise"] = people_->counts().noise;
-    summary.left_out["misfits"] = people_->counts().misfits;
+    if (detector_ == nullptr) return;
+    const detect::DetectionCounts counts = detector_->detection_counts();
+    if (counts.noise) summary.left_out["noise"] = *counts.noise;
+    if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
   }
 
  private:
   detect::Detections detect(const CameraFrame& given) {
     if (given.detections) return {.detections = *given.detections, .foreground = {}};
-    return people_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+    return detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
   }
 
   /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
@@ -152,7 +152,7 @@ class PeopleInPicture final : public Stage {
 
   PeopleInPictureOptions options_;
   RecordingHeader header_;
-  std::unique_ptr<detect::people::PeopleDetector> people_;  // none where the feed brings detections
+  std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::OutlineFollower> follower_;
   std::optional<track::OutlineRecording> outlines_;

@@ -71,7 +71,7 @@ class GroundStage final : public PeopleOnGround {
         observations_(feeds.size()) {
     open_cameras(feeds);
     std::vector<GroundView> views;
-    for (const GroundCamera& camera : cameras_) views.push_back(camera.view());
+    for (const GroundCamera& camera : cameras_) views.push_back(camera.view_at(Timestamp{}));
     tracker_ = track::ground::make_ground_tracker(options.tracker, std::move(views));
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
@@ -164,7 +164,7 @@ class GroundStage final : public PeopleOnGround {
   void open_cameras(const std::vector<Feed>& feeds) {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
-    const GroundCameraOptions how{.background = options_.background, .people = {}, .prime = !options_.live};
+    const GroundCameraOptions how{.detector = options_.detector, .prime = !options_.live};
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], area_, how); });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
@@ -258,8 +258,9 @@ class GroundStage final : public PeopleOnGround {
   bool in_sight(const Vector<2>& place) const {
     if (!area_.holds(place)) return false;
     return std::any_of(cameras_.begin(), cameras_.end(), [&](const GroundCamera& camera) {
-      const auto pixel = camera.view().pixel(place);
-      return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(camera.view().size())).contains({pixel->x(), pixel->y()});
+      const GroundView& view = camera.view_at(Timestamp{});
+      const auto pixel = view.pixel(place);
+      return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(view.size())).contains({pixel->x(), pixel->y()});
     });
   }
 
@@ -276,13 +277,13 @@ class GroundStage final : public PeopleOnGround {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       const auto own = logs_[i].frame_at(instant.index);
       if (!own) continue;
-      const GroundView& view = cameras_[i].view();
+      const GroundView& view = cameras_[i].view_at(instant.time);
       const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
       for (const Sample& sample : instant.samples) {
         const Vector<2> place = area_.world(sample.position.head<2>());
         std::optional<Box> box = logs_[i].box(instant.index, sample.track);
         if (!box) {
-          const auto whole = cameras_[i].box_at(place);
+          const auto whole = cameras_[i].box_at(place, instant.time);
           if (!whole) continue;
           box = geometry::intersection(*whole, picture);
           if (box->empty()) continue;

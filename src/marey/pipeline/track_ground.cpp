@@ -75,6 +75,7 @@ GroundSummary run_over(const Rig& rig, const GroundOutput& output, const PeopleO
 }  // namespace
 
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   check(rig, output, options);
   if (!lacks_offsets(rig)) return run_over(rig, output, options, hooks);
   Rig timed = rig;
@@ -85,7 +86,7 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Peo
         "rig");
   } else {
     RigOffsetsOptions how;
-    how.background = options.background;
+    how.detector = options.detector;
     how.rate_hz = options.rate_hz;
     offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
     enter_offsets(timed, offsets);

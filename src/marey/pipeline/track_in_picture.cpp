@@ -42,6 +42,7 @@ Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
 
 Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
                      const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   Feed feed = open(camera);
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
@@ -53,6 +54,7 @@ Summary track_people(const RigCamera& camera, const TrackOutput& output, const P
 
 Summary track_markers(const RigCamera& camera, const TrackOutput& output, const MarkersInPictureOptions& options,
                       const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   Feed feed = open(camera);
   Sinks sinks = sinks_of(output, feed, {});
   const auto stage = markers_in_picture(feed, options);
