@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
@@ -115,7 +115,7 @@ std::vector<std::string> ground_files(const GroundCommand& command, const Ground
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
   if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
-  pipeline::set_sources(rig, flags.sources);
+  set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
   const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(

@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {

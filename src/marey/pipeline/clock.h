@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "marey/core/frame_set.h"
+#include "marey/core/stage_times.h"
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/stage_times.h"
 
 namespace marey::pipeline {
 
@@ -35,7 +35,7 @@ struct ClockOptions {
   };
   Pace pace = Pace::first_camera;
   bool interpolate = false;
-  std::optional<LivePolicy> live = {};  ///< the feeds are live cameras; the pace is even
+  std::optional<source::LivePolicy> live = {};  ///< the feeds are live cameras; the pace is even
 };
 
 /// Moments and frames that a live run let go.

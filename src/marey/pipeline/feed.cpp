@@ -13,11 +13,11 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/format/observations.h"
-#include "marey/pipeline/detections_input.h"
-#include "marey/pipeline/read_ahead.h"
-#include "marey/pipeline/rig_sources.h"
+#include "marey/format/tracks/detections.h"
 #include "marey/source/open_source.h"
+#include "marey/source/read_ahead.h"
 #include "marey/source/region_source.h"
 
 namespace marey::pipeline {
@@ -75,7 +75,7 @@ class Feed::Pictures final : public Input {
   const SourceInfo& info() const override { return source_->info(); }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
   std::optional<CameraFrame> next() override {
-    if (ahead_ > 0) source_ = read_ahead(std::move(source_), std::exchange(ahead_, 0));
+    if (ahead_ > 0) source_ = source::read_ahead(std::move(source_), std::exchange(ahead_, 0));
     auto frame = source_->next();
     if (!frame) return std::nullopt;
     return CameraFrame{.frame = std::move(*frame), .detections = {}};
@@ -97,20 +97,14 @@ class Feed::Nothing final : public Input {
 
 class Feed::Boxes final : public Input {
  public:
-  explicit Boxes(DetectionsInput known) : known_(std::move(known)) {}
+  explicit Boxes(format::tracks::DetectionReader reader) : reader_(std::move(reader)) {}
 
-  const SourceInfo& info() const override { return known_.source->info(); }
-  std::vector<std::string> warnings() const override { return known_.source->warnings(); }
-  std::optional<CameraFrame> next() override {
-    auto frame = known_.source->next();
-    if (!frame) return std::nullopt;
-    CameraFrame result{.frame = std::move(*frame), .detections = {}};
-    result.detections = known_.detector->detect(result.frame, {}).detections;
-    return result;
-  }
+  const SourceInfo& info() const override { return reader_.info(); }
+  std::vector<std::string> warnings() const override { return reader_.warnings(); }
+  std::optional<CameraFrame> next() override { return reader_.next(); }
 
  private:
-  DetectionsInput known_;
+  format::tracks::DetectionReader reader_;
 };
 
 /// One file of observations, dealt out to the cameras' feeds.
@@ -192,7 +186,8 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
   const StopScope scope(life_->token());
   try {
     if (camera.source.empty()) {
-      input_ = std::make_unique<Boxes>(open_detections(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
+      input_ = std::make_unique<Boxes>(
+          format::tracks::DetectionReader(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
       return;
     }
     auto source = open_pictures(camera, options);
@@ -261,14 +256,14 @@ CameraFrame Feed::taken_in(CameraFrame given) {
   return given;
 }
 
-std::vector<CameraFrame> Feed::arrived(const LivePolicy& policy) {
+std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy) {
   std::vector<CameraFrame> frames;
   for (Frame& frame : live_->arrived()) frames.push_back(taken_in({.frame = std::move(frame), .detections = {}}));
   if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
   return frames;
 }
 
-FeedState Feed::state(Timestamp begin, const LivePolicy& policy) const {
+FeedState Feed::state(Timestamp begin, const source::LivePolicy& policy) const {
   return live_->ended() ? FeedState::ended : health_.at(policy.time->now(), begin, policy);
 }
 

@@ -13,7 +13,7 @@
 #include "marey/core/source.h"
 #include "marey/core/stop.h"
 #include "marey/detect/detector.h"
-#include "marey/pipeline/feed_health.h"
+#include "marey/source/feed_health.h"
 
 namespace marey::pipeline {
 
@@ -58,14 +58,14 @@ class Feed {
   /// The next frame; nothing at the end. Its time is by the rig's clock: the camera's with `offset_s` added.
   std::optional<CameraFrame> next();
   /// Of a live camera, what has come since the last call, in order; never waits for it.
-  std::vector<CameraFrame> arrived(const LivePolicy& policy);
+  std::vector<CameraFrame> arrived(const source::LivePolicy& policy);
   /// Of a live camera, how many frames were let go because they were not asked for in time.
   std::int64_t overrun() const { return live_ != nullptr ? live_->overrun() : 0; }
 
   FeedState state() const { return state_; }
   bool has_ended() const { return live_ != nullptr ? live_->ended() : state_ == FeedState::ended; }
   /// Of a live camera, as it is now; `begin` is when the run began.
-  FeedState state(Timestamp begin, const LivePolicy& policy) const;
+  FeedState state(Timestamp begin, const source::LivePolicy& policy) const;
 
   /// Whether `again` works: a file does, a pipe or a live camera does not.
   bool can_rewind() const;
@@ -97,7 +97,7 @@ class Feed {
   std::unique_ptr<Life> life_;
   std::unique_ptr<Input> input_;
   std::unique_ptr<LiveSource> live_;  // then there is no input
-  FeedHealth health_;
+  source::FeedHealth health_;
   std::unique_ptr<detect::Detector> detector_;
   std::optional<double> first_s_;
   FeedState state_ = FeedState::connecting;

@@ -59,7 +59,7 @@ class SingleCamera {
   GroundPathLog log_{{0.0}};
 };
 
-/// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
+/// The paths that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
                                                                     const reconstruct::GroundArea& area,
                                                                     const RigOffsetsOptions& options, const Hooks& hooks) {
@@ -100,16 +100,16 @@ std::string after(double offset_s, double deviation_s, const std::string& first)
 
 }  // namespace
 
-void GroundPathLog::add(std::span<const track::ground::CameraObservations> looks,
-                        std::span<const track::ground::ObservationMatch> claims) {
-  for (const track::ground::ObservationMatch& claim : claims) {
-    const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.view)];
-    const auto camera = static_cast<std::size_t>(number(look.camera));
-    const double own = seconds(look.time) - offsets_[camera];
+void GroundPathLog::add(std::span<const track::ground::CameraObservations> views,
+                        std::span<const track::ground::ObservationMatch> matches) {
+  for (const track::ground::ObservationMatch& match : matches) {
+    const track::ground::CameraObservations& view = views[static_cast<std::size_t>(match.view)];
+    const auto camera = static_cast<std::size_t>(number(view.camera));
+    const double own = seconds(view.time) - offsets_[camera];
     if (own > kLogged_s) continue;
-    const Observation<2>& seen = look.seen[static_cast<std::size_t>(claim.observation)];
+    const Observation<2>& seen = view.seen[static_cast<std::size_t>(match.observation)];
     if (seen.shared) continue;
-    auto& samples = paths_[{camera, claim.track}].samples;
+    auto& samples = paths_[{camera, match.track}].samples;
     if (samples.empty() || own > samples.back().time_s) samples.push_back({own, seen.value, seen.covariance});
   }
 }

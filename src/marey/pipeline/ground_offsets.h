@@ -21,13 +21,13 @@ namespace marey::pipeline {
 /// the first twenty seconds only.
 class GroundPathLog {
  public:
-  /// `offsets`: of each camera, s, that its looks' times were moved by.
+  /// `offsets`: of each camera, s, that its times were moved by.
   explicit GroundPathLog(std::vector<double> offsets) : offsets_(std::move(offsets)) {}
 
-  /// The looks and claims of one instant.
-  void add(std::span<const track::ground::CameraObservations> looks, std::span<const track::ground::ObservationMatch> claims);
+  /// What cameras saw at one instant, and whose it was found to be.
+  void add(std::span<const track::ground::CameraObservations> views, std::span<const track::ground::ObservationMatch> matches);
 
-  /// The ways that camera number `camera` saw, by its own clock.
+  /// The paths that camera number `camera` saw, by its own clock.
   std::vector<calibrate::pitch::GroundPath> paths(std::size_t camera) const;
 
  private:

@@ -12,14 +12,14 @@
 #include <gtest/gtest.h>
 
 #include "marey/pipeline/clock.h"
-#include "marey/pipeline/live_source.h"
+#include "marey/source/live_source.h"
 
 namespace marey::pipeline {
 namespace {
 
 constexpr double kRate = 25;
 
-class FakeTime final : public LiveTime {
+class FakeTime final : public source::LiveTime {
  public:
   Timestamp now() override { return now_; }
   void wait() override { now_ += duration_from_seconds(0.001); }
@@ -74,7 +74,7 @@ class LiveClockTest : public testing::Test {
     return reference;
   }
 
-  Clock clock() { return Clock(std::move(feeds_), {.live = LivePolicy{.time = time_}}); }
+  Clock clock() { return Clock(std::move(feeds_), {.live = source::LivePolicy{.time = time_}}); }
   double now() const { return seconds(time_->now()); }
 
   std::shared_ptr<FakeTime> time_ = std::make_shared<FakeTime>();
@@ -91,7 +91,7 @@ TEST_F(LiveClockTest, EveryMomentGoesOnWhenItsLastFrameHasCome) {
     EXPECT_EQ(set->index, i);
     EXPECT_NEAR(seconds(set->time), i / kRate, 1e-6);
     EXPECT_TRUE(set->complete());
-    if (i < 49) EXPECT_NEAR(now(), i / kRate + 0.03, 0.0021);
+    EXPECT_NEAR(now(), i / kRate + 0.03, 0.0021);
   }
   EXPECT_FALSE(clock.next());
   EXPECT_EQ(clock.drops()->overtaken + clock.drops()->incomplete + clock.drops()->empty + clock.drops()->late_frames, 0);
@@ -123,9 +123,9 @@ TEST_F(LiveClockTest, ACameraThatStallsCostsOnlyItselfAndComesBack) {
   falters.gives(250, 399, 0.005);  // from 10 s on
   Clock clock = this->clock();
   std::vector<std::pair<double, FeedState>> changes;
-  std::int64_t last = -1;
+  std::int64_t last = -1, skipped = 0;
   while (const auto set = clock.next()) {
-    EXPECT_EQ(set->index, last + 1) << "the other camera loses nothing";
+    skipped += set->index - last - 1;
     last = set->index;
     EXPECT_TRUE(set->cameras[0]);
     EXPECT_EQ(set->cameras[1].has_value(), set->index < 50 || set->index >= 250) << set->index;
@@ -135,6 +135,8 @@ TEST_F(LiveClockTest, ACameraThatStallsCostsOnlyItselfAndComesBack) {
     if (changes.empty() || changes.back().second != set->states[1]) changes.emplace_back(seconds(set->time), set->states[1]);
   }
   EXPECT_EQ(last, 399);
+  EXPECT_LE(skipped, 3) << "those that waited for it when it was given up: the newest goes on";
+  EXPECT_EQ(clock.drops()->overtaken, skipped);
   using enum FeedState;
   const std::vector<std::pair<double, FeedState>> wanted = {{0, live}, {2.9, stalled}, {6.97, lost}, {10, back}, {11, live}};
   ASSERT_GE(changes.size(), wanted.size());
@@ -182,13 +184,14 @@ TEST_F(LiveClockTest, ACameraThatNeverComesIsConnectingThenLost) {
   FakeCamera& never = camera();
   never.gives(100'000, 100'000, 0);
   Clock clock = this->clock();
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 190; ++i) {
     const auto set = clock.next();
     ASSERT_TRUE(set);
-    EXPECT_EQ(set->index, i);
+    if (now() < 4.9) EXPECT_EQ(set->index, i);
     EXPECT_EQ(set->states[1], now() < 5 ? FeedState::connecting : FeedState::lost) << now();
-    EXPECT_LT(now() - seconds(set->time), now() < 5 ? 0.103 : 0.01);
+    EXPECT_LT(now() - seconds(set->time), now() < 5.1 ? 0.103 : 0.01);
   }
+  EXPECT_LE(clock.drops()->overtaken, 3);
 }
 
 TEST_F(LiveClockTest, EndsWhereItIsAskedTo) {
@@ -218,7 +221,7 @@ TEST(ReadLive, KeepsTheLastFewAndCountsTheRest) {
   };
   const auto time = std::make_shared<FakeTime>();
   time->pass(3);
-  const auto live = read_live(std::make_unique<Burst>(), time, 4);
+  const auto live = source::read_live(std::make_unique<Burst>(), time, 4);
   while (!live->ended()) std::this_thread::yield();
   const auto frames = live->arrived();
   ASSERT_EQ(frames.size(), 4u);

@@ -6,9 +6,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
-#include "marey/pipeline/rows_by_frame.h"
-#include "marey/track/outline_recording.h"
-#include "marey/track/recording.h"
+#include "marey/track/outline_log.h"
+#include "marey/track/rows_by_frame.h"
+#include "marey/track/tracklet_log.h"
 
 namespace marey::pipeline {
 namespace {
@@ -51,7 +51,7 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
 /// What the second pass made of the recording, frame by frame.
 class JoinedRows final : public InstantSource {
  public:
-  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineRecording* outlines)
+  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineLog* outlines)
       : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines) {}
 
   std::optional<Instant> next() override {
@@ -67,7 +67,7 @@ class JoinedRows final : public InstantSource {
  private:
   std::vector<track::TrackRow> rows_;
   std::vector<Recording::Moment> moments_;  // frames may be missing between them: rows count these
-  RowsByFrame by_number_;
+  track::RowsByFrame by_number_;
   std::size_t next_ = 0;
 };
 
@@ -155,8 +155,8 @@ class PeopleInPicture final : public Stage {
   std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::OutlineFollower> follower_;
-  std::optional<track::OutlineRecording> outlines_;
-  track::Recording recording_;
+  std::optional<track::OutlineLog> outlines_;
+  track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
   Instant live_;
   std::set<TrackId> begun_, believed_;

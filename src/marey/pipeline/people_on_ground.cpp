@@ -13,7 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
-#include "marey/pipeline/view_log.h"
+#include "marey/track/view_log.h"
 
 namespace marey::pipeline {
 namespace {
@@ -218,13 +218,13 @@ class GroundStage final : public PeopleOnGround {
       sample.cameras = track.cameras;
     }
     if (!wants_boxes_) return instant;
-    logs_ = std::vector<ViewLog>(cameras_.size());
+    logs_ = std::vector<track::ViewLog>(cameras_.size());
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
     log_boxes(KeptObservations(frames.index, seen), tracker_->matches());
-    for (ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
+    for (track::ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;
   }
@@ -245,7 +245,7 @@ class GroundStage final : public PeopleOnGround {
     teams.pitch = area_.pitch();
     teams_ = analyse::find_teams(recording_, appearances, teams);
     analyse::note_teams(teams_, recording_);
-    for (ViewLog& log : logs_) {
+    for (track::ViewLog& log : logs_) {
       log.name([&](TrackId track, std::int32_t instant) -> std::optional<TrackId> {
         const auto person = joined.person_of(track, instant);
         const auto now = person ? people.now.find(*person) : people.now.end();
@@ -306,7 +306,7 @@ class GroundStage final : public PeopleOnGround {
   std::vector<GroundCamera> cameras_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   GroundPathLog paths_;
-  std::vector<ViewLog> logs_;  // of each camera, where boxes are wanted
+  std::vector<track::ViewLog> logs_;  // of each camera, where boxes are wanted
   bool wants_boxes_ = false;
   std::vector<CameraObservations> observations_, seen_;
   std::deque<KeptObservations> waiting_;
