@@ -93,7 +93,7 @@ Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate:
 
 }  // namespace
 
-HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options) {
+HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options, const Hooks& hooks) {
   HypothesesExperiment experiment{.scenes = options.scenes, .seed = options.seed, .kinds = {}, .meetings = {}, .rows = {}};
   for (const Kind& kind : kinds) {
     experiment.kinds.emplace_back(kind.name);
@@ -123,7 +123,7 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     }
     const std::lock_guard lock(mutex);
     ++done;
-    if (options.progress) options.progress(done, all);
+    hooks.advance({"scenes", done, all});
   });
   for (std::size_t m = 0; m < kAssociations.size(); ++m) {
     auto& row = experiment.rows.emplace_back();

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "marey/core/hooks.h"
 #include "marey/simulate/encounters.h"
 #include "marey/track/ground/ground_tracker.h"
 
@@ -15,8 +15,7 @@ struct HypothesesExperimentOptions {
   int scenes = 100;  ///< of each kind of meeting
   std::uint64_t seed = 1;
   simulate::EncounterOptions encounters;
-  track::ground::GroundTrackerOptions tracker;      ///< for all methods; `associate` is not looked at
-  std::function<void(int done, int all)> progress;  ///< scenes
+  track::ground::GroundTrackerOptions tracker;  ///< for all methods; `associate` is not looked at
 };
 
 struct HypothesesExperiment {
@@ -42,7 +41,7 @@ struct HypothesesExperiment {
 /// The same scenes of people who meet and part, told apart by place alone, followed by each association with the same filter,
 /// gates, costs, birth and death. Judged is what the tracker has decided (GroundTracker::decided); "mht, live" is what mht guessed
 /// in the step itself. A track and a person may match within 1 m.
-HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options);
+HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options, const Hooks& hooks = {});
 
 /// As text: a table of switches and one of times.
 std::string to_text(const HypothesesExperiment& experiment);

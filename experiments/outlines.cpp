@@ -225,7 +225,7 @@ FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExpe
 
 }  // namespace
 
-OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options) {
+OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options, const Hooks& hooks) {
   OutlineExperiment experiment;
   experiment.seed = options.seed;
   for (const OutlineCase& what : cases(options.videos)) {
@@ -242,7 +242,7 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
       results[static_cast<std::size_t>(v)] = follow(what, options.seed + static_cast<std::uint64_t>(v), options);
       const std::lock_guard lock(telling);
       ++done;
-      if (options.progress) options.progress(done, all);
+      hooks.advance({"films", done, all});
     });
     FilmResult total;
     for (const FilmResult& result : results) {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "marey/core/hooks.h"
 #include "marey/simulate/people/people_film.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/contour/published_outline.h"
@@ -52,7 +52,6 @@ struct OutlineExperimentOptions {
   std::string only;  ///< names of cases that hold this text; empty for all
   track::contour::OutlineOptions outlines;
   track::contour::PublishedOptions published;
-  std::function<void(int done, int all)> progress;  ///< videos
 };
 
 /// The same films, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:
@@ -63,7 +62,7 @@ struct OutlineExperimentOptions {
 /// Boxes and published filters have no birth of their own: each begins with the first two detections in a row that are on its
 /// person, and is then alone. Everybody knows the past alone; the detector has seen the scene before,
 /// with other people in it, as one that has run for a while.
-OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options);
+OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options, const Hooks& hooks = {});
 
 /// A table a case.
 std::string to_text(const OutlineExperiment& experiment);

@@ -211,7 +211,7 @@ std::vector<TrackerRow> paper_rows() {
 
 }  // namespace
 
-TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options) {
+TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options, const Hooks& hooks) {
   TrackerExperiment experiment{options.videos, options.seed, paper_rows(), {}};
   const std::vector<TrackerMethod> all_methods = tracker_methods();
   for (const TrackerMethod& method : all_methods) experiment.ours.push_back({method.name, {}, {}, {}});
@@ -220,7 +220,7 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
   int done = 0;
   const auto tell = [&] {
     ++done;
-    if (options.progress) options.progress(done, all);
+    hooks.advance({"videos", done, all});
   };
 
   for (std::size_t s = 0; s < kSituations.size(); ++s) {

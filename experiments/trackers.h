@@ -2,10 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "marey/core/hooks.h"
 
 namespace marey::experiments {
 
@@ -43,7 +44,6 @@ struct TrackerExperimentOptions {
   int videos = 20;
   std::uint64_t seed = 1;
   std::vector<int> timed_markers = {1, 5, 10, 15, 20, 25, 30};
-  std::function<void(int done, int all)> progress;  ///< videos
 };
 
 /// Tables I–VII of Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion
@@ -51,7 +51,7 @@ struct TrackerExperimentOptions {
 /// what was seen, with the past alone. Losses follow judge_labels; an error is the distance from the prediction made before
 /// a frame to the point then measured, in videos without a loss. Throws Error where videos cannot be written to the temporary
 /// folder.
-TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options);
+TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options, const Hooks& hooks = {});
 
 /// Tables I–VII as text, the paper's rows above ours.
 std::string to_text(const TrackerExperiment& experiment);

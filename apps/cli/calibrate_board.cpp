@@ -13,8 +13,8 @@
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
-#include "progress_bar.h"
 #include "rig_inputs.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -64,17 +64,10 @@ void print_table(const pipeline::BoardRun& run) {
 void run(const CalibrateBoard& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
   const Rig rig = rig_of(command.inputs);
-  pipeline::BoardRunOptions options = command.run;
-  pipeline::BoardRun found;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](const std::string& camera, std::int64_t done, std::optional<std::int64_t> all) {
-      bar.show("looking for the board in " + camera, done, all);
-    };
-    found = pipeline::calibrate_board_from(rig, board, options);
-  }
+  const pipeline::BoardRun found =
+      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_board(rig, board, command.run, hooks); });
   format::rig::write_rig(found.rig, command.out);
-  for (const std::string& sentence : found.found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(found.found.warnings);
   if (command.json) {
     print(as_json(found));
   } else if (!command.quiet) {

@@ -16,7 +16,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -107,16 +107,11 @@ void draw(const CalibrateLens& command, const calibrate::LensCalibration& found)
 
 void run(const CalibrateLens& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
-  pipeline::LensRunOptions options = command.run;
-  pipeline::LensRun found;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { bar.show("looking for the board", done, all); };
-    found = pipeline::calibrate_lens_from(command.input, board, options);
-  }
+  const pipeline::LensRun found = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_lens(command.input, board, command.run, hooks); });
   if (!command.out.empty()) format::rig::write_rig(rig_of(command, found.calibration), command.out);
   if (!command.picture.empty()) draw(command, found.calibration);
-  for (const std::string& sentence : found.calibration.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(found.calibration.warnings);
   if (command.json) {
     print(as_json(command, found));
   } else if (!command.quiet) {

@@ -14,8 +14,8 @@
 #include "commands.h"
 #include "json_value.h"
 #include "pitch_size.h"
-#include "progress_bar.h"
 #include "rig_inputs.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -121,14 +121,11 @@ void run(const CalibratePitch& command) {
   options.pitch.size = parse_pitch_size(command.size);
   options.pictures = command.pictures;
   options.synced = command.synced;
-  pipeline::PitchRun found;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](const std::string& what, int done, int all) { bar.show(what, done, all); };
-    found = pipeline::calibrate_pitch_of(rig, parse_points(command.points), options);
-  }
+  const pipeline::PitchRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::calibrate_pitch(rig, parse_points(command.points), options, hooks);
+  });
   format::rig::write_rig(found.rig, command.out);
-  for (const std::string& sentence : found.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(found.warnings);
   if (command.json) {
     print(as_json(found));
   } else if (!command.quiet) {

@@ -1,3 +1,5 @@
+#include "marey/pipeline/calibrate_wand.h"
+
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -6,18 +8,14 @@
 
 #include <fmt/core.h>
 
-#include "marey/calibrate/wand/wand.h"
-#include "marey/core/error.h"
-#include "marey/format/observations.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/camera_blobs.h"
 
 #include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
-#include "progress_bar.h"
 #include "rig_inputs.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -25,10 +23,7 @@ namespace {
 struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
-  calibrate::wand::LensUse lens = calibrate::wand::LensUse::automatic;
-  detect::markers::MarkerOptions markers;
-  calibrate::wand::WandOptions options;
-  bool synced = false;
+  pipeline::CalibrateWandOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -112,42 +107,19 @@ void print_table(const calibrate::wand::WandResult& result) {
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
 }
 
-calibrate::wand::WandInput read(const CalibrateWand& command, bool& timed, ProgressBar& bar) {
-  calibrate::wand::WandInput input;
-  input.wand = wand_of(command.wand);
-  input.rig = rig_of(command.inputs);
-  pipeline::CameraBlobs blobs;
-  if (!command.inputs.observations.empty()) {
-    blobs = pipeline::read_blobs(command.inputs.observations, input.rig);
-  } else {
-    blobs = pipeline::find_blobs(input.rig, command.markers,
-                                 [&](std::int64_t done) { bar.show("looking for markers", done, std::nullopt); });
-  }
-  for (const std::string& sentence : blobs.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
-  timed = blobs.timed;
-  input.seen = std::move(blobs.seen);
-  return input;
-}
-
 void run(const CalibrateWand& command) {
-  calibrate::wand::WandOptions options = command.options;
-  options.distance = distance_of(command.distance);
-  options.lens = command.lens;
-  calibrate::wand::WandResult result;
-  {
-    ProgressBar bar(command.quiet);
-    bool timed = true;
-    const calibrate::wand::WandInput input = read(command, timed, bar);
-    options.find_offsets = timed && !command.synced;
-    std::int64_t step = 0;
-    options.step = [&](std::string_view what) { bar.show(what, step++, std::nullopt); };
-    result = calibrate::wand::calibrate_wand(input, options);
-  }
-  format::rig::write_rig(result.rig, command.out);
+  pipeline::CalibrateWandOptions options = command.options;
+  options.observations = command.inputs.observations;
+  options.wand = wand_of(command.wand);
+  options.how.distance = distance_of(command.distance);
+  const pipeline::WandCalibration result = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig_of(command.inputs), options, hooks); });
+  warn(result.warnings);
+  format::rig::write_rig(result.found.rig, command.out);
   if (command.json) {
-    print(as_json(result));
+    print(as_json(result.found));
   } else if (!command.quiet) {
-    print_table(result);
+    print_table(result.found);
     fmt::print("rig: {}\n", command.out);
   }
 }
@@ -167,12 +139,12 @@ void add_calibrate_wand(Command& calibrate) {
   command.text("--distance", options->distance, "CAM1,CAM2=METRES: how far two cameras stand apart, for a single light's scale")
       .check([](const std::string& text) { distance_of(text); });
   command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);
-  command.choice("--lens", options->lens, kLensUses,
+  command.choice("--lens", options->options.how.lens, kLensUses,
                  "refined where that explains more, and estimated where not given (auto); kept; refined");
-  command.flag("--synced", options->synced, "the cameras' clocks are right: look for no time offsets");
-  command.seed(options->options.seed, "of the random draws");
-  add_threshold(command, options->markers.threshold);
-  command.flag("--dark", options->markers.dark, "markers are darker than what is around them");
+  command.flag("--synced", options->options.synced, "the cameras' clocks are right: look for no time offsets");
+  command.seed(options->options.how.seed, "of the random draws");
+  add_threshold(command, options->options.markers.threshold);
+  command.flag("--dark", options->options.markers.dark, "markers are darker than what is around them");
   command.reports(options->json, options->quiet, "table");
   command.runs([options] { run(*options); });
 }

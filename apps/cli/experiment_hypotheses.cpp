@@ -8,7 +8,7 @@
 #include "commands.h"
 #include "experiments/hypotheses.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -37,13 +37,8 @@ Json as_json(const experiments::HypothesesExperiment& experiment) {
 }
 
 void run(const ExperimentHypotheses& command) {
-  experiments::HypothesesExperimentOptions options = command.options;
-  experiments::HypothesesExperiment experiment;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](int done, int all) { bar.show("scenes", done, all); };
-    experiment = experiments::run_hypotheses_experiment(options);
-  }
+  const experiments::HypothesesExperiment experiment = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return experiments::run_hypotheses_experiment(command.options, hooks); });
   if (command.json) {
     print(as_json(experiment));
   } else if (!command.quiet) {

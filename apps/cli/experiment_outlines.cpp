@@ -10,7 +10,7 @@
 #include "commands.h"
 #include "experiments/outlines.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -41,14 +41,9 @@ Json as_json(const experiments::OutlineExperiment& experiment) {
 }
 
 void run(const ExperimentOutlines& command) {
-  experiments::OutlineExperimentOptions options = command.options;
-  experiments::OutlineExperiment experiment;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](int done, int all) { bar.show("films", done, all); };
-    experiment = experiments::run_outline_experiment(options);
-  }
-  if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", options.only);
+  const experiments::OutlineExperiment experiment =
+      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_outline_experiment(command.options, hooks); });
+  if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", command.options.only);
   if (command.json) {
     print(as_json(experiment));
   } else if (!command.quiet) {

@@ -8,7 +8,7 @@
 #include "commands.h"
 #include "experiments/trackers.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -49,13 +49,8 @@ Json as_json(const std::vector<experiments::TrackerRow>& rows) {
 }
 
 void run(const ExperimentTrackers& command) {
-  experiments::TrackerExperimentOptions options = command.options;
-  experiments::TrackerExperiment experiment;
-  {
-    ProgressBar bar(command.quiet);
-    options.progress = [&](int done, int all) { bar.show("videos", done, all); };
-    experiment = experiments::run_tracker_experiment(options);
-  }
+  const experiments::TrackerExperiment experiment =
+      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_tracker_experiment(command.options, hooks); });
   if (command.json) {
     print({{"videos", experiment.videos},
            {"seed", experiment.seed},

@@ -6,25 +6,22 @@
 
 #include <fmt/core.h>
 
-#include "marey/core/error.h"
-#include "marey/core/whole_file.h"
-#include "marey/format/match/ground_exchange.h"
 #include "marey/pipeline/measure_match.h"
 
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
 #include "pitch_size.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
 
 struct MeasureCommand {
-  std::string tracks, out, report;
+  std::string tracks;
+  pipeline::MeasureOutput output;
   std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68";
-  analyse::MeasureOptions options;
-  std::string metadata;
-  double rate_hz = 25;
+  pipeline::MeasureMatchOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -73,24 +70,22 @@ void print_table(const analyse::Measurement& measured) {
   }
 }
 
+std::string report_file(const MeasureCommand& command) {
+  return (std::filesystem::path(command.output.report) / "report.html").string();
+}
+
 void run(const MeasureCommand& command) {
-  analyse::MeasureOptions options = command.options;
-  options.path.method = analyse::parse_path_method(command.method);
-  options.zones = parse_zones(command.zones);
-  options.pitch = parse_pitch_size(command.size);
-  const analyse::Measurement measured = analyse::measure(
-      format::match::read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
-  if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", command.tracks);
-  WholeFile file(command.out);
-  file.write(pipeline::measurement_csv(measured, options));
-  if (!command.report.empty())
-    pipeline::write_report(measured, options, std::filesystem::path(command.tracks).stem().string(), command.report);
-  file.finish();
+  pipeline::MeasureMatchOptions options = command.options;
+  options.how.path.method = analyse::parse_path_method(command.method);
+  options.how.zones = parse_zones(command.zones);
+  options.how.pitch = parse_pitch_size(command.size);
+  const analyse::Measurement measured = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::measure_match(command.tracks, command.output, options, hooks); });
   if (command.json) {
     report_json(measured);
   } else if (!command.quiet) {
     print_table(measured);
-    if (!command.report.empty()) fmt::print("report: {}\n", (std::filesystem::path(command.report) / "report.html").string());
+    if (!command.output.report.empty()) fmt::print("report: {}\n", report_file(command));
   }
 }
 
@@ -104,17 +99,18 @@ void add_measure(Command& program) {
           "TRACKS", options->tracks,
           "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y; or TRACAB, EPTS, Metrica, ...: see marey convert")
       .required();
-  command.output_file("-o,--output", options->out, "CSV with a row for each person").required().ends_in({".csv"});
-  command.output_folder("--report", options->report, "folder for a page with plots, tables, heat maps and paths");
+  command.output_file("-o,--output", options->output.figures, "CSV with a row for each person").required().ends_in({".csv"});
+  command.output_folder("--report", options->output.report, "folder for a page with plots, tables, heat maps and paths");
   command.text("--smoothing", options->method, "of the paths: lowpass, savgol, kalman or raw").check(analyse::parse_path_method);
-  command.number("--cutoff", options->options.path.cutoff_hz, "Hz", closed(0.01, 100), "of lowpass");
+  command.number("--cutoff", options->options.how.path.cutoff_hz, "Hz", closed(0.01, 100), "of lowpass");
   command.text("--zones", options->zones, "borders between speed zones, m/s").check(parse_zones);
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
-  command.input_file("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
-  command.number("--rate", options->rate_hz, "Hz", kRates, "frames a second, where TRACKS does not say");
+  command.input_file("--metadata", options->options.metadata,
+                     "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
+  command.number("--rate", options->options.rate_hz, "Hz", kRates, "frames a second, where TRACKS does not say");
   command.also_writes([options] {
-    if (options->report.empty()) return std::vector<std::string>{};
-    return std::vector{(std::filesystem::path(options->report) / "report.html").string()};
+    if (options->output.report.empty()) return std::vector<std::string>{};
+    return std::vector{report_file(*options)};
   });
   command.reports(options->json, options->quiet, "figures");
   command.runs([options] { run(*options); });

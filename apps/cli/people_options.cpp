@@ -41,9 +41,13 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   command.group("");
 }
 
+detect::DetectorOptions detector_options(const PeopleFlags& flags) {
+  return detect::people::PeopleDetectorOptions{.background = detect::background::parse_background(flags.background), .people = {}};
+}
+
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
   pipeline::PeopleInPictureOptions options;
-  options.background = detect::background::parse_background(flags.background);
+  options.detector = detector_options(flags);
   if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
     options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyPixels);
   }

@@ -21,6 +21,9 @@ struct PeopleFlags {
   std::optional<int> lines;
 };
 
+/// The detector that they choose, wherever people are searched for in pictures.
+detect::DetectorOptions detector_options(const PeopleFlags& flags);
+
 void add_people_options(Command& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.

@@ -77,7 +77,7 @@ void run(const ReconstructCommand& command) {
   if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   run_with_progress(
       command.quiet,
-      [&](const pipeline::Hooks& hooks) {
+      [&](const Hooks& hooks) {
         return pipeline::reconstruct(rig_of(command.inputs), command.inputs.observations, command.out, options, hooks);
       },
       [&](const pipeline::Summary& summary, double) {

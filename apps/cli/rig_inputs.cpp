@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
+#include "marey/core/rig_sources.h"
 #include "marey/format/observations.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/rig_sources.h"
 
 namespace marey::cli {
 
@@ -28,7 +28,7 @@ Option add_rig(Command& command, RigAndSources& inputs, const std::string& meani
 
 Rig rig_of(const RigAndSources& inputs) {
   Rig rig = format::rig::read_rig(inputs.rig);
-  pipeline::set_sources(rig, inputs.sources);
+  set_sources(rig, inputs.sources);
   return rig;
 }
 

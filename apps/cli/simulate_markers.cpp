@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "file_checks.h"
 #include "json_value.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -44,9 +45,8 @@ void run(const SimulateMarkers& command) {
   make_folder(folder.string());
   const simulate::markers::MarkerScene scene =
       simulate::markers::simulate_markers(situation_of(command.name), command.seed, command.scene);
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_markers(scene, folder.string(), hooks); });
   const std::string video = (folder / "video.mp4").string(), truth = (folder / "truth.csv").string();
-  pipeline::film_markers(scene, video);
-  pipeline::write_marker_truth(scene, truth);
   const std::size_t frames = scene.frames.size(), markers = scene.frames.front().size();
   if (command.json) {
     print({{"frames", frames}, {"markers", markers}, {"seed", command.seed}, {"video", video}, {"truth", truth}});

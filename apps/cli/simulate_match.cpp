@@ -13,7 +13,7 @@
 #include "file_checks.h"
 #include "json_value.h"
 #include "pitch_size.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -32,10 +32,7 @@ void run(const SimulateMatch& command) {
   options.cameras.pitch = parse_pitch_size(command.pitch);
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
   make_folder(command.folder);
-  {
-    ProgressBar bar(command.quiet);
-    pipeline::write_match(options, command.folder, [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
-  }
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_match(options, command.folder, hooks); });
   if (command.json)
     print({{"folder", command.folder},
            {"rig", (std::filesystem::path(command.folder) / "rig.toml").string()},

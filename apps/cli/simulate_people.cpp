@@ -16,7 +16,7 @@
 #include "commands.h"
 #include "file_checks.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -51,10 +51,7 @@ void run(const SimulatePeople& command) {
   if (!command.ground.empty()) options.ground = picture_of(command.ground);
   const simulate::people::PeopleFilm film(command.situation, command.seed, options);
   make_folder(command.folder);
-  {
-    ProgressBar bar(command.quiet);
-    pipeline::film_people(film, command.folder, [&](int done, int all) { bar.show("frames", done, all); });
-  }
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::film_people(film, command.folder, hooks); });
   if (command.json)
     print({{"frames", film.frames()},
            {"people", film.figures().size()},

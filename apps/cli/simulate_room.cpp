@@ -16,7 +16,7 @@
 #include "commands.h"
 #include "file_checks.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -62,11 +62,7 @@ simulate::room::RoomOptions room_of(const SimulateRoom& command) {
 void run(const SimulateRoom& command) {
   const simulate::room::RoomScene scene(room_of(command));
   make_folder(command.folder);
-  {
-    ProgressBar bar(command.quiet);
-    pipeline::write_room(scene, command.folder, command.files,
-                         [&](std::int64_t done, std::int64_t all) { bar.show("frames", done, all); });
-  }
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_room(scene, command.folder, command.files, hooks); });
   if (command.json)
     print({{"cameras", scene.rig().cameras.size()},
            {"markers", scene.labels().size()},

@@ -113,12 +113,10 @@ void run(const TrackCommand& command) {
     if (command.people.outline) throw WrongUsage("--outline follows people; markers are points: leave out one of the two");
     if (!command.input.detections.empty()) throw WrongUsage("--detections brings boxes, not markers; leave out --targets markers");
     const pipeline::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
-    run(command, output,
-        [&](const pipeline::Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
+    run(command, output, [&](const Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
   } else {
     const pipeline::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
-    run(command, output,
-        [&](const pipeline::Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
+    run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
   }
 }
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/rig_sources.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
@@ -55,7 +55,7 @@ track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
                                            const Rig& rig) {
   pipeline::PeopleOnGroundOptions options;
-  options.background = detect::background::parse_background(people.background);
+  options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
@@ -113,11 +113,11 @@ std::vector<std::string> ground_files(const GroundCommand& command, const Ground
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
   if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
-  pipeline::set_sources(rig, flags.sources);
+  set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
   const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   run_with_progress(
-      command.quiet, [&](const pipeline::Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
+      command.quiet, [&](const Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
       [&](const pipeline::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);

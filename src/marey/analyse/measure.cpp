@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "marey/core/stop.h"
+
 namespace marey::analyse {
 namespace {
 
@@ -139,6 +141,7 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
   require_ground(recording, "measuring");
   Measurement result;
   for (const TrackColumns& track : recording.tracks()) {
+    stop_point();
     PersonMeasure person;
     person.id = number(track.id()), person.label = track.name.label, person.team = track.name.team;
     person.zone_s.assign(options.zones.size() + 1, 0);

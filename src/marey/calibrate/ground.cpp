@@ -20,6 +20,7 @@ constexpr double kSigmaPx = 1.5;       // of a ray, the rig's own error included
 constexpr double kMeet = 3;            // sigmas within which rays meet
 constexpr double kDistanceOff = 0.02;  // of a distance between markers, and at least:
 constexpr double kDistanceOff_m = 0.005;
+constexpr double kBoardsOff_m = 0.05;  // between cameras that see one board
 
 struct SpacePoint {
   Vector<3> place = Vector<3>::Zero();
@@ -228,6 +229,30 @@ GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> 
       "two cameras "
       "or more see all of it, cover what else shines, and check --frame",
       points.size(), frame.size());
+}
+
+GroundFound ground_under_board(std::span<const Rigid3> world_from_board) {
+  // A board's z runs away from who looks at it: into the floor.
+  const Rigid3 board_from_ground{Vector<3>(1, -1, -1).asDiagonal(), Vector<3>::Zero()};
+  const auto count = static_cast<double>(world_from_board.size());
+  Matrix<3> turn = Matrix<3>::Zero();
+  Vector<3> origin = Vector<3>::Zero();
+  for (const Rigid3& one : world_from_board) {
+    const Rigid3 world_from_ground = one * board_from_ground;
+    turn += world_from_ground.rotation;
+    origin += world_from_ground.translation / count;
+  }
+  const geometry::SingularValues3 svd = geometry::singular_values(turn);
+  GroundFound ground;
+  ground.ground_from_world = Rigid3{svd.U * svd.V.transpose(), origin}.inverse();
+  double square = 0;
+  for (const Rigid3& one : world_from_board) square += ((one * board_from_ground).translation - origin).squaredNorm();
+  ground.rms_mm = 1000 * std::sqrt(square / count);
+  ground.seen_by = {static_cast<int>(world_from_board.size())};
+  if (ground.rms_mm <= 1000 * kBoardsOff_m) return ground;
+  throw Error(
+      "the cameras place the board {:.0f} mm apart: it was moved between their pictures, or the rig is not of these cameras",
+      ground.rms_mm);
 }
 
 Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale) {

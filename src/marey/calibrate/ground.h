@@ -29,6 +29,11 @@ std::vector<Vector<2>> still_blobs(std::span<const wand::BlobFrame> frames);
 GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> blobs, std::span<const Vector<3>> frame,
                         bool free_scale);
 
+/// The floor by a board that lies on it: its first corner is the origin, x runs along its rows, z up from it. `world_from_board`:
+/// as each camera that sees it has it, one at least; they are averaged, and `rms_mm` is how far they are apart. Throws Error where
+/// that is so far that it must have been moved.
+GroundFound ground_under_board(std::span<const Rigid3> world_from_board);
+
 /// The rig with its world moved to the ground.
 Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale);
 

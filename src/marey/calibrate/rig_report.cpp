@@ -120,6 +120,58 @@ std::optional<Vector<3>> refined_point(const std::vector<const Camera*>& cameras
   return point;
 }
 
+/// A marker that was not adjusted, by the cameras that agree on it.
+struct HeldOutPoint {
+  Vector<3> place = Vector<3>::Zero();
+  std::vector<const Camera*> seeing;
+  std::vector<Vector<2>> pixels;
+};
+
+std::optional<HeldOutPoint> held_out_point(const bundle::Bundle& bundle, const std::vector<Camera>& cameras,
+                                           std::span<const bundle::BundleObservation* const> seen) {
+  constexpr double kAgreed = 5;  // px
+  HeldOutPoint found;
+  std::vector<SightLine> lines;
+  for (const bundle::BundleObservation* one : seen) {
+    const Camera& camera = cameras[static_cast<std::size_t>(one->camera)];
+    const Vector<2> pixel = one->pixel - one->velocity * bundle.cameras[static_cast<std::size_t>(one->camera)].offset_s;
+    const auto ray = camera.ray(pixel);
+    if (!ray) continue;
+    lines.push_back({*ray, 1 / geometry::focal_of(camera.lens()).x()});
+    found.seeing.push_back(&camera);
+    found.pixels.push_back(pixel);
+  }
+  const auto start = agreed_point(lines, kAgreed);
+  if (!start) return std::nullopt;
+  for (std::size_t k = lines.size(); k-- > 0;) {
+    if (angle_off(lines[k], *start) <= kAgreed) continue;
+    found.seeing.erase(found.seeing.begin() + static_cast<std::ptrdiff_t>(k));
+    found.pixels.erase(found.pixels.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  const auto point = refined_point(found.seeing, found.pixels, *start);
+  if (!point) return std::nullopt;
+  found.place = *point;
+  return found;
+}
+
+using HeldOutPlaces = std::map<int, std::map<int, Vector<3>>>;  // by body, marker
+
+/// By how much the wand's length is off where both of its ends were placed.
+void judge_lengths(const HeldOutPlaces& places, const std::vector<double>& wand, HeldOutReport& report) {
+  double mean = 0, square = 0;
+  int lengths = 0;
+  const int last = static_cast<int>(wand.size()) - 1;
+  for (const auto& [body, at] : places) {
+    if (last < 1 || !at.contains(0) || !at.contains(last)) continue;
+    const double off = kMm * ((at.at(last) - at.at(0)).norm() - wand.back());
+    mean += off;
+    square += off * off;
+    ++lengths;
+  }
+  report.length_mean_mm = mean / std::max(1, lengths);
+  report.length_rms_mm = std::sqrt(square / std::max(1, lengths));
+}
+
 }  // namespace
 
 RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fit, const std::vector<std::string>& names,
@@ -160,54 +212,24 @@ HeldOutReport judge_held_out(const bundle::Bundle& bundle, const std::vector<cv:
   const auto cameras = cameras_of(bundle, sizes);
   std::map<std::pair<int, int>, std::vector<const bundle::BundleObservation*>> markers;  // by body and marker
   for (const bundle::BundleObservation& seen : bundle.observations) markers[{seen.body, seen.marker}].push_back(&seen);
-  std::map<int, std::map<int, Vector<3>>> places;  // by body, marker
+  HeldOutPlaces places;
   HeldOutReport report;
   Sum sum;
   int unknowns = 0;
   for (const auto& [key, seen] : markers) {
-    std::vector<SightLine> lines;
-    std::vector<const Camera*> seeing;
-    std::vector<Vector<2>> pixels;
-    for (const bundle::BundleObservation* one : seen) {
-      const Camera& camera = cameras[static_cast<std::size_t>(one->camera)];
-      const Vector<2> pixel = one->pixel - one->velocity * bundle.cameras[static_cast<std::size_t>(one->camera)].offset_s;
-      const auto ray = camera.ray(pixel);
-      if (!ray) continue;
-      lines.push_back({*ray, 1 / geometry::focal_of(camera.lens()).x()});
-      seeing.push_back(&camera);
-      pixels.push_back(pixel);
-    }
-    const auto start = agreed_point(lines, 5);
-    if (!start) continue;
-    for (std::size_t k = lines.size(); k-- > 0;) {
-      if (angle_off(lines[k], *start) <= 5) continue;
-      seeing.erase(seeing.begin() + static_cast<std::ptrdiff_t>(k));
-      pixels.erase(pixels.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-    const auto point = refined_point(seeing, pixels, *start);
+    const auto point = held_out_point(bundle, cameras, seen);
     if (!point) continue;
     unknowns += 3;
-    places[key.first][key.second] = *point;
-    for (std::size_t k = 0; k < seeing.size(); ++k) {
-      const auto again = seeing[k]->project(*point);
-      if (again) sum.add((*again - pixels[k]).norm(), true);
+    places[key.first][key.second] = point->place;
+    for (std::size_t k = 0; k < point->seeing.size(); ++k) {
+      const auto again = point->seeing[k]->project(point->place);
+      if (again) sum.add((*again - point->pixels[k]).norm(), true);
     }
   }
   report.frames = static_cast<int>(places.size());
   report.fit = sum.quality();
   report.noise_px = std::sqrt(sum.square / std::max(1, 2 * sum.inliers - unknowns));
-  double mean = 0, square = 0;
-  int lengths = 0;
-  const int last = static_cast<int>(bundle.wand.size()) - 1;
-  for (const auto& [body, at] : places) {
-    if (last < 1 || !at.contains(0) || !at.contains(last)) continue;
-    const double off = kMm * ((at.at(last) - at.at(0)).norm() - bundle.wand.back());
-    mean += off;
-    square += off * off;
-    ++lengths;
-  }
-  report.length_mean_mm = mean / std::max(1, lengths);
-  report.length_rms_mm = std::sqrt(square / std::max(1, lengths));
+  judge_lengths(places, bundle.wand, report);
   return report;
 }
 

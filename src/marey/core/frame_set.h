@@ -17,11 +17,22 @@ struct CameraFrame {
   double decode_s = 0, detect_s = 0;  ///< what it took, s
 };
 
+/// How a camera is.
+enum class FeedState {
+  connecting,  ///< nothing has come yet
+  live,        ///< it gives frames
+  stalled,     ///< nothing came for a while
+  lost,        ///< nothing came for so long that nobody waits for it
+  back,        ///< it gives frames again after it was stalled or lost, since a short while
+  ended,       ///< nothing will come any more
+};
+
 /// What all cameras of a rig gave to one moment. A camera that had nothing is a gap.
 struct FrameSet {
   std::int64_t index = 0;                           ///< counts the moments
   Timestamp time{};                                 ///< by the run's clock
   std::vector<std::optional<CameraFrame>> cameras;  ///< CameraId i is cameras[i]
+  std::vector<FeedState> states;                    ///< of each camera
 
   bool complete() const {
     for (const auto& camera : cameras) {

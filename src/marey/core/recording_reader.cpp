@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include "marey/core/stop.h"
+
 namespace marey {
 
 std::vector<TrackName> MemoryReader::tracks() const {
@@ -56,7 +58,10 @@ RecordingSummary summary_of(RecordingReader& reader) {
 Recording read_all(RecordingReader& reader) {
   Recording recording(reader.header());
   for (const TrackName& name : reader.tracks()) recording.set_name(name);
-  while (const auto instant = reader.next()) recording.add(*instant);
+  while (const auto instant = reader.next()) {
+    stop_point();
+    recording.add(*instant);
+  }
   recording.edits = reader.edits();
   recording.head = reader.head();
   return recording;
@@ -66,6 +71,7 @@ bool replay(RecordingReader& reader, Sink& sink, const std::function<bool(std::i
   sink.begin(reader.header());
   std::int64_t instants = 0;
   while (auto instant = reader.next()) {
+    stop_point();
     if (instants++ == 0) {
       const std::vector<TrackName> names = reader.tracks();
       instant->named.insert(instant->named.begin(), names.begin(), names.end());

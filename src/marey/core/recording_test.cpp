@@ -25,6 +25,26 @@ Sample sample_of(int track, double x) {
   return sample;
 }
 
+void expect_same(const Instant& is, const Instant& was) {
+  EXPECT_EQ(is.index, was.index);
+  EXPECT_EQ(is.time, was.time);
+  EXPECT_EQ(is.seen, was.seen);
+  ASSERT_EQ(is.samples.size(), was.samples.size()) << was.index;
+  for (std::size_t i = 0; i < was.samples.size(); ++i) {
+    const Sample &a = is.samples[i], &b = was.samples[i];
+    EXPECT_EQ(a.track, b.track);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.velocity, b.velocity);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.box, b.box);
+    EXPECT_EQ(a.outline, b.outline);
+    EXPECT_EQ(a.residual_px, b.residual_px);
+    EXPECT_EQ(a.residual_m, b.residual_m);
+    EXPECT_EQ(a.provenance, b.provenance);
+    EXPECT_EQ(a.cameras, b.cameras);
+  }
+}
+
 TEST(Recording, GivesBackWhatWasPutIn) {
   Recording recording(header_in(FrameOfReference::Kind::space));
   std::vector<Instant> given;
@@ -54,23 +74,7 @@ TEST(Recording, GivesBackWhatWasPutIn) {
   for (const Instant& was : given) {
     const auto is = instants.next();
     ASSERT_TRUE(is);
-    EXPECT_EQ(is->index, was.index);
-    EXPECT_EQ(is->time, was.time);
-    EXPECT_EQ(is->seen, was.seen);
-    ASSERT_EQ(is->samples.size(), was.samples.size()) << was.index;
-    for (std::size_t i = 0; i < was.samples.size(); ++i) {
-      const Sample &a = is->samples[i], &b = was.samples[i];
-      EXPECT_EQ(a.track, b.track);
-      EXPECT_EQ(a.position, b.position);
-      EXPECT_EQ(a.velocity, b.velocity);
-      EXPECT_EQ(a.covariance, b.covariance);
-      EXPECT_EQ(a.box, b.box);
-      EXPECT_EQ(a.outline, b.outline);
-      EXPECT_EQ(a.residual_px, b.residual_px);
-      EXPECT_EQ(a.residual_m, b.residual_m);
-      EXPECT_EQ(a.provenance, b.provenance);
-      EXPECT_EQ(a.cameras, b.cameras);
-    }
+    expect_same(*is, was);
   }
   EXPECT_FALSE(instants.next());
   ASSERT_NE(recording.find(TrackId{2}), nullptr);

@@ -34,4 +34,20 @@ class Source {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
+/// A camera that does not wait for its reader.
+class LiveSource {
+ public:
+  virtual ~LiveSource() = default;
+
+  virtual const SourceInfo& info() const = 0;
+
+  /// What has come since the last call, of that the last few, in order; their times are by the run's clock. Never waits.
+  virtual std::vector<Frame> arrived() = 0;
+  /// How many frames were let go, because more had come than the few that are kept.
+  virtual std::int64_t overrun() const = 0;
+  /// Whether nothing will come any more.
+  virtual bool ended() const = 0;
+  virtual std::vector<std::string> warnings() const { return {}; }
+};
+
 }  // namespace marey

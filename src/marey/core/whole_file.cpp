@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
+#include "marey/core/stop.h"
 
 namespace marey {
 namespace {
@@ -131,6 +132,7 @@ WholeFile::WholeFile(const std::string& path) : path_(path) {
 WholeFile::~WholeFile() = default;
 
 void WholeFile::write(std::string_view text) {
+  stop_point();
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail_to_write(path_, errno);
 }
 

@@ -46,7 +46,7 @@ class WholeFile {
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// Throws Error where the place is full.
+  /// Throws Error where the place is full, Stopped where this thread was asked to end.
   void write(std::string_view text);
   /// Throws Error where the place is full.
   void finish();

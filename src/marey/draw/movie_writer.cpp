@@ -8,6 +8,7 @@
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
+#include "marey/core/time.h"
 #include "marey/core/whole_file.h"
 
 extern "C" {
@@ -32,7 +33,6 @@ struct CloseFormat {
 };
 
 constexpr AVRational kTick{1, 90'000};
-constexpr double kUsualRate = 25;
 constexpr int kSilent = AV_LOG_TRACE;        // the host program's log gets nothing of ours
 constexpr int kSecondsBetweenKeyFrames = 2;  // a player seeks to these
 

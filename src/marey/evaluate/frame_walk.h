@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/limits.h"
+#include "marey/core/stop.h"
 
 namespace marey::evaluate {
 
@@ -79,8 +80,9 @@ class FrameWalk : public FramePairs {
         close_(close),
         most_pairs_(limits.pairs_a_frame) {}
 
-  /// Steps to the next frame; false at the end.
+  /// Steps to the next frame; false at the end. Throws Stopped.
   bool next() {
+    stop_point();
     if (next_true_ == truth_.size() && next_track_ == tracks_.size()) return false;
     constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
     const std::int32_t frame = std::min(next_true_ < truth_.size() ? truth_[next_true_].frame : never,

@@ -14,7 +14,7 @@
 namespace marey::format {
 
 MappedFile::MappedFile(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe is refused, not waited for
   if (file < 0) {
     if (errno == ENOENT) throw Error("{}: no such file", path);
     throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));

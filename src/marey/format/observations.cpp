@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string_view>
@@ -15,6 +14,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/input_file.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/format/text_rows.h"
 
@@ -60,7 +60,7 @@ std::optional<double> number(std::string_view text) {
 /// The table, row by row.
 class Table {
  public:
-  explicit Table(const std::string& path) : path_(path), in_(path, std::ios::binary) {
+  explicit Table(const std::string& path) : path_(path), in_(path) {
     if (!in_ || std::filesystem::is_directory(path)) throw Error("{}: these observations cannot be read; is the name right?", path);
     if (!std::getline(in_, line_)) throw Error("{}: the file is empty; it must begin with camera,frame,x,y", path);
     std::string_view header = line_;
@@ -121,7 +121,7 @@ class Table {
 
   static constexpr std::array<std::string_view, 5> kNames{"camera", "frame", "x", "y", "marker"};
   std::string path_;
-  std::ifstream in_;
+  InputStream in_;
   std::string line_;
   int number_ = 1;
   std::vector<std::string_view> fields_;

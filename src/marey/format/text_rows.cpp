@@ -4,6 +4,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "marey/core/stop.h"
 #include "marey/core/text_safety.h"
 
 namespace marey::format {
@@ -14,6 +15,8 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
 }
+
+constexpr std::size_t kLinesBetweenStops = 1024;
 
 /// What a spreadsheet would compute instead of showing it, behind any apostrophes.
 bool is_formula(std::string_view text) {
@@ -43,6 +46,7 @@ TextLines::TextLines(std::string_view text) : text_(text) {
 
 bool TextLines::next(std::string_view& line) {
   if (text_.empty()) return false;
+  if (number_ % kLinesBetweenStops == 0) stop_point();
   const std::size_t end = text_.find('\n');
   ended_ = end != std::string_view::npos;
   line = text_.substr(0, end);

@@ -5,10 +5,6 @@
 #include <set>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "marey/calibrate/board/choose_views.h"
-#include "marey/calibrate/lens_calibration.h"
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
 #include "marey/pipeline/feed.h"
@@ -17,8 +13,6 @@
 
 namespace marey::pipeline {
 namespace {
-
-constexpr std::size_t kViewsOfLens = 60;
 
 bool is_pictures(const std::string& source) {
   std::error_code error;
@@ -42,28 +36,19 @@ bool are_stills(const Rig& rig) {
 }
 
 geometry::Lens lens_by_board(const RigCamera& camera, const calibrate::board::Board& board, const BoardSightings& seen) {
-  std::vector<calibrate::board::ViewCandidate> candidates;
-  for (const BoardSighting& sighting : seen.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
-  std::vector<calibrate::LensView> views;
-  for (const std::size_t i : calibrate::board::choose_views(candidates, seen.size, kViewsOfLens))
-    views.push_back({fmt::format("frame {}", seen.sightings[i].frame), seen.sightings[i].view});
   try {
-    return calibrate::calibrate_lens(board, seen.size, views).lens;
+    return lens_by_sightings(board, seen).lens;
   } catch (const Error& error) {
     throw Error("camera \"{}\" has no lens in the rig, and these pictures do not tell it: {}", camera.name, error.what());
   }
 }
 
-calibrate::board::BoardRigCamera look(RigCamera& camera, const calibrate::board::BoardDetector& detector,
-                                      const BoardRunOptions& options) {
+calibrate::board::BoardRigCamera see_boards(RigCamera& camera, const calibrate::board::BoardDetector& detector,
+                                            const Hooks& hooks) {
   RigCamera by_its_own_clock = camera;
   by_its_own_clock.offset_s.reset();
   Feed feed(by_its_own_clock, CameraId{});
-  FindBoardsOptions how;
-  if (options.progress) {
-    how.progress = [&](std::int64_t done, std::optional<std::int64_t> all) { options.progress(camera.name, done, all); };
-  }
-  const BoardSightings seen = find_boards(feed, detector, how);
+  const BoardSightings seen = find_boards(feed, detector, {.step = "looking for the board in " + camera.name}, hooks);
   if (seen.sightings.empty()) {
     throw Error("camera \"{}\": the board {} is in none of its {} pictures; are its kind, its numbers and its colours as given?",
                 camera.name, calibrate::board::to_string(detector.board()), seen.frames);
@@ -99,7 +84,8 @@ void enter(Rig& rig, const calibrate::board::BoardRig& found) {
 
 }  // namespace
 
-BoardRun calibrate_board_from(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options) {
+BoardRun calibrate_board(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   if (rig.cameras.size() < 2) throw Error("a rig is calibrated from two cameras at least, and this one has {}", rig.cameras.size());
   using Timing = calibrate::board::BoardRigOptions::Timing;
   calibrate::board::BoardRigOptions how;
@@ -110,7 +96,7 @@ BoardRun calibrate_board_from(const Rig& rig, const calibrate::board::Board& boa
   BoardRun run{rig, {}};
   const calibrate::board::BoardDetector detector(board);
   std::vector<calibrate::board::BoardRigCamera> cameras;
-  for (RigCamera& camera : run.rig.cameras) cameras.push_back(look(camera, detector, options));
+  for (RigCamera& camera : run.rig.cameras) cameras.push_back(see_boards(camera, detector, hooks));
   for (calibrate::board::BoardRigCamera& camera : cameras) camera.offset_s -= rig.cameras[0].offset_s.value_or(0);
   run.found = calibrate::board::calibrate_board_rig(board, cameras, how);
   enter(run.rig, run.found);

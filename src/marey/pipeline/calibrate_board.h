@@ -1,9 +1,7 @@
 #pragma once
 
-#include <functional>
-#include <string>
-
 #include "marey/calibrate/board/board_rig.h"
+#include "marey/core/hooks.h"
 #include "marey/core/rig.h"
 
 namespace marey::pipeline {
@@ -13,8 +11,6 @@ struct BoardRunOptions {
   bool refine = false;           ///< the lenses too
   bool rolling_shutter = false;  ///< films: the shutters' readout is sought too
   double most_offset_s = 30;     ///< how far cameras are out of step at most
-  std::function<void(const std::string&, std::int64_t, std::optional<std::int64_t>)>
-      progress;  ///< camera, frames done and in all; may be empty
 };
 
 struct BoardRun {
@@ -25,7 +21,8 @@ struct BoardRun {
 /// Places the rig's cameras by a board that all their sources show: films, or pictures whose n-th belong together. A camera without
 /// a lens gets one from the same pictures first. The world is the one in which the first camera has its pose in the rig; where it
 /// has none, the first camera stands at the origin and looks along y, z up. Throws Error where a source cannot be read or
-/// calibrate_board_rig refuses.
-BoardRun calibrate_board_from(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options);
+/// calibrate_board_rig refuses; Stopped.
+BoardRun calibrate_board(const Rig& rig, const calibrate::board::Board& board, const BoardRunOptions& options,
+                         const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

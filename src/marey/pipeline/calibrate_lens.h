@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "marey/calibrate/lens_calibration.h"
@@ -9,9 +10,8 @@ namespace marey::pipeline {
 
 struct LensRunOptions {
   calibrate::LensOptions lens;
-  std::size_t most_views = 60;  ///< pictures that the solution rests on
+  std::size_t most_views = kViewsOfLens;  ///< pictures that the solution rests on
   std::optional<cv::Rect> region;
-  std::function<void(std::int64_t, std::optional<std::int64_t>)> progress;
 };
 
 struct LensRun {
@@ -21,7 +21,8 @@ struct LensRun {
 };
 
 /// Calibrates the lens that took `input`: a video, a folder of pictures or a pattern. Throws Error where the board is nowhere to be
-/// seen, or where calibrate_lens does.
-LensRun calibrate_lens_from(const std::string& input, const calibrate::board::Board& board, const LensRunOptions& options);
+/// seen, or where calibrate::calibrate_lens does; Stopped.
+LensRun calibrate_lens(const std::string& input, const calibrate::board::Board& board, const LensRunOptions& options,
+                       const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

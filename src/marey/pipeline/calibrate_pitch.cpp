@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {
@@ -39,6 +39,7 @@ cv::Mat empty_ground(Feed& feed) {
   std::vector<cv::Mat> pictures;
   while (pictures.size() < kPictures) {
     const auto given = feed.next();
+    stop_point();
     if (!given) break;
     if (given->frame.index % step != 0) continue;
     const cv::Mat luma = as_bytes(given->frame.picture.luma());
@@ -149,7 +150,7 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
 }
 
 /// Offsets that the rig does not say.
-void put_in_step(PitchRun& run, const PitchRunOptions& options) {
+void put_in_step(PitchRun& run, const PitchRunOptions& options, const Hooks& hooks) {
   if (options.synced) {
     for (RigCamera& camera : run.rig.cameras) camera.offset_s = camera.offset_s.value_or(0);
   }
@@ -158,10 +159,6 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options) {
   const bool at_origin = run.calibration.corner.norm() < 0.01;
   const reconstruct::GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt,
                                      kMargin);
-  Hooks hooks;
-  hooks.progress = [&](const Progress& now) {
-    options.progress("comparing clocks", static_cast<int>(now.done), static_cast<int>(now.total.value_or(0)));
-  };
   try {
     run.offsets = find_rig_offsets(run.rig, area, {}, hooks);
   } catch (const Error& error) {
@@ -172,21 +169,8 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options) {
   run.warnings.insert(run.warnings.end(), run.offsets.warnings.begin(), run.offsets.warnings.end());
 }
 
-}  // namespace
-
-PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options) {
-  PitchRun run;
-  run.rig = rig;
-  if (clicks.empty()) throw Error("give the clicked points of at least one camera: --points CAM=FILE");
-  for (const auto& [name, path] : clicks) camera_named(run.rig, name);
-  for (RigCamera& camera : run.rig.cameras) {
-    const auto given = clicks.find(camera.name);
-    if (given == clicks.end()) continue;
-    options.progress("looking at the ground", static_cast<int>(run.views.size()), static_cast<int>(clicks.size()));
-    run.views.push_back(view_of(camera, given->second, run.warnings));
-    run.cameras.push_back(camera.name);
-  }
-  run.calibration = calibrate::pitch::calibrate_pitch(run.views, options.pitch);
+/// What was found, in the rig.
+void enter(PitchRun& run) {
   run.rig.ground_from_world = run.calibration.ground_from_world;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
@@ -210,8 +194,28 @@ PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::str
                                          .inliers = static_cast<int>(count),
                                          .observations = {},
                                          .grade = {}};
+}
+
+}  // namespace
+
+PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options,
+                         const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  PitchRun run;
+  run.rig = rig;
+  if (clicks.empty()) throw Error("give the clicked points of at least one camera: --points CAM=FILE");
+  for (const auto& [name, path] : clicks) camera_named(run.rig, name);
+  for (RigCamera& camera : run.rig.cameras) {
+    const auto given = clicks.find(camera.name);
+    if (given == clicks.end()) continue;
+    hooks.advance({"looking at the ground", std::ssize(run.views), std::ssize(clicks)});
+    run.views.push_back(view_of(camera, given->second, run.warnings));
+    run.cameras.push_back(camera.name);
+  }
+  run.calibration = calibrate::pitch::calibrate_pitch(run.views, options.pitch);
+  enter(run);
   if (!options.pictures.empty()) draw(run, options);
-  put_in_step(run, options);
+  put_in_step(run, options, hooks);
   return run;
 }
 

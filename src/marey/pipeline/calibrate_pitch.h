@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,13 +23,13 @@ struct PitchRunOptions {
   calibrate::pitch::PitchCalibrationOptions pitch;
   bool synced = false;   ///< the cameras run on one clock: those without an offset have 0
   std::string pictures;  ///< a folder for overlays and the accuracy maps; empty for none
-  std::function<void(const std::string& what, int done, int all)> progress = [](const std::string&, int, int) {};
 };
 
 /// Calibrates the rig's cameras over a pitch: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
 /// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Where the rig
 /// does not say when cameras were started, that is found from how people move (`find_rig_offsets`). Throws Error
-/// where a file cannot be read, a camera is not in the rig, or the clicks do not decide.
-PitchRun calibrate_pitch_of(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options = {});
+/// where a file cannot be read, a camera is not in the rig, or the clicks do not decide; Stopped.
+PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options = {},
+                         const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

@@ -1,6 +1,8 @@
 #include "marey/pipeline/camera_blobs.h"
 
+#include <functional>
 #include <mutex>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
@@ -43,7 +45,7 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig) {
   return blobs;
 }
 
-CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const BlobProgress& progress) {
+CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks) {
   for (const RigCamera& camera : rig.cameras) {
     if (camera.source.empty())
       throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
@@ -55,19 +57,23 @@ CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, 
   }
   CameraBlobs blobs;
   blobs.seen.resize(feeds.size());
-  std::mutex telling;
+  std::mutex reporting;
   std::int64_t done = 0;
   const auto frame_done = [&] {
-    const std::lock_guard lock(telling);
-    ++done;
-    if (progress) progress(done);
+    const std::lock_guard lock(reporting);
+    hooks.advance({"looking for markers", ++done, std::nullopt});
   };
   tbb::parallel_for(std::size_t{0}, feeds.size(),
                     [&](std::size_t c) { blobs.seen[c] = all_of(feeds[c], rig.cameras[c].offset_s.value_or(0), frame_done); });
+  if (hooks.stop.stop_requested()) throw Stopped();
   for (std::size_t c = 0; c < feeds.size(); ++c) {
     for (std::string& sentence : feeds[c].warnings()) blobs.warnings.push_back(std::move(sentence));
   }
   return blobs;
+}
+
+CameraBlobs blobs_of(Rig& rig, const std::string& observations, const detect::markers::MarkerOptions& options, const Hooks& hooks) {
+  return observations.empty() ? find_blobs(rig, options, hooks) : read_blobs(observations, rig);
 }
 
 }  // namespace marey::pipeline

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "marey/calibrate/wand/wand_marks.h"
+#include "marey/core/hooks.h"
 #include "marey/core/rig.h"
 #include "marey/detect/markers/marker_detector.h"
 
@@ -17,15 +17,15 @@ struct CameraBlobs {
   std::vector<std::string> warnings;
 };
 
-/// Told how many frames are done, of all cameras together; called from any thread, one call at a time.
-using BlobProgress = std::function<void(std::int64_t done)>;
-
 /// Reads what another program found (see ObservationReader). Frame f of a camera was at f / rate, its `rate_hz` or `rate_hz` of any
 /// other.
 CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 
 /// Finds markers in the cameras' sources, cameras in parallel. Sets the sizes that the rig lacks. Throws Error where a source
-/// cannot be read, or its picture does not have the camera's size.
-CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const BlobProgress& progress);
+/// cannot be read, or its picture does not have the camera's size; Stopped.
+CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks);
+
+/// The first of a file of observations, the second where there is none.
+CameraBlobs blobs_of(Rig& rig, const std::string& observations, const detect::markers::MarkerOptions& options, const Hooks& hooks);
 
 }  // namespace marey::pipeline

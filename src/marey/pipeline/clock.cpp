@@ -10,10 +10,9 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kInStep = 0.02;    // of a frame: what moves no marker by more than noise
-constexpr double kHalf = 0.505;     // of a frame
-constexpr double kFarthest = 60;    // px that a detection may move in a frame and still be found again
-constexpr int kDetectedAtOnce = 4;  // frames that a camera that detects is asked for
+constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
+constexpr double kFarthest = 60;  // px that a detection may move in a frame and still be found again
+constexpr int kDetectedAtOnce = 4;        // frames that a camera that detects is asked for
 
 std::optional<std::size_t> closest(const Vector<2>& place, const std::vector<Detection>& among) {
   std::optional<std::size_t> best;
@@ -44,6 +43,10 @@ std::vector<Detection> moved_to(Timestamp now, const CameraFrame& nearest, const
 
 Clock::Clock(std::vector<Feed> feeds, const ClockOptions& options)
     : options_(options), feeds_(std::move(feeds)), lanes_(feeds_.size()) {
+  if (options_.live) {
+    options_.pace = ClockOptions::Pace::even;
+    live_begin_ = options_.live->time->now();
+  }
   if (options_.pace == ClockOptions::Pace::first_camera && !feeds_.empty()) {
     rate_hz_ = feeds_.front().rate_hz();
   } else {
@@ -138,6 +141,7 @@ bool Clock::all_over(Timestamp now) const {
 }
 
 std::optional<FrameSet> Clock::next() {
+  if (options_.live) return next_live();
   if (feeds_.empty() || (!begun_ && !begin()) || (options_.pace == ClockOptions::Pace::even && !start_)) return std::nullopt;
   const auto now = next_moment();
   if (!now) return std::nullopt;
@@ -150,7 +154,14 @@ std::optional<FrameSet> Clock::next() {
     if (!set.cameras[i]) ++lanes_[i].missed;
   }
   if (options_.pace == ClockOptions::Pace::first_camera) set.index = set.cameras.front()->frame.index;
+  set.states = states();
   return set;
+}
+
+std::vector<FeedState> Clock::states() const {
+  std::vector<FeedState> states;
+  for (const Feed& feed : feeds_) states.push_back(options_.live ? feed.state(live_begin_, *options_.live) : feed.state());
+  return states;
 }
 
 /// The camera's frame that is nearest to the moment, moved to it where that is wanted.

@@ -8,18 +8,23 @@
 // moment: its detections are moved along the line between the frames before and after, each to the one of the other frame that is
 // its nearest and to which it is the nearest. What has no such partner is left out: nobody knows where it was.
 //
+// Live cameras (ClockOptions::live) are not waited for longer than the policy says. A moment is whole when every camera that gives
+// frames has given its own. The newest whole one is given, what is older is let go and counted by cause; where none is whole, the
+// newest one that is late goes on with its gaps. A camera that stalls is waited for no more, until it is back.
+//
 // Memory: a few frames a camera. Threads: cameras are asked for frames side by side; what comes out does not depend on them.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "marey/core/frame_set.h"
+#include "marey/core/stage_times.h"
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/stage_times.h"
 
 namespace marey::pipeline {
 
@@ -30,6 +35,16 @@ struct ClockOptions {
   };
   Pace pace = Pace::first_camera;
   bool interpolate = false;
+  std::optional<source::LivePolicy> live = {};  ///< the feeds are live cameras; the pace is even
+};
+
+/// Moments and frames that a live run let go.
+struct LiveDrops {
+  std::int64_t overtaken = 0;    ///< moments that were whole, but so was a newer one: what follows is too slow
+  std::int64_t incomplete = 0;   ///< moments that were not, when a newer one went on
+  std::int64_t empty = 0;        ///< moments at which no camera gave anything
+  std::int64_t late_frames = 0;  ///< that came when their moment had gone on
+  std::int64_t overrun = 0;      ///< frames that left a camera's few kept ones before they were asked for
 };
 
 class Clock {
@@ -53,6 +68,8 @@ class Clock {
   /// Frames that camera `number` gave, and how many moments it had nothing for.
   std::int64_t frames(std::size_t number) const { return lanes_[number].frames; }
   std::int64_t missed(std::size_t number) const { return lanes_[number].missed; }
+  /// Nothing where the cameras are not live.
+  std::optional<LiveDrops> drops() const;
   const StageTimes& decoding() const { return decoding_; }
   const StageTimes& detecting() const { return detecting_; }
   std::vector<std::string> warnings() const;
@@ -65,12 +82,27 @@ class Clock {
     std::int64_t frames = 0, missed = 0;
   };
 
+  static constexpr double kHalf = 0.505;  // of a frame: a camera's frame that is nearer belongs to the moment
+
   bool begin();
   void fill(Timestamp until);
   void read(std::size_t number, Timestamp until, std::vector<CameraFrame>& read);
   std::optional<CameraFrame> take(std::size_t number, Timestamp now);
   std::optional<Timestamp> next_moment();
   bool all_over(Timestamp now) const;
+  std::vector<FeedState> states() const;
+
+  // live_clock.cpp
+  std::optional<FrameSet> next_live();
+  void gather();
+  Timestamp moment(std::int64_t index) const;
+  std::int64_t last_moment() const;
+  bool has_frame_of(const Lane& lane, Timestamp now) const;
+  bool is_whole(std::int64_t index) const;
+  bool is_empty(std::int64_t index) const;
+  std::optional<std::int64_t> ready() const;
+  void let_go_before(std::int64_t index);
+  void forget_before(Timestamp now);
 
   ClockOptions options_;
   std::vector<Feed> feeds_;
@@ -79,6 +111,9 @@ class Clock {
   bool begun_ = false;
   std::optional<Timestamp> start_;
   std::int64_t next_ = 0;
+  std::stop_token stop_ = StopScope::current();
+  Timestamp live_begin_{};
+  LiveDrops drops_;
   StageTimes decoding_, detecting_;
 };
 

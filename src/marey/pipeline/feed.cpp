@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <utility>
 
@@ -11,12 +12,12 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/format/observations.h"
-#include "marey/pipeline/detections_input.h"
-#include "marey/pipeline/read_ahead.h"
-#include "marey/pipeline/rig_sources.h"
+#include "marey/format/tracks/detections.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/source/open_source.h"
+#include "marey/source/read_ahead.h"
 #include "marey/source/region_source.h"
 
 namespace marey::pipeline {
@@ -37,6 +38,22 @@ std::string said_of(const RigCamera& camera, const std::string& sentence) {
   return camera.name.empty() ? sentence : fmt::format("camera \"{}\": {}", camera.name, sentence);
 }
 
+/// Ends the waiting for a silent camera when whoever opened the feed is asked to stop, or lets it go.
+class Feed::Life {
+ public:
+  explicit Life(const std::stop_token& outer) : forward_(outer, [this] { end(); }) {}
+  ~Life() { end(); }
+  Life(const Life&) = delete;
+  Life& operator=(const Life&) = delete;
+
+  std::stop_token token() const { return ends_.get_token(); }
+  void end() { ends_.request_stop(); }
+
+ private:
+  std::stop_source ends_;
+  std::stop_callback<std::function<void()>> forward_;
+};
+
 class Feed::Input {
  public:
   virtual ~Input() = default;
@@ -52,7 +69,7 @@ class Feed::Pictures final : public Input {
   const SourceInfo& info() const override { return source_->info(); }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
   std::optional<CameraFrame> next() override {
-    if (ahead_ > 0) source_ = read_ahead(std::move(source_), std::exchange(ahead_, 0));
+    if (ahead_ > 0) source_ = source::read_ahead(std::move(source_), std::exchange(ahead_, 0));
     auto frame = source_->next();
     if (!frame) return std::nullopt;
     return CameraFrame{.frame = std::move(*frame), .detections = {}};
@@ -74,20 +91,14 @@ class Feed::Nothing final : public Input {
 
 class Feed::Boxes final : public Input {
  public:
-  explicit Boxes(DetectionsInput known) : known_(std::move(known)) {}
+  explicit Boxes(format::tracks::DetectionReader reader) : reader_(std::move(reader)) {}
 
-  const SourceInfo& info() const override { return known_.source->info(); }
-  std::vector<std::string> warnings() const override { return known_.source->warnings(); }
-  std::optional<CameraFrame> next() override {
-    auto frame = known_.source->next();
-    if (!frame) return std::nullopt;
-    CameraFrame result{.frame = std::move(*frame), .detections = {}};
-    result.detections = known_.detector->detect(result.frame, {}).detections;
-    return result;
-  }
+  const SourceInfo& info() const override { return reader_.info(); }
+  std::vector<std::string> warnings() const override { return reader_.warnings(); }
+  std::optional<CameraFrame> next() override { return reader_.next(); }
 
  private:
-  DetectionsInput known_;
+  format::tracks::DetectionReader reader_;
 };
 
 /// One file of observations, dealt out to the cameras' feeds.
@@ -165,9 +176,12 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
     throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
                 camera.name);
   }
+  life_ = std::make_unique<Life>(options.stop);
+  const StopScope scope(life_->token());
   try {
     if (camera.source.empty()) {
-      input_ = std::make_unique<Boxes>(open_detections(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
+      input_ = std::make_unique<Boxes>(
+          format::tracks::DetectionReader(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
       return;
     }
     auto source = open_pictures(camera, options);
@@ -181,12 +195,15 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
 Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input)
     : camera_(camera), id_(id), options_(options), input_(std::move(input)) {}
 
-Feed::~Feed() = default;
+Feed::~Feed() {
+  if (life_ != nullptr) life_->end();
+}
+
 Feed::Feed(Feed&&) noexcept = default;
 Feed& Feed::operator=(Feed&&) noexcept = default;
 
 const SourceInfo& Feed::info() const {
-  return input_->info();
+  return live_ != nullptr ? live_->info() : input_->info();
 }
 
 double Feed::rate_hz() const {
@@ -194,11 +211,18 @@ double Feed::rate_hz() const {
 }
 
 bool Feed::has_pictures() const {
-  return !camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr;
+  return is_live() || (!camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr);
 }
 
 Feed Feed::absent(const RigCamera& camera, CameraId id) {
   return {camera, id, {}, std::make_unique<Nothing>()};
+}
+
+Feed Feed::live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source) {
+  Feed feed(camera, id, {}, nullptr);
+  fit_to_size(feed.camera_, source->info().size);
+  feed.live_ = std::move(source);
+  return feed;
 }
 
 void Feed::find(std::unique_ptr<detect::Detector> detector) {
@@ -208,21 +232,33 @@ void Feed::find(std::unique_ptr<detect::Detector> detector) {
 std::optional<CameraFrame> Feed::next() {
   const Stopwatch decoding;
   auto result = input_->next();
-  if (!result) {
-    state_ = FeedState::ended;
-    return std::nullopt;
-  }
-  state_ = FeedState::live;
+  state_ = result ? FeedState::live : FeedState::ended;
+  if (!result) return std::nullopt;
   result->decode_s = decoding.seconds();
-  Frame& frame = result->frame;
-  frame.camera = id_;
-  if (options_.steady_times) frame.time = timestamp_from_seconds(steady(seconds(frame.time)));
-  frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
-  if (detector_ == nullptr) return result;
+  if (options_.steady_times) result->frame.time = timestamp_from_seconds(steady(seconds(result->frame.time)));
+  return taken_in(std::move(*result));
+}
+
+/// By the rig's clock, and searched where the feed does that.
+CameraFrame Feed::taken_in(CameraFrame given) {
+  given.frame.camera = id_;
+  given.frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
+  if (detector_ == nullptr) return given;
   const Stopwatch detecting;
-  result->detections = detector_->detect(frame, {}).detections;
-  result->detect_s = detecting.seconds();
-  return result;
+  given.detections = detector_->detect(given.frame, {}).detections;
+  given.detect_s = detecting.seconds();
+  return given;
+}
+
+std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy) {
+  std::vector<CameraFrame> frames;
+  for (Frame& frame : live_->arrived()) frames.push_back(taken_in({.frame = std::move(frame), .detections = {}}));
+  if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
+  return frames;
+}
+
+FeedState Feed::state(Timestamp begin, const source::LivePolicy& policy) const {
+  return live_->ended() ? FeedState::ended : health_.at(policy.time->now(), begin, policy);
 }
 
 /// A file rounds its times, to milliseconds often: a camera that keeps its rate is believed more.
@@ -233,6 +269,7 @@ double Feed::steady(double time) {
 }
 
 bool Feed::can_rewind() const {
+  if (is_live()) return false;
   const std::string& path = camera_.source.empty() ? camera_.detections : camera_.source;
   std::error_code ignored;
   // A pattern of names is no file of that name, and can be read again like a folder.
@@ -246,6 +283,7 @@ Feed Feed::again() const {
 }
 
 std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) const {
+  if (!can_rewind()) return {};
   FeedOptions options = options_;
   options.ahead = 0;
   Feed feed(camera_, id_, options);
@@ -254,6 +292,7 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
   std::vector<Frame> samples;
   while (std::ssize(samples) < count) {
     auto next = feed.next();
+    if (options_.stop.stop_requested()) throw Stopped();
     if (!next) break;
     if (next->frame.index % step == 0) samples.push_back(std::move(next->frame));
   }
@@ -262,7 +301,7 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
 
 std::vector<std::string> Feed::warnings() const {
   std::vector<std::string> all;
-  for (const std::string& warning : input_->warnings()) all.push_back(said_of(camera_, warning));
+  for (const std::string& warning : is_live() ? live_->warnings() : input_->warnings()) all.push_back(said_of(camera_, warning));
   if (detector_ == nullptr) return all;
   for (const std::string& warning : detector_->warnings()) all.push_back(said_of(camera_, info().name + ": " + warning));
   return all;

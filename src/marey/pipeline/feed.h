@@ -4,25 +4,24 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "marey/core/frame_set.h"
 #include "marey/core/rig.h"
 #include "marey/core/source.h"
+#include "marey/core/stop.h"
 #include "marey/detect/detector.h"
+#include "marey/source/feed_health.h"
 
 namespace marey::pipeline {
 
-/// Of a camera that nobody knows the rate of, Hz.
-constexpr double kUsualRate = 25;
-
-enum class FeedState { connecting, live, stalled, lost, back, ended };
-
 struct FeedOptions {
-  std::optional<double> rate_hz = {};  ///< of a camera of which the rig does not say it
-  bool steady_times = false;           ///< the camera keeps its rate: times that its file has rounded are put right
-  int ahead = 8;                       ///< frames that are decoded ahead, on a thread of its own; 0: none
+  std::optional<double> rate_hz = {};           ///< of a camera of which the rig does not say it
+  bool steady_times = false;                    ///< the camera keeps its rate: times that its file has rounded are put right
+  int ahead = 8;                                ///< frames that are decoded ahead, on a thread of its own; 0: none
+  std::stop_token stop = StopScope::current();  ///< ends the waiting for a camera that is silent
 };
 
 class Feed {
@@ -41,10 +40,12 @@ class Feed {
   const SourceInfo& info() const;
   double rate_hz() const;
   bool has_pictures() const;
-  FeedState state() const { return state_; }
 
   /// A camera that gives nothing.
   static Feed absent(const RigCamera& camera, CameraId id);
+  /// A camera that does not wait for its reader: `arrived` is asked, not `next`.
+  static Feed live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source);
+  bool is_live() const { return live_ != nullptr; }
 
   /// The feed looks for things itself from now on, in the frames' order.
   void find(std::unique_ptr<detect::Detector> detector);
@@ -53,12 +54,22 @@ class Feed {
 
   /// The next frame; nothing at the end. Its time is by the rig's clock: the camera's with `offset_s` added.
   std::optional<CameraFrame> next();
+  /// Of a live camera, what has come since the last call, in order; never waits for it.
+  std::vector<CameraFrame> arrived(const source::LivePolicy& policy);
+  /// Of a live camera, how many frames were let go because they were not asked for in time.
+  std::int64_t overrun() const { return live_ != nullptr ? live_->overrun() : 0; }
+
+  FeedState state() const { return state_; }
+  bool has_ended() const { return live_ != nullptr ? live_->ended() : state_ == FeedState::ended; }
+  /// Of a live camera, as it is now; `begin` is when the run began.
+  FeedState state(Timestamp begin, const source::LivePolicy& policy) const;
 
   /// Whether `again` works: a file does, a pipe or a live camera does not.
   bool can_rewind() const;
   /// The same camera from its beginning, without a detector. Throws Error where it cannot be read twice.
   Feed again() const;
-  /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is.
+  /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is. None where it cannot be
+  /// read twice. Throws Stopped.
   std::vector<Frame> sample(int count, double seconds, int most_frames) const;
   /// What a detector learns the empty scene from: thirty frames of thirty seconds, of which 300 frames are read at most.
   std::vector<Frame> sample_beginning() const { return sample(30, 30, 300); }
@@ -72,15 +83,20 @@ class Feed {
   class Boxes;
   class Observations;
   class Nothing;
+  class Life;
   friend std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
 
   Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input);
   double steady(double time);
+  CameraFrame taken_in(CameraFrame frame);
 
   RigCamera camera_;
   CameraId id_;
   FeedOptions options_;
+  std::unique_ptr<Life> life_;
   std::unique_ptr<Input> input_;
+  std::unique_ptr<LiveSource> live_;  // then there is no input
+  source::FeedHealth health_;
   std::unique_ptr<detect::Detector> detector_;
   std::optional<double> first_s_;
   FeedState state_ = FeedState::connecting;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "marey/calibrate/board/choose_views.h"
 #include "marey/calibrate/board/sharpness.h"
 
 namespace marey::pipeline {
@@ -14,7 +16,8 @@ constexpr std::size_t kFramesAtOnce = 16;  // frames
 
 }  // namespace
 
-BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options) {
+BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options,
+                           const Hooks& hooks) {
   BoardSightings found;
   found.size = feed.info().size;
   std::vector<Frame> batch;
@@ -38,11 +41,22 @@ BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& de
     if (count++ % options.every == 0) batch.push_back(std::move(next->frame));
     if (batch.size() < kFramesAtOnce) continue;
     look();
-    if (options.progress) options.progress(count, feed.info().frame_count);
+    hooks.advance({options.step, count, feed.info().frame_count});
   }
+  if (hooks.stop.stop_requested()) throw Stopped();
   look();
   found.warnings = feed.warnings();
   return found;
+}
+
+calibrate::LensCalibration lens_by_sightings(const calibrate::board::Board& board, const BoardSightings& seen,
+                                             std::size_t most_views, const calibrate::LensOptions& how) {
+  std::vector<calibrate::board::ViewCandidate> candidates;
+  for (const BoardSighting& sighting : seen.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
+  std::vector<calibrate::LensView> views;
+  for (const std::size_t i : calibrate::board::choose_views(candidates, seen.size, most_views))
+    views.push_back({fmt::format("frame {}", seen.sightings[i].frame), seen.sightings[i].view});
+  return calibrate::calibrate_lens(board, seen.size, views, how);
 }
 
 }  // namespace marey::pipeline

@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "marey/calibrate/board/board_detector.h"
+#include "marey/calibrate/lens_calibration.h"
+#include "marey/core/hooks.h"
 #include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
+
+/// Pictures that a lens rests on, where nobody says how many.
+constexpr std::size_t kViewsOfLens = 60;
 
 /// A board in one frame of a camera.
 struct BoardSighting {
@@ -28,11 +33,16 @@ struct BoardSightings {
 };
 
 struct FindBoardsOptions {
-  std::int64_t every = 1;                                                   ///< look at every so many-th frame only
-  std::function<void(std::int64_t, std::optional<std::int64_t>)> progress;  ///< frames done and in all; may be empty
+  std::int64_t every = 1;                      ///< look at every so many-th frame only
+  std::string step = "looking for the board";  ///< what its progress is called
 };
 
-/// Looks for the board in the camera's frames, several at once.
-BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options = {});
+/// Looks for the board in the camera's frames, several at once. Throws Stopped.
+BoardSightings find_boards(Feed& feed, const calibrate::board::BoardDetector& detector, const FindBoardsOptions& options = {},
+                           const Hooks& hooks = {});
+
+/// The lens by the best `most_views` of them. Throws as calibrate::calibrate_lens does.
+calibrate::LensCalibration lens_by_sightings(const calibrate::board::Board& board, const BoardSightings& seen,
+                                             std::size_t most_views = kViewsOfLens, const calibrate::LensOptions& how = {});
 
 }  // namespace marey::pipeline

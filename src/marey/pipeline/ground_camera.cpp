@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kSmallest = 12;   // px; a smaller body has no shape
 constexpr double kBeyondArea = 5;  // m; who stands so far outside is followed until it is plain whether they come in
-constexpr double kToe = 0.1;       // m; our own silhouettes end at the tip of the foot, others' boxes where they like
 
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
 detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
@@ -73,18 +72,19 @@ GroundView view_of(const RigCamera& camera) {
 
 GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options)
     : camera_(feed.camera()), id_(feed.id()), area_(area), view_(view_of(camera_)) {
-  if (!feed.has_pictures()) {
-    if (view_.camera() == nullptr) learned_.emplace();
-    return;
+  if (feed.has_pictures()) {
+    detect::DetectorOptions detector = options.detector;
+    if (const Camera* whole = view_.camera()) {
+      const cv::Rect part = part_with_people(*whole, area);
+      if (part.size() != whole->size()) part_ = part;
+      if (auto* people = std::get_if<detect::people::PeopleDetectorOptions>(&detector))
+        people->people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
+    }
+    detector_ = detect::make_detector(detector);
   }
-  detect::people::PeopleOptions people = options.people;
-  if (const Camera* whole = view_.camera()) {
-    const cv::Rect part = part_with_people(*whole, area);
-    people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
-    if (part.size() != whole->size()) part_ = part;
-  }
-  detector_ = std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), people);
-  if (!options.prime) return;
+  const bool sizes_known = view_.camera() != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
+  if (!sizes_known) learned_.emplace();
+  if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
   for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
   detector_->prime(samples);
@@ -93,51 +93,60 @@ GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area
 GroundCamera::~GroundCamera() = default;
 GroundCamera::GroundCamera(GroundCamera&&) noexcept = default;
 
-std::optional<Box> GroundCamera::box_at(const Vector<2>& ground) const {
-  if (const Camera* camera = view_.camera()) return reconstruct::person_box(*camera, ground);
-  const auto foot = view_.pixel(ground);
+std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time) const {
+  const GroundView& view = view_at(time);
+  if (const Camera* camera = view.camera()) return reconstruct::person_box(*camera, ground);
+  const auto foot = view.pixel(ground);
   if (!foot) return std::nullopt;
-  const auto size = detector_ ? detector_->size_at(foot->x(), foot->y()) : learned_->at(foot->x(), foot->y());
+  if (!learned_) return detector_->body_at(*foot);
+  const auto size = learned_->at(foot->x(), foot->y());
   if (!size) return std::nullopt;
   return size->box_at(foot->x(), foot->y());
 }
 
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
-  detect::Detections found;
   Frame frame = given.frame;
   if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
+  detect::Detections found;
   if (detector_) {
-    expected_.clear();
-    const cv::Size size = frame.picture.size();
-    const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
-    for (const Track<2>& track : expected) {
-      const auto box = box_at(track.position);
-      if (!box) continue;
-      const Box here = geometry::intersection(moved(*box, -corner()), picture);
-      if (!here.empty()) expected_.push_back({here});
-    }
-    found = detector_->detect(frame, expected_);
+    found = detect(frame, expected);
   } else {
     found.detections = *given.detections;
-    if (learned_) {
-      for (const Detection& detection : found.detections) learned_->see(detection.box, view_.size());
-      if (learned_->wants_fit()) learned_->fit();
-    }
   }
-  place(frame.picture, found);
+  if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_.size());
+  place(frame, found);
   return {id_, given.frame.time, seen_};
 }
 
-void GroundCamera::place(const Picture& picture, detect::Detections& found) {
+/// Who is expected is where the detector need not learn the background.
+detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected) {
+  expected_.clear();
+  const cv::Size size = frame.picture.size();
+  const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+  for (const Track<2>& track : expected) {
+    const auto box = box_at(track.position, frame.time);
+    if (!box) continue;
+    const Box here = geometry::intersection(moved(*box, -corner()), picture);
+    if (!here.empty()) expected_.push_back({here});
+  }
+  return detector_->detect(frame, expected_);
+}
+
+void GroundCamera::learn_sizes(const std::vector<Detection>& detections, const cv::Size& size) {
+  for (const Detection& detection : detections) learned_->see(detection.box, size);
+  if (learned_->wants_fit()) learned_->fit();
+}
+
+void GroundCamera::place(const Frame& frame, detect::Detections& found) {
   std::vector<std::optional<Appearance>> appearances;
   for (std::size_t i = 0; i < found.detections.size(); ++i) {
-    appearances.push_back(detect::upper_body(picture, found.foreground, found.detections, i));
+    appearances.push_back(detect::upper_body(frame.picture, found.foreground, found.detections, i));
   }
   for (Detection& detection : found.detections) detection.box = moved(detection.box, corner());
   reconstruct::PlacePeopleOptions placing;
-  if (detector_) placing.toe = kToe;
-  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_, id_, placing);
+  if (detector_) placing.toe = detector_->traits().toe_m;
+  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_at(frame.time), id_, placing);
   seen_.clear();
   for (std::size_t i = 0; i < placed.seen.size(); ++i) {
     if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
@@ -157,8 +166,8 @@ void GroundCamera::report(Summary& summary) const {
   counts.outside = outside_;
   summary.detections += detections_;
   if (!detector_) return;
-  counts.noise = detector_->counts().noise;
-  counts.misfits = detector_->counts().misfits;
+  counts.noise = detector_->detection_counts().noise.value_or(0);
+  counts.misfits = detector_->detection_counts().misfits.value_or(0);
 }
 
 }  // namespace marey::pipeline

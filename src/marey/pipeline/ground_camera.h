@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/detect/background/background.h"
-#include "marey/detect/people/people.h"
+#include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
 #include "marey/pipeline/run.h"
@@ -18,8 +17,7 @@
 namespace marey::pipeline {
 
 struct GroundCameraOptions {
-  detect::background::BackgroundOptions background = {};
-  detect::people::PeopleOptions people = {};
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
 };
 
@@ -31,13 +29,14 @@ class GroundCamera {
   ~GroundCamera();
   GroundCamera(GroundCamera&&) noexcept;
 
-  const GroundView& view() const { return view_; }
+  /// How it sees the ground at this time: always the same, while no camera turns.
+  const GroundView& view_at(Timestamp /*time*/) const { return view_; }
 
   /// Finds people where `expected` are (m, world), or takes what another program found, and places them. Valid until the next call.
   track::ground::CameraObservations observe(const CameraFrame& given, std::span<const Track<2>> expected);
 
   /// The box of a person at `ground` (m, world) in the camera's picture, px; nothing where that is not known.
-  std::optional<Box> box_at(const Vector<2>& ground) const;
+  std::optional<Box> box_at(const Vector<2>& ground, Timestamp time) const;
 
   /// Puts in what was looked at, found and left out.
   void report(Summary& summary) const;
@@ -46,15 +45,17 @@ class GroundCamera {
  private:
   cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
   Picture looked_at(const Picture& picture) const { return part_ ? picture.part(*part_) : picture; }
-  void place(const Picture& picture, detect::Detections& found);
+  detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected);
+  void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
+  void place(const Frame& frame, detect::Detections& found);
 
   RigCamera camera_;
   CameraId id_;
   reconstruct::GroundArea area_;
   GroundView view_;
-  std::optional<cv::Rect> part_;                              // px, that is looked at; nothing: the whole picture
-  std::unique_ptr<detect::people::PeopleDetector> detector_;  // none where another program's detections come
-  std::optional<detect::people::PersonSizeModel> learned_;    // where neither a camera nor a detector knows how tall people are
+  std::optional<cv::Rect> part_;                            // px, that is looked at; nothing: the whole picture
+  std::unique_ptr<detect::Detector> detector_;              // none where another program's detections come
+  std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are
   std::vector<Expected> expected_;
   std::vector<Observation<2>> seen_;
   std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;

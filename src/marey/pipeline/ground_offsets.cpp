@@ -23,8 +23,8 @@ class SingleCamera {
  public:
   SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
       : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
-        camera_(feed_, area, {.background = options.background}),
-        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view()})),
+        camera_(feed_, area, {.detector = options.detector}),
+        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view_at(Timestamp{})})),
         seconds_(options.seconds) {}
 
   std::optional<std::int64_t> frames() const {
@@ -59,7 +59,7 @@ class SingleCamera {
   GroundPathLog log_{{0.0}};
 };
 
-/// The ways that each of these cameras sees, followed side by side. `hooks` are called on this thread.
+/// The paths that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
                                                                     const reconstruct::GroundArea& area,
                                                                     const RigOffsetsOptions& options, const Hooks& hooks) {
@@ -72,7 +72,7 @@ std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::v
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (goes_on[i]) goes_on[i] = runs[i]->step() ? 1 : 0;
     });
-    if (hooks.report({"comparing clocks", done, total}) == Continue::no) break;
+    hooks.advance({"comparing clocks", done, total});
   }
   std::vector<std::vector<calibrate::pitch::GroundPath>> paths;
   for (const auto& run : runs) paths.push_back(run->paths());
@@ -100,16 +100,16 @@ std::string after(double offset_s, double deviation_s, const std::string& first)
 
 }  // namespace
 
-void GroundPathLog::add(std::span<const track::ground::CameraObservations> looks,
-                        std::span<const track::ground::ObservationMatch> claims) {
-  for (const track::ground::ObservationMatch& claim : claims) {
-    const track::ground::CameraObservations& look = looks[static_cast<std::size_t>(claim.view)];
-    const auto camera = static_cast<std::size_t>(number(look.camera));
-    const double own = seconds(look.time) - offsets_[camera];
+void GroundPathLog::add(std::span<const track::ground::CameraObservations> views,
+                        std::span<const track::ground::ObservationMatch> matches) {
+  for (const track::ground::ObservationMatch& match : matches) {
+    const track::ground::CameraObservations& view = views[static_cast<std::size_t>(match.view)];
+    const auto camera = static_cast<std::size_t>(number(view.camera));
+    const double own = seconds(view.time) - offsets_[camera];
     if (own > kLogged_s) continue;
-    const Observation<2>& seen = look.seen[static_cast<std::size_t>(claim.observation)];
+    const Observation<2>& seen = view.seen[static_cast<std::size_t>(match.observation)];
     if (seen.shared) continue;
-    auto& samples = paths_[{camera, claim.track}].samples;
+    auto& samples = paths_[{camera, match.track}].samples;
     if (samples.empty() || own > samples.back().time_s) samples.push_back({own, seen.value, seen.covariance});
   }
 }

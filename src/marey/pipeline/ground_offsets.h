@@ -10,7 +10,7 @@
 
 #include "marey/calibrate/pitch/ground_offset.h"
 #include "marey/core/rig.h"
-#include "marey/detect/background/background.h"
+#include "marey/detect/detectors.h"
 #include "marey/pipeline/run.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -21,13 +21,13 @@ namespace marey::pipeline {
 /// the first twenty seconds only.
 class GroundPathLog {
  public:
-  /// `offsets`: of each camera, s, that its looks' times were moved by.
+  /// `offsets`: of each camera, s, that its times were moved by.
   explicit GroundPathLog(std::vector<double> offsets) : offsets_(std::move(offsets)) {}
 
-  /// The looks and claims of one instant.
-  void add(std::span<const track::ground::CameraObservations> looks, std::span<const track::ground::ObservationMatch> claims);
+  /// What cameras saw at one instant, and whose it was found to be.
+  void add(std::span<const track::ground::CameraObservations> views, std::span<const track::ground::ObservationMatch> matches);
 
-  /// The ways that camera number `camera` saw, by its own clock.
+  /// The paths that camera number `camera` saw, by its own clock.
   std::vector<calibrate::pitch::GroundPath> paths(std::size_t camera) const;
 
  private:
@@ -36,8 +36,8 @@ class GroundPathLog {
 };
 
 struct RigOffsetsOptions {
-  detect::background::BackgroundOptions background;
-  std::optional<double> rate_hz;  ///< of cameras of which the rig does not say it
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
+  std::optional<double> rate_hz;                                               ///< of cameras of which the rig does not say it
   track::ground::GroundTrackerOptions tracker;
   double seconds = 60;  ///< of each camera that are looked at
   calibrate::pitch::GroundOffsetOptions search;
@@ -60,7 +60,7 @@ bool lacks_offsets(const Rig& rig);
 
 /// Looks at the beginning of every camera, follows people in each alone, and finds when cameras were started that the rig does not
 /// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error where a camera cannot be
-/// read.
+/// read; Stopped.
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options = {},
                             const Hooks& hooks = {});
 

@@ -8,10 +8,10 @@
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
 #include "marey/filter/fit_noise.h"
-#include "marey/pipeline/rows_by_frame.h"
 #include "marey/pipeline/simulation_files.h"
 #include "marey/track/fill_gaps.h"
-#include "marey/track/recording.h"
+#include "marey/track/rows_by_frame.h"
+#include "marey/track/tracklet_log.h"
 
 namespace marey::pipeline {
 namespace {
@@ -43,7 +43,7 @@ class FilledRows final : public InstantSource {
   std::vector<track::TrackRow> rows_;
   std::vector<Recording::Moment> moments_;
   Markers labels_;
-  RowsByFrame by_number_;
+  track::RowsByFrame by_number_;
   std::size_t next_ = 0;
 };
 
@@ -143,7 +143,7 @@ class MarkersInPicture final : public Stage {
   detect::markers::MarkerDetector detector_;
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<filter::NoiseFit> noise_;
-  track::Recording recording_;
+  track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
   std::vector<Track<2>> confirmed_;
   Markers labels_;

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/set_labels.h"
 #include "marey/pipeline/simulation_files.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/reconstruct/learned_noise.h"
+#include "marey/reconstruct/set_labels.h"
 #include "marey/track/gap_filler.h"
 
 namespace marey::pipeline {
@@ -190,7 +190,7 @@ class MarkersInSpace final : public Stage {
   RecordingHeader header_;
   std::vector<bool> calibrated_;  // by camera of the rig
   reconstruct::LearnedNoise noise_;
-  SetLabels labels_;
+  reconstruct::SetLabels labels_;
   track::GapFiller filler_;
   std::optional<reconstruct::Corresponder> corresponder_;
   std::unique_ptr<track::Tracker<3>> tracker_;

@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/match_report.h"
+#include "marey/format/match/ground_exchange.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::pipeline {
@@ -52,8 +53,6 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   page.heat = person.heat.seconds;
   return page;
 }
-
-}  // namespace
 
 std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options) {
   std::string text = "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y";
@@ -101,6 +100,21 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
   WholeFile file((std::filesystem::path(folder) / "report.html").string());
   file.write(draw::to_html(report));
   file.finish();
+}
+
+}  // namespace
+
+analyse::Measurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
+                                   const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  const format::match::GroundReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
+  analyse::Measurement measured = analyse::measure(format::match::read_ground_any(tracks, reading).recording, options.how);
+  if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
+  WholeFile file(output.figures);
+  file.write(measurement_csv(measured, options.how));
+  if (!output.report.empty()) write_report(measured, options.how, std::filesystem::path(tracks).stem().string(), output.report);
+  file.finish();
+  return measured;
 }
 
 }  // namespace marey::pipeline

@@ -3,15 +3,25 @@
 #include <string>
 
 #include "marey/analyse/measure.h"
+#include "marey/core/hooks.h"
 
 namespace marey::pipeline {
 
-/// The people's figures as CSV: id,label,team,distance_m,mean_mps,top_mps,sprints, then the rest; a row for each person.
-std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options);
+struct MeasureMatchOptions {
+  analyse::MeasureOptions how;
+  std::string metadata;  ///< of formats that keep it in a file of its own; empty: it is found under a like name
+  double rate_hz = 25;   ///< where the tracks do not say
+};
 
-/// Writes `folder`/report.html: one page with plots, tables, heat maps and ways. The folder is made. Throws Error where that cannot
-/// be.
-void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options, const std::string& title,
-                  const std::string& folder);
+/// Where the results go; what is empty is not made.
+struct MeasureOutput {
+  std::string figures;  ///< CSV: id,label,team,distance_m,mean_mps,top_mps,sprints, then the rest; a row for each person
+  std::string report;   ///< a folder, which is made, for report.html: one page with plots, tables, heat maps and paths
+};
+
+/// How far and how fast everybody of `tracks` ran, a file of places on the ground that format/match reads. Throws Error where it
+/// cannot be read, nobody is in it for long enough, or an output cannot be written; Stopped.
+analyse::Measurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
+                                   const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

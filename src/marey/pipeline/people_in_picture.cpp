@@ -6,9 +6,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
-#include "marey/pipeline/rows_by_frame.h"
-#include "marey/track/outline_recording.h"
-#include "marey/track/recording.h"
+#include "marey/track/outline_log.h"
+#include "marey/track/rows_by_frame.h"
+#include "marey/track/tracklet_log.h"
 
 namespace marey::pipeline {
 namespace {
@@ -46,7 +46,7 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
 /// What the second pass made of the recording, frame by frame.
 class JoinedRows final : public InstantSource {
  public:
-  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineRecording* outlines)
+  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineLog* outlines)
       : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines) {}
 
   std::optional<Instant> next() override {
@@ -62,7 +62,7 @@ class JoinedRows final : public InstantSource {
  private:
   std::vector<track::TrackRow> rows_;
   std::vector<Recording::Moment> moments_;  // frames may be missing between them: rows count these
-  RowsByFrame by_number_;
+  track::RowsByFrame by_number_;
   std::size_t next_ = 0;
 };
 
@@ -78,9 +78,8 @@ class PeopleInPicture final : public Stage {
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
-      people_ =
-          std::make_unique<detect::people::PeopleDetector>(detect::background::make_background(options.background), options.people);
-      if (!options.live) people_->prime(feed.sample_beginning());
+      detector_ = detect::make_detector(options.detector);
+      if (!options.live) detector_->prime(feed.sample_beginning());
     }
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
@@ -115,15 +114,16 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
-    if (people_ == nullptr) return;
-    summary.left_out["noise"] = people_->counts().noise;
-    summary.left_out["misfits"] = people_->counts().misfits;
+    if (detector_ == nullptr) return;
+    const detect::DetectionCounts counts = detector_->detection_counts();
+    if (counts.noise) summary.left_out["noise"] = *counts.noise;
+    if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
   }
 
  private:
   detect::Detections detect(const CameraFrame& given) {
     if (given.detections) return {.detections = *given.detections, .foreground = {}};
-    return people_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+    return detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
   }
 
   /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
@@ -147,11 +147,11 @@ class PeopleInPicture final : public Stage {
 
   PeopleInPictureOptions options_;
   RecordingHeader header_;
-  std::unique_ptr<detect::people::PeopleDetector> people_;  // none where the feed brings detections
+  std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::OutlineFollower> follower_;
-  std::optional<track::OutlineRecording> outlines_;
-  track::Recording recording_;
+  std::optional<track::OutlineLog> outlines_;
+  track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
   Instant live_;
   std::set<TrackId> begun_, believed_;

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "marey/detect/background/background.h"
-#include "marey/detect/people/people.h"
+#include "marey/detect/detectors.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/join.h"
@@ -17,8 +16,7 @@
 namespace marey::pipeline {
 
 struct PeopleInPictureOptions {
-  detect::background::BackgroundOptions background;
-  detect::people::PeopleOptions people;
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< where the feed does not detect itself
   track::TrackerOptions tracker;
   track::JoinOptions join;
   std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it

@@ -13,7 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
-#include "marey/pipeline/view_log.h"
+#include "marey/track/view_log.h"
 
 namespace marey::pipeline {
 namespace {
@@ -71,7 +71,7 @@ class GroundStage final : public PeopleOnGround {
         observations_(feeds.size()) {
     open_cameras(feeds);
     std::vector<GroundView> views;
-    for (const GroundCamera& camera : cameras_) views.push_back(camera.view());
+    for (const GroundCamera& camera : cameras_) views.push_back(camera.view_at(Timestamp{}));
     tracker_ = track::ground::make_ground_tracker(options.tracker, std::move(views));
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
@@ -164,7 +164,7 @@ class GroundStage final : public PeopleOnGround {
   void open_cameras(const std::vector<Feed>& feeds) {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
-    const GroundCameraOptions how{.background = options_.background, .people = {}, .prime = !options_.live};
+    const GroundCameraOptions how{.detector = options_.detector, .prime = !options_.live};
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], area_, how); });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
@@ -218,13 +218,13 @@ class GroundStage final : public PeopleOnGround {
       sample.cameras = track.cameras;
     }
     if (!wants_boxes_) return instant;
-    logs_ = std::vector<ViewLog>(cameras_.size());
+    logs_ = std::vector<track::ViewLog>(cameras_.size());
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
     log_boxes(KeptObservations(frames.index, seen), tracker_->matches());
-    for (ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
+    for (track::ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;
   }
@@ -245,7 +245,7 @@ class GroundStage final : public PeopleOnGround {
     teams.pitch = area_.pitch();
     teams_ = analyse::find_teams(recording_, appearances, teams);
     analyse::note_teams(teams_, recording_);
-    for (ViewLog& log : logs_) {
+    for (track::ViewLog& log : logs_) {
       log.name([&](TrackId track, std::int32_t instant) -> std::optional<TrackId> {
         const auto person = joined.person_of(track, instant);
         const auto now = person ? people.now.find(*person) : people.now.end();
@@ -258,8 +258,9 @@ class GroundStage final : public PeopleOnGround {
   bool in_sight(const Vector<2>& place) const {
     if (!area_.holds(place)) return false;
     return std::any_of(cameras_.begin(), cameras_.end(), [&](const GroundCamera& camera) {
-      const auto pixel = camera.view().pixel(place);
-      return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(camera.view().size())).contains({pixel->x(), pixel->y()});
+      const GroundView& view = camera.view_at(Timestamp{});
+      const auto pixel = view.pixel(place);
+      return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(view.size())).contains({pixel->x(), pixel->y()});
     });
   }
 
@@ -276,13 +277,13 @@ class GroundStage final : public PeopleOnGround {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       const auto own = logs_[i].frame_at(instant.index);
       if (!own) continue;
-      const GroundView& view = cameras_[i].view();
+      const GroundView& view = cameras_[i].view_at(instant.time);
       const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
       for (const Sample& sample : instant.samples) {
         const Vector<2> place = area_.world(sample.position.head<2>());
         std::optional<Box> box = logs_[i].box(instant.index, sample.track);
         if (!box) {
-          const auto whole = cameras_[i].box_at(place);
+          const auto whole = cameras_[i].box_at(place, instant.time);
           if (!whole) continue;
           box = geometry::intersection(*whole, picture);
           if (box->empty()) continue;
@@ -305,7 +306,7 @@ class GroundStage final : public PeopleOnGround {
   std::vector<GroundCamera> cameras_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   GroundPathLog paths_;
-  std::vector<ViewLog> logs_;  // of each camera, where boxes are wanted
+  std::vector<track::ViewLog> logs_;  // of each camera, where boxes are wanted
   bool wants_boxes_ = false;
   std::vector<CameraObservations> observations_, seen_;
   std::deque<KeptObservations> waiting_;

@@ -18,7 +18,7 @@
 namespace marey::pipeline {
 
 struct PeopleOnGroundOptions {
-  detect::background::BackgroundOptions background;
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
   track::ground::GroundTrackerOptions tracker;
   track::ground::GroundJoinOptions join;
   analyse::TeamOptions teams;                ///< `pitch` is taken from below

@@ -77,11 +77,13 @@ Summary record(const Rig& rig, const std::string& observations, const std::strin
 
 Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out, const MarkersInSpaceOptions& options,
                     const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   const auto format = format::motion::motion_format_of_name(out);
   if (!format) throw Error("{}: its ending is of no format; .marey is a take, {} are others", out, ".c3d, .trc and .csv");
   if (*format == format::motion::MotionFormat::take) return record(rig, observations, out, options, hooks);
   const ForAWhile take{out + ".part.marey"};
   Summary summary = record(rig, observations, take.path, options, hooks);
+  const StopScope keeps_what_there_is{{}};  // of a run that was stopped too
   rewrite(take.path, out, *format);
   return summary;
 }

@@ -216,6 +216,58 @@ struct Spread {
   }
 };
 
+/// The names and places of the wing's markers, m. Its layout is symmetric, but for its frame: in the world x and y run the other
+/// way.
+MarkerSet set_of_wing(const std::string& data) {
+  MarkerSet set;
+  std::ifstream layout(data + "/marker_layout_mm.csv");
+  std::string line;
+  for (std::getline(layout, line); std::getline(layout, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream text(line);
+    std::string label;
+    Vector<3> place;
+    text >> label >> place.x() >> place.y() >> place.z();
+    set.labels.push_back(label);
+    set.places.push_back(Vector<3>(-place.x(), -place.y(), place.z()) / 1000);
+  }
+  return set;
+}
+
+/// How far the markers of a take are from what the cameras saw of them, and from the rigid wing.
+struct WingErrors {
+  Spread pixels, places;
+  double sum_px = 0;
+  int count_px = 0;
+
+  /// Markers by track.
+  void add(const Instant& instant, const std::map<TrackId, int>& marker_of, const Rig& rig, const MarkerSet& set) {
+    std::vector<Vector<3>> from, to;
+    std::vector<int> markers;
+    for (const Sample& point : instant.samples) {
+      const auto marker = marker_of.find(point.track);
+      if (marker == marker_of.end()) continue;
+      markers.push_back(marker->second);
+      from.push_back(set.places[static_cast<std::size_t>(markers.back())]);
+      to.push_back(point.position);
+      for (const SeenPoint& seen : instant.seen) {
+        if (seen.track != point.track) continue;
+        const int camera = number(seen.camera);
+        const Vector<2> error =
+            rig.cameras[static_cast<std::size_t>(camera)].camera()->project(point.position).value() - seen.pixel;
+        sum_px += error.norm();
+        ++count_px;
+        pixels.groups[16 * camera + markers.back()].push_back(error);
+      }
+    }
+    ASSERT_EQ(markers.size(), 16) << "at " << instant.index;
+    const Rigid3 fit = reconstruct::rigid_fit(from, to);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
+    }
+  }
+};
+
 TEST(Reconstruct, TheWingFromItsRawPictures) {
   const std::string data = test::data("wing");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not here";
@@ -225,18 +277,7 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   options.markers.widest = 9;
   options.markers.min_area = 4;
   options.markers.min_roundness = 0.5;
-  std::ifstream layout(data + "/marker_layout_mm.csv");
-  std::string line;
-  for (std::getline(layout, line); std::getline(layout, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream text(line);
-    std::string label;
-    Vector<3> place;
-    text >> label >> place.x() >> place.y() >> place.z();
-    options.set.labels.push_back(label);
-    // The layout is symmetric, but for its frame: in the world x and y run the other way.
-    options.set.places.push_back(Vector<3>(-place.x(), -place.y(), place.z()) / 1000);
-  }
+  options.set = set_of_wing(data);
   ASSERT_EQ(options.set.labels.size(), 16);
   const Rig rig = rig_of_wing(data);
   const auto summary = reconstruct(rig, "", folder / "wing.marey", options);
@@ -248,42 +289,17 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   for (const TrackName& track : reader.tracks()) {
     if (!track.label.empty()) marker_of[track.id] = std::stoi(track.label) - 1;
   }
-  Spread pixels, places;
-  double sum_px = 0;
-  int count_px = 0;
-  while (const auto frame = reader.next()) {
-    std::vector<Vector<3>> from, to;
-    std::vector<int> markers;
-    for (const Sample& point : frame->samples) {
-      if (!marker_of.contains(point.track)) continue;
-      markers.push_back(marker_of[point.track]);
-      from.push_back(options.set.places[static_cast<std::size_t>(markers.back())]);
-      to.push_back(point.position);
-      for (const SeenPoint& seen : frame->seen) {
-        if (seen.track != point.track) continue;
-        const int camera = number(seen.camera);
-        const Vector<2> error =
-            rig.cameras[static_cast<std::size_t>(camera)].camera()->project(point.position).value() - seen.pixel;
-        sum_px += error.norm();
-        ++count_px;
-        pixels.groups[16 * camera + markers.back()].push_back(error);
-      }
-    }
-    ASSERT_EQ(markers.size(), 16) << "at " << frame->index;
-    const Rigid3 fit = reconstruct::rigid_fit(from, to);
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
-    }
-  }
-  RecordProperty("mean_px", std::to_string(sum_px / count_px));
-  RecordProperty("rigid_mm", std::to_string(1000 * places.all()));
-  RecordProperty("random_px", std::to_string(pixels.random()));
-  RecordProperty("random_mm", std::to_string(1000 * places.random()));
-  EXPECT_GE(count_px, 3 * 16 * 6 - 6);
-  EXPECT_LE(sum_px / count_px, 0.25);
-  EXPECT_LE(places.all(), 0.60e-3);
-  EXPECT_LE(pixels.random(), 0.10);
-  EXPECT_LE(places.random(), 0.13e-3);
+  WingErrors errors;
+  while (const auto frame = reader.next()) errors.add(*frame, marker_of, rig, options.set);
+  RecordProperty("mean_px", std::to_string(errors.sum_px / errors.count_px));
+  RecordProperty("rigid_mm", std::to_string(1000 * errors.places.all()));
+  RecordProperty("random_px", std::to_string(errors.pixels.random()));
+  RecordProperty("random_mm", std::to_string(1000 * errors.places.random()));
+  EXPECT_GE(errors.count_px, 3 * 16 * 6 - 6);
+  EXPECT_LE(errors.sum_px / errors.count_px, 0.25);
+  EXPECT_LE(errors.places.all(), 0.60e-3);
+  EXPECT_LE(errors.pixels.random(), 0.10);
+  EXPECT_LE(errors.places.random(), 0.13e-3);
 }
 
 }  // namespace

@@ -94,33 +94,43 @@ class Pictures {
   std::optional<FrameSet> now_;
 };
 
-/// What a second pass tells of the whole recording, to the sinks.
+/// What a second pass knows of the whole recording, to the sinks. A run that was stopped draws nothing any more: to read the
+/// pictures again takes as long as the run did.
 void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& counter, const Hooks& hooks, Summary& summary) {
+  if (hooks.stop.stop_requested()) {
+    for (const std::string& name : sinks.drop_pictures())
+      summary.warnings.push_back(name + ": is not written, because the run was stopped before its pictures were drawn");
+  }
   std::optional<Pictures> pictures;
   if (sinks.want_pictures()) pictures.emplace(clock);
-  const bool stopped_before = summary.stopped;  // then a film shows all that was tracked until then
   std::int64_t done = 0;
   while (auto instant = rest.next()) {
     if (pictures && !pictures->attach_to(*instant)) pictures.reset();
     counter.add(*instant);
     if (!sinks.write(std::move(*instant))) break;
-    if (!sinks.want_pictures()) continue;
-    if (hooks.report({"drawing", ++done, summary.frames}) == Continue::yes || stopped_before) continue;
+    if (!sinks.want_pictures() || hooks.report({"drawing", ++done, summary.frames}) == Continue::yes) continue;
     summary.stopped = true;
     break;
   }
 }
 
-}  // namespace
+/// Nothing at the end, and where waiting for a camera was given up.
+std::optional<FrameSet> next_of(Clock& clock, const Hooks& hooks, Summary& summary) {
+  try {
+    auto frames = clock.next();
+    if (!frames) summary.stopped = hooks.stop.stop_requested();
+    return frames;
+  } catch (const Stopped&) {
+    summary.stopped = true;
+    return std::nullopt;
+  }
+}
 
-Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
-  Summary summary;
-  Counter counter(summary);
+/// From the first frame to the cameras' end, a stop, or a sink that fails.
+void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, const Hooks& hooks, Summary& summary) {
   const auto begin = std::chrono::steady_clock::now();
-  sinks.begin(signed_header(stage.header(), clock, hooks));
-  if (sinks.want_boxes()) stage.want_boxes();
   std::optional<Timestamp> first;
-  while (const std::optional<FrameSet> frames = clock.next()) {
+  while (const std::optional<FrameSet> frames = next_of(clock, hooks, summary)) {
     for (const Instant& known : stage.step(*frames)) {
       Instant instant = known;
       if (instant.index == frames->index) attach(instant.frames, *frames);
@@ -135,11 +145,31 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
     if (summary.stopped) break;
   }
   summary.first_pass_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (summary.frames == 0) throw Error("{}: not one frame could be read", stage.header().name);
+}
+
+}  // namespace
+
+Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
+  const StopScope keeps_what_there_is{{}};  // what is known when it stops is written
+  Summary summary;
+  Counter counter(summary);
+  sinks.begin(signed_header(stage.header(), clock, hooks));
+  if (sinks.want_boxes()) stage.want_boxes();
+  first_pass(stage, clock, sinks, counter, hooks, summary);
+  if (summary.frames == 0 && !summary.stopped) throw Error("{}: not one frame could be read", stage.header().name);
   if (const auto rest = stage.finish(hooks)) replay(*rest, clock, sinks, counter, hooks, summary);
+  if (hooks.stop.stop_requested() && summary.stopped && summary.samples == 0)
+    throw Stopped("stopped before anything was tracked; nothing was written");
   sinks.finish();
   counter.finish();
   summary.rate_hz = clock.rate_hz();
+  if (const auto drops = clock.drops()) {
+    summary.left_out["moments overtaken"] = drops->overtaken;
+    summary.left_out["moments incomplete"] = drops->incomplete;
+    summary.left_out["moments without a camera"] = drops->empty;
+    summary.left_out["frames late"] = drops->late_frames;
+    summary.left_out["frames overrun"] = drops->overrun;
+  }
   for (std::string& warning : clock.warnings()) summary.warnings.push_back(std::move(warning));
   stage.report(summary);
   return summary;

@@ -4,43 +4,20 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/core/recording.h"
 #include "marey/core/sink.h"
 #include "marey/pipeline/clock.h"
 
 namespace marey::pipeline {
-
-/// How far something long is.
-struct Progress {
-  std::string_view step;              ///< "tracking", "drawing", …: what is being done
-  std::int64_t done = 0;              ///< frames, pictures, …
-  std::optional<std::int64_t> total;  ///< where it is known
-};
-
-enum class Continue { no, yes };
-
-/// How a run talks to whoever started it; both may be empty. Called between frames, on the thread that started the run.
-struct Hooks {
-  std::function<void(const Progress&)> progress;
-  std::function<bool()> stop;  ///< true: leave off here, and write what there is
-  /// What the user asked for, by option: recordings keep it with the inputs' names and hashes, so that they can be made again.
-  std::map<std::string, std::string> options = {};
-
-  Continue report(const Progress& now) const {
-    if (progress) progress(now);
-    return stop && stop() ? Continue::no : Continue::yes;
-  }
-};
 
 /// What came of a run: what is in its results, what was lost on the way and why.
 struct Summary {
@@ -119,6 +96,8 @@ class Sinks {
   bool want_boxes() const;
   /// Whether all still take what they are given.
   bool write(Instant instant);
+  /// Drops those that want pictures: they leave nothing behind. Returns their names.
+  std::vector<std::string> drop_pictures();
   /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed.
   void finish();
 
@@ -127,8 +106,10 @@ class Sinks {
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 
-/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass tells of moments that are past and a sink wants
-/// their pictures, the clock is asked for them again. Throws Error where not one frame could be read, or a sink has failed.
+/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass reports moments that are past and a sink wants
+/// their pictures, the clock is asked for them again. A run that is asked to stop writes what is known until then, but for sinks
+/// whose pictures would have to be asked for again: they leave nothing, and a warning names them. Throws Error where not one frame
+/// could be read, or a sink has failed; Stopped where nothing was tracked before it was asked to stop.
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

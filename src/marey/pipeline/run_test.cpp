@@ -155,9 +155,12 @@ TEST(Run, StoppedHalfWayItFinishesWhatItHas) {
     sinks.add(std::make_unique<Keeper>(kept));
     Echo stage(at_the_end);
     Clock clock = clock_over(folder / "boxes.txt");
-    int reports = 0;
-    Hooks hooks;
-    hooks.stop = [&] { return ++reports == 40; };
+    std::stop_source stop;
+    const Hooks hooks{.progress =
+                          [&](const Progress& at) {
+                            if (at.done == 40) stop.request_stop();
+                          },
+                      .stop = stop.get_token()};
     const Summary summary = run(stage, clock, sinks, hooks);
     EXPECT_TRUE(summary.stopped);
     EXPECT_EQ(kept.indices.size(), 40u);

@@ -168,12 +168,11 @@ class MatchCameraFiles {
     if (options.boxes) detections_.emplace((folder / (rig_camera.name + ".txt")).string());
     if (!options.films) return;
     movie_.emplace((folder / (rig_camera.name + ".mp4")).string(), *rig_camera.size, rig_camera.rate_hz);
-    std::string clicks = "x,y,u,v\n";
-    for (const simulate::match::MatchClick& click : camera.clicks(options.click_noise, options.wrong_clicks)) {
-      fmt::format_to(std::back_inserter(clicks), "{:g},{:g},{:.2f},{:.2f}\n", click.ground.x(), click.ground.y(), click.pixel.x(),
-                     click.pixel.y());
-    }
-    write_text(folder / (rig_camera.name + "_clicks.csv"), clicks);
+    clicks_.emplace((folder / (rig_camera.name + "_clicks.csv")).string());
+    clicks_->write("x,y,u,v\n");
+    for (const simulate::match::MatchClick& click : camera.clicks(options.click_noise, options.wrong_clicks))
+      clicks_->write(
+          fmt::format("{:g},{:g},{:.2f},{:.2f}\n", click.ground.x(), click.ground.y(), click.pixel.x(), click.pixel.y()));
   }
 
   /// The frame at which the camera stands.
@@ -191,6 +190,7 @@ class MatchCameraFiles {
 
   void finish() {
     if (movie_) movie_->finish();
+    if (clicks_) clicks_->finish();
     truth_.finish();
     if (detections_) detections_->finish();
   }
@@ -207,7 +207,7 @@ class MatchCameraFiles {
 
   simulate::match::MatchCamera& camera_;
   WholeFile truth_;
-  std::optional<WholeFile> detections_;
+  std::optional<WholeFile> detections_, clicks_;
   std::optional<draw::MovieWriter> movie_;
   std::string text_;
 };
@@ -245,26 +245,26 @@ void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs
 
 }  // namespace
 
-void film_markers(const simulate::markers::MarkerScene& scene, const std::string& path) {
+void film_markers(const simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks) {
   Film film(simulate::markers::make_source(scene), path);
-  while (film.write_next()) {
-  }
+  for (std::int64_t done = 1; film.write_next(); ++done) hooks.advance({"frames", done, std::ssize(scene.frames)});
   film.finish();
 }
 
-void write_marker_truth(const simulate::markers::MarkerScene& scene, const std::string& path) {
-  WholeFile file(path);
-  file.write("frame,time,label,x,y,visible\n");
+void write_markers(const simulate::markers::MarkerScene& scene, const std::string& folder, const Hooks& hooks) {
+  WholeFile truth((fs::path(folder) / "truth.csv").string());
+  truth.write("frame,time,label,x,y,visible\n");
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     for (const simulate::markers::MarkerTruth& marker : scene.frames[i]) {
-      file.write(fmt::format("{},{:.6f},M{},{:.4f},{:.4f},{}\n", i, static_cast<double>(i) / scene.options.rate_hz,
-                             marker.marker + 1, marker.position.x(), marker.position.y(), marker.visible ? 1 : 0));
+      truth.write(fmt::format("{},{:.6f},M{},{:.4f},{:.4f},{}\n", i, static_cast<double>(i) / scene.options.rate_hz,
+                              marker.marker + 1, marker.position.x(), marker.position.y(), marker.visible ? 1 : 0));
     }
   }
-  file.finish();
+  film_markers(scene, (fs::path(folder) / "video.mp4").string(), hooks);
+  truth.finish();
 }
 
-void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const FramesWritten& progress) {
+void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks) {
   const fs::path place = folder;
   const simulate::people::PeopleFilmOptions& options = film.options();
   draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
@@ -274,17 +274,15 @@ void film_people(const simulate::people::PeopleFilm& film, const std::string& fo
     const simulate::people::RenderedFrame frame = film.render(i);
     movie.write(frame.picture, timestamp_from_seconds(time));
     for (const simulate::people::TrueFigure& person : frame.people) truth.write(i, time, person, options.size);
-    if (progress) progress(i + 1, film.frames());
+    hooks.advance({"frames", i + 1, film.frames()});
   }
   movie.finish();
   truth.finish();
 }
 
 void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options,
-                const FramesWritten& progress) {
+                const Hooks& hooks) {
   const fs::path place = folder;
-  write_room_rigs(scene, place, options.videos);
-  write_labels(scene, place);
   format::ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
   format::ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
   WholeFile truth((place / "truth.csv").string());
@@ -301,15 +299,17 @@ void write_room(const simulate::room::RoomScene& scene, const std::string& folde
     blobs.write(seen);
     truth.write(truth_rows(scene, frame));
     tbb::parallel_for(std::size_t{0}, films.size(), [&](std::size_t camera) { films[camera]->write_next(); });
-    if (progress) progress(i + 1, scene.options().frames);
+    hooks.advance({"frames", i + 1, scene.options().frames});
   }
   observations.finish();
   blobs.finish();
   truth.finish();
   for (const auto& film : films) film->finish();
+  write_room_rigs(scene, place, options.videos);
+  write_labels(scene, place);
 }
 
-void write_match(const MatchFilesOptions& options, const std::string& folder, const FramesWritten& progress) {
+void write_match(const MatchFilesOptions& options, const std::string& folder, const Hooks& hooks) {
   const simulate::match::MatchScene scene(options.cameras, options.seed);
   if (!(options.seconds > 0 && options.seconds <= kLongestMatch))
     throw Error("a match of {} s; more than 0 and {} at most are possible", options.seconds, kLongestMatch);
@@ -337,7 +337,7 @@ void write_match(const MatchFilesOptions& options, const std::string& folder, co
       files[i]->write();
     });
     writer.write(truth.next(cameras));
-    if (progress) progress(frame + 1, frames);
+    hooks.advance({"frames", frame + 1, frames});
   }
   for (const auto& each : files) each->finish();
   writer.finish();

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
+#include "marey/core/hooks.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/simulate/match/match_camera.h"
 #include "marey/simulate/people/people_film.h"
@@ -11,14 +11,14 @@
 
 namespace marey::pipeline {
 
-/// Told how many of all frames are written; may be empty.
-using FramesWritten = std::function<void(std::int64_t done, std::int64_t all)>;
+// All of these throw Stopped where they are asked to end, and leave nothing that is begun behind.
 
 /// Films a scene into an H.264 file, hardly compressed. Throws Error where it cannot be written.
-void film_markers(const simulate::markers::MarkerScene& scene, const std::string& path);
+void film_markers(const simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks = {});
 
-/// Writes the scene's truth as CSV, `frame,time,label,x,y,visible`, 0-based frames, s, px. Throws Error where it cannot be written.
-void write_marker_truth(const simulate::markers::MarkerScene& scene, const std::string& path);
+/// Writes a scene into a folder, which must exist: video.mp4, and its truth as truth.csv: `frame,time,label,x,y,visible`, 0-based
+/// frames, s, px. Throws Error where a file cannot be written.
+void write_markers(const simulate::markers::MarkerScene& scene, const std::string& folder, const Hooks& hooks = {});
 
 /// Films people into a folder, which must exist:
 ///   video.mp4          H.264, hardly compressed
@@ -28,7 +28,7 @@ void write_marker_truth(const simulate::markers::MarkerScene& scene, const std::
 ///   silhouettes.jsonl  an object a person and frame: frame, id, size [height, width], and the silhouettes `whole` and `visible`
 ///                      within the picture as COCO's run lengths (column by column, background first)
 /// Throws Error where a file cannot be written.
-void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const FramesWritten& progress = {});
+void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks = {});
 
 struct RoomFilesOptions {
   bool videos = false;  ///< renders camN.mp4, and makes it each camera's source
@@ -44,7 +44,7 @@ struct RoomFilesOptions {
 ///   truth.csv         frame,time,label,x,y,z,cameras: m, by the rig's clock; by how many cameras it can be seen
 /// Memory does not grow with the length. Throws Error where a file cannot be written.
 void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},
-                const FramesWritten& progress = {});
+                const Hooks& hooks = {});
 
 struct MatchFilesOptions {
   simulate::match::MatchCamerasOptions cameras;
@@ -61,9 +61,8 @@ struct MatchFilesOptions {
 
 /// Writes a simulated match into a folder, which must exist:
 ///   rig.toml        the exact cameras, with their films as sources, else with their boxes as detections
-///   truth.csv       where everybody is at the first camera's frames (format/ground_file.h), in the pitch's own frame; `cameras`
-///   are
-///                   those for which he is in the picture and not hidden
+///   truth.csv       where everybody is at the first camera's frames (format/match/ground_file.h), in the pitch's own frame;
+///                   `cameras` are those for which the target is in the picture and not hidden
 ///   CAM_truth.txt   MOTChallenge truth for each camera: the box of each whole person, cut at the picture's border; ids as in
 ///                   truth.csv; the ninth column is the share of it that can be seen
 ///   CAM.txt         with `boxes`: MOTChallenge detections for each camera; with films too, boxes.toml is the rig that names them
@@ -72,6 +71,6 @@ struct MatchFilesOptions {
 ///                   calibration, can be calibrated
 /// Memory does not grow with the length. Throws Error where an option is out of its domain or a file
 /// cannot be written.
-void write_match(const MatchFilesOptions& options, const std::string& folder, const FramesWritten& progress = {});
+void write_match(const MatchFilesOptions& options, const std::string& folder, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

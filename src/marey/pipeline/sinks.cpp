@@ -21,7 +21,7 @@ constexpr int kWaiting = 8;  // instants, with their pictures
 /// A sink, written on a thread of its own.
 class Sinks::Lane {
  public:
-  explicit Lane(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) { queue_.set_capacity(kWaiting); }
+  explicit Lane(std::unique_ptr<Sink> sink) : sink_(std::move(sink)), name_(sink_->name()) { queue_.set_capacity(kWaiting); }
 
   ~Lane() {
     if (!writer_.joinable()) return;
@@ -37,6 +37,7 @@ class Sinks::Lane {
   }
 
   const Sink::Wants& wants() const { return wants_; }
+  const std::string& name() const { return name_; }
   bool failed() const { return failed_; }
   void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
 
@@ -79,6 +80,7 @@ class Sinks::Lane {
   }
 
   std::unique_ptr<Sink> sink_;
+  std::string name_;
   Sink::Wants wants_;
   tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
   std::atomic<bool> failed_ = false, given_up_ = false;
@@ -115,6 +117,16 @@ bool Sinks::write(Instant instant) {
     all = all && !lane->failed();
   }
   return all;
+}
+
+std::vector<std::string> Sinks::drop_pictures() {
+  std::vector<std::string> names;
+  std::erase_if(lanes_, [&](const auto& lane) {
+    const bool dropped = lane->wants().pictures && !lane->failed();
+    if (dropped) names.push_back(lane->name());
+    return dropped;
+  });
+  return names;
 }
 
 void Sinks::finish() {

@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
 #include "marey/draw/overlay_film.h"
+#include "marey/draw/pitch_view_film.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/ground_films.h"
+#include "marey/format/tracks/view_box_file.h"
 #include "marey/pipeline/ground_offsets.h"
-#include "marey/pipeline/rig_sources.h"
 
 namespace marey::pipeline {
 namespace {
@@ -53,12 +54,13 @@ Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundO
   } else if (output.boxes_of.empty()) {
     sinks.add(std::make_unique<format::match::GroundWriter>(output.tracks));
   } else {
-    sinks.add(std::make_unique<ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));
+    sinks.add(std::make_unique<format::tracks::ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));
   }
   if (!output.overlays.empty()) add_films(sinks, output, feeds);
   if (!output.pitch_view.empty()) {
     const reconstruct::GroundArea area(rig.ground_from_world, options.pitch, options.margin);
-    sinks.add(std::make_unique<PitchViewFilm>(output.pitch_view, area, feeds.front().info().rate_hz));
+    const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
+    sinks.add(std::make_unique<draw::PitchViewFilm>(output.pitch_view, shown, feeds.front().info().rate_hz));
   }
   return sinks;
 }
@@ -75,6 +77,7 @@ GroundSummary run_over(const Rig& rig, const GroundOutput& output, const PeopleO
 }  // namespace
 
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   check(rig, output, options);
   if (!lacks_offsets(rig)) return run_over(rig, output, options, hooks);
   Rig timed = rig;
@@ -85,7 +88,7 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Peo
         "rig");
   } else {
     RigOffsetsOptions how;
-    how.background = options.background;
+    how.detector = options.detector;
     how.rate_hz = options.rate_hz;
     offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
     enter_offsets(timed, offsets);

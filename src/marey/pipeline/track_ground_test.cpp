@@ -253,8 +253,12 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
 TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {
   const test::TemporaryFolder folder;
   const Rig rig = simulate(folder.path(), match(1, 8, 2));
-  Hooks hooks;
-  hooks.stop = [calls = 0]() mutable { return ++calls > 50; };
+  std::stop_source stop;
+  const Hooks hooks{.progress =
+                        [&](const Progress& at) {
+                          if (at.done == 51) stop.request_stop();
+                        },
+                    .stop = stop.get_token()};
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"), over_pitch(), hooks);
   EXPECT_TRUE(summary.stopped);
   EXPECT_LT(summary.frames, 100);

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/draw/overlay_film.h"
-#include "marey/pipeline/plot_file.h"
+#include "marey/draw/plot_file.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline {
@@ -23,7 +23,7 @@ Feed open(const RigCamera& camera) {
 Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayOptions& drawn) {
   Sinks sinks;
   sinks.add(format::tracks::create_tracks(output.tracks, output.format));
-  if (!output.plot.empty()) sinks.add(std::make_unique<PlotFile>(output.plot));
+  if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
   const draw::OverlayFilm::View view{.camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz};
@@ -42,6 +42,7 @@ Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
 
 Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
                      const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   Feed feed = open(camera);
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
@@ -53,6 +54,7 @@ Summary track_people(const RigCamera& camera, const TrackOutput& output, const P
 
 Summary track_markers(const RigCamera& camera, const TrackOutput& output, const MarkersInPictureOptions& options,
                       const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   Feed feed = open(camera);
   Sinks sinks = sinks_of(output, feed, {});
   const auto stage = markers_in_picture(feed, options);

@@ -3,10 +3,12 @@
 #include "marey/source/decoder.h"
 
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/limits.h"
 #include "marey/source/decoded_picture.h"
 
@@ -44,10 +46,63 @@ int turn_of(const AVStream& stream) {
   return ((quarters % 4 + 4) % 4) * 90;
 }
 
-FormatPtr open_format(const std::string& path) {
+/// What is no file, for FFmpeg: its own reading could not be left while a writer is silent.
+class PipeBytes {
+ public:
+  explicit PipeBytes(const std::string& path) : file_(path) {
+    auto* const buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
+    io_.reset(avio_alloc_context(buffer, kBuffer, 0, this, read, nullptr, nullptr));
+    io_->seekable = 0;
+  }
+
+  AVIOContext* io() { return io_.get(); }
+  bool stopped() const { return stopped_; }
+
+ private:
+  static constexpr int kBuffer = 1 << 16;
+
+  static int read(void* self, std::uint8_t* to, int most) {
+    auto& pipe = *static_cast<PipeBytes*>(self);
+    try {
+      const std::size_t got = pipe.file_.read({reinterpret_cast<char*>(to), static_cast<std::size_t>(most)});
+      return got > 0 ? static_cast<int>(got) : AVERROR_EOF;
+    } catch (const Stopped&) {
+      pipe.stopped_ = true;
+      return AVERROR_EXIT;
+    } catch (const Error&) {
+      return AVERROR(EIO);
+    }
+  }
+
+  struct FreeIo {
+    void operator()(AVIOContext* io) const {
+      av_freep(&io->buffer);
+      avio_context_free(&io);
+    }
+  };
+
+  InputFile file_;
+  bool stopped_ = false;
+  std::unique_ptr<AVIOContext, FreeIo> io_;
+};
+
+std::unique_ptr<PipeBytes> pipe_of(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status))
+    return {};
+  return std::make_unique<PipeBytes>(path);
+}
+
+FormatPtr open_format(const std::string& path, PipeBytes* pipe) {
   AVFormatContext* opened = nullptr;
+  if (pipe != nullptr) {
+    opened = avformat_alloc_context();
+    opened->pb = pipe->io();
+  }
   // "file:" keeps FFmpeg from reading a protocol out of a name that holds a colon.
   if (const int code = avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr); code < 0) {
+    if (pipe != nullptr && pipe->stopped()) throw Stopped();
     throw Error("{}: cannot be read as a video ({}); it is of another kind, damaged, or was cut off before its index was written",
                 path, reason(code));
   }
@@ -66,6 +121,7 @@ int find_streams(AVFormatContext& format) {
 }  // namespace
 
 struct Decoder::Parts {
+  std::unique_ptr<PipeBytes> pipe;  // outlives what reads it
   FormatPtr format;
   CodecPtr codec;
   AVStream* stream = nullptr;
@@ -84,8 +140,11 @@ struct Decoder::Parts {
 
 Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;
-  p.format = open_format(path);
-  if (const int code = find_streams(*p.format); code < 0) {
+  p.pipe = pipe_of(path);
+  p.format = open_format(path, p.pipe.get());
+  const int streams = find_streams(*p.format);
+  if (p.pipe != nullptr && p.pipe->stopped()) throw Stopped();
+  if (const int code = streams; code < 0) {
     throw Error("{}: cannot be read as a video ({}); the file may be damaged", path, reason(code));
   }
   const AVCodec* codec = nullptr;
@@ -181,7 +240,8 @@ void Decoder::Parts::feed() {
     av_packet_unref(packet.get());
     const int code = av_read_frame(format.get(), packet.get());
     if (code < 0) {
-      if (code != AVERROR_EOF) trouble.broken = reason(code);
+      trouble.stopped = pipe != nullptr && pipe->stopped();
+      if (code != AVERROR_EOF && !trouble.stopped) trouble.broken = reason(code);
       avcodec_send_packet(codec.get(), nullptr);
       drained = true;
       return;

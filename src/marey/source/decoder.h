@@ -13,15 +13,13 @@ struct AVFrame;
 
 namespace marey::source {
 
-/// Hz: what a file without a rate is counted at.
-constexpr double kUsualRate = 25;
-
-/// FFmpeg's libraries behind five verbs: opens the best video stream of a file and yields its pictures in order of display.
+/// FFmpeg's libraries behind five verbs: opens the best video stream of a file and yields its pictures in order of display. What is
+/// no file (a pipe) is waited for; where the thread that opened it is asked to end (core/stop.h), the pictures end.
 /// What is damaged is passed over and counted; only a file that cannot be opened at all throws.
 class Decoder {
  public:
   /// `threads` = 0 takes one a core; pictures are the same, and in order, for any number.
-  /// Throws Error, one sentence that names `path`, where nothing can be decoded.
+  /// Throws Error, one sentence that names `path`, where nothing can be decoded, and Stopped.
   explicit Decoder(const std::string& path, int threads = 0);
   ~Decoder();
   Decoder(const Decoder&) = delete;
@@ -43,6 +41,7 @@ class Decoder {
     std::int64_t undecodable = 0;  ///< packets and pictures passed over
     std::int64_t damaged = 0;      ///< pictures that were decoded in part
     std::int64_t rescaled = 0;     ///< pictures that were scaled to size()
+    bool stopped = false;          ///< a pipe was no longer waited for
     std::string broken;            ///< why reading stopped before the file's own end, in FFmpeg's words; empty where it did not
   };
   const Trouble& trouble() const;  ///< so far

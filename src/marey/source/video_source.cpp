@@ -61,7 +61,7 @@ class VideoSource final : public Source {
     if (trouble.rescaled > 0) warn(fmt::format("pictures scaled to the size of the first: {}", trouble.rescaled));
     if (trouble.damaged > 0) warn(fmt::format("damaged pictures, used as far as they could be decoded: {}", trouble.damaged));
     if (trouble.undecodable > 0) warn(fmt::format("pictures left out because they could not be decoded: {}", trouble.undecodable));
-    if (!trouble.broken.empty() || is_short()) {
+    if (!trouble.stopped && (!trouble.broken.empty() || is_short())) {
       const auto count = decoder_.frame_count();
       const std::string whole = count ? fmt::format(" of {}", *count) : std::string();
       warn(fmt::format("the file breaks off after {} frames{} ({:.1f} s); it was processed as far as it goes", next_index_, whole,

@@ -9,8 +9,8 @@ namespace {
 /// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the way. Velocities at the ends are
 /// means over the gap where they would throw the curve wide: a target that turned unseen has left with another velocity.
 float between(float a, float va, float b, float vb, double span, double u) {
-  const double way = b - a;
-  const double most = 3 * std::abs(way);  // Fritsch & Carlson 1980: no overshoot
+  const double rise = b - a;
+  const double most = 3 * std::abs(rise);  // Fritsch & Carlson 1980: no overshoot
   const double ta = std::clamp(va * span, -most, most), tb = std::clamp(vb * span, -most, most);
   const double u2 = u * u, u3 = u2 * u;
   return static_cast<float>((2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * ta + (-2 * u3 + 3 * u2) * b + (u3 - u2) * tb);
@@ -29,19 +29,19 @@ TrackRow row_between(const TrackRow& from, const TrackRow& to, const TrackRow& g
 
 }  // namespace
 
-std::vector<TrackRow> fill_gaps(Recording& recording, const GapOptions& options, int fewest) {
+std::vector<TrackRow> fill_gaps(TrackletLog& log, const GapOptions& options, int fewest) {
   std::vector<TrackRow> rows;
-  for (const Recording::Tracklet& tracklet : recording.take_tracklets()) {
+  for (const TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
     const auto seen = [](const TrackRow& row) { return row.observed(); };
     if (std::count_if(tracklet.begin(), tracklet.end(), seen) < fewest) continue;
     auto last = tracklet.end();
     for (auto at = tracklet.begin(); at != tracklet.end(); ++at) {
       if (!at->observed()) continue;
       if (last != tracklet.end() && at - last > 1) {
-        const Timestamp from = recording.time_of(last->frame), to = recording.time_of(at->frame);
+        const Timestamp from = log.time_of(last->frame), to = log.time_of(at->frame);
         const double span = seconds(to - from);
         for (auto gap = last + 1; gap != at && span <= options.longest_filled; ++gap) {
-          rows.push_back(row_between(*last, *at, *gap, span, seconds(recording.time_of(gap->frame) - from) / span));
+          rows.push_back(row_between(*last, *at, *gap, span, seconds(log.time_of(gap->frame) - from) / span));
         }
       }
       rows.push_back(*at);

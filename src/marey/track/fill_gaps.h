@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marey/track/recording.h"
+#include "marey/track/tracklet_log.h"
 
 namespace marey::track {
 
@@ -14,6 +14,6 @@ struct GapOptions {
 /// observation of a tracklet, and in a gap between two the place is the cubic through the places and velocities at both ends,
 /// instead of a guess that knows the first end alone. Tracklets seen in less than `fewest` frames are dropped. Rows in the order of
 /// frames, then ids. The recording's tracklets are used up.
-std::vector<TrackRow> fill_gaps(Recording& recording, const GapOptions& options = {}, int fewest = 3);
+std::vector<TrackRow> fill_gaps(TrackletLog& log, const GapOptions& options = {}, int fewest = 3);
 
 }  // namespace marey::track

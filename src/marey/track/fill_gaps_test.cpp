@@ -11,8 +11,8 @@ Timestamp frame_time(int frame) {
 
 /// A target on a parabola, seen where `seen(frame)`.
 template <typename Seen>
-Recording record_of(int frames, Seen&& seen) {
-  Recording recording;
+TrackletLog record_of(int frames, Seen&& seen) {
+  TrackletLog log;
   for (int i = 0; i < frames; ++i) {
     const double t = i / 30.0;
     Track<2> track;
@@ -24,14 +24,14 @@ Recording record_of(int frames, Seen&& seen) {
       track.position.setZero();  // a bad guess
       track.state = Track<2>::State::predicted;
     }
-    recording.add(i, frame_time(i), std::span(&track, 1));
+    log.add(i, frame_time(i), std::span(&track, 1));
   }
-  return recording;
+  return log;
 }
 
 TEST(FillGaps, AGapIsFilledFromBothEnds) {
-  Recording recording = record_of(30, [](int i) { return i < 10 || i >= 20; });
-  const auto rows = fill_gaps(recording);
+  TrackletLog log = record_of(30, [](int i) { return i < 10 || i >= 20; });
+  const auto rows = fill_gaps(log);
   ASSERT_EQ(rows.size(), 30u);
   for (const TrackRow& row : rows) {
     const double t = row.frame / 30.0;
@@ -43,17 +43,17 @@ TEST(FillGaps, AGapIsFilledFromBothEnds) {
 }
 
 TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
-  Recording recording = record_of(30, [](int i) { return i >= 5 && i < 12; });
-  const auto rows = fill_gaps(recording);
+  TrackletLog log = record_of(30, [](int i) { return i >= 5 && i < 12; });
+  const auto rows = fill_gaps(log);
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows.front().frame, 5);
   EXPECT_EQ(rows.back().frame, 11);
 }
 
 TEST(FillGaps, ALongGapStaysOpenAndAFewSightingsAreNobody) {
-  Recording long_gap = record_of(90, [](int i) { return i < 5 || i >= 80; });
+  TrackletLog long_gap = record_of(90, [](int i) { return i < 5 || i >= 80; });
   EXPECT_EQ(fill_gaps(long_gap).size(), 15u);
-  Recording brief = record_of(10, [](int i) { return i < 2; });
+  TrackletLog brief = record_of(10, [](int i) { return i < 2; });
   EXPECT_TRUE(fill_gaps(brief).empty());
 }
 

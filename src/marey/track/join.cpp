@@ -18,7 +18,7 @@
 namespace marey::track {
 namespace {
 
-using Tracklet = Recording::Tracklet;
+using Tracklet = TrackletLog::Tracklet;
 
 /// One end of a tracklet: a straight line through its last, or first, observations.
 struct End {
@@ -40,7 +40,7 @@ constexpr double weak_share = 0.6;    // and of the frames, the share they must 
 
 class Joiner {
  public:
-  Joiner(const Recording& recording, const JoinOptions& options) : recording_(recording), options_(options) {}
+  Joiner(const TrackletLog& log, const JoinOptions& options) : log_(log), options_(options) {}
 
   void join(std::vector<Tracklet>& tracklets, double longest_gap) {
     std::vector<End> heads;
@@ -55,7 +55,7 @@ class Joiner {
   }
 
  private:
-  double time_of(const TrackRow& row) const { return seconds(recording_.time_of(row.frame)); }
+  double time_of(const TrackRow& row) const { return seconds(log_.time_of(row.frame)); }
 
   /// A regularised line through the observed rows of the last, or first, `fit_span` seconds.
   End end_of(const Tracklet& rows, bool tail) const {
@@ -145,7 +145,7 @@ class Joiner {
     tracklets = std::move(joined);
   }
 
-  const Recording& recording_;
+  const TrackletLog& log_;
   const JoinOptions& options_;
   assign::GatedAssigner assigner_;
 };
@@ -165,7 +165,7 @@ struct Standing {
   double score = 0;   // mean
 };
 
-Standing standing_of(const Tracklet& rows, const Recording& recording) {
+Standing standing_of(const Tracklet& rows, const TrackletLog& log) {
   Standing standing;
   for (const TrackRow& row : rows) {
     if (!row.observed()) continue;
@@ -173,7 +173,7 @@ Standing standing_of(const Tracklet& rows, const Recording& recording) {
     standing.score += row.score;
   }
   standing.score /= static_cast<double>(std::max<std::int64_t>(1, standing.seen));
-  standing.lasted = seconds(recording.time_of(rows.back().frame) - recording.time_of(rows.front().frame));
+  standing.lasted = seconds(log.time_of(rows.back().frame) - log.time_of(rows.front().frame));
   standing.share = static_cast<double>(standing.seen) / (rows.back().frame - rows.front().frame + 1);
   return standing;
 }
@@ -223,18 +223,18 @@ std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
 
 }  // namespace
 
-std::vector<TrackRow> join(Recording& recording, const JoinOptions& options) {
-  std::vector<Tracklet> tracklets = recording.take_tracklets();
+std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
+  std::vector<Tracklet> tracklets = log.take_tracklets();
   for (Tracklet& tracklet : tracklets) trim(tracklet);
   std::erase_if(tracklets, [](const Tracklet& tracklet) { return tracklet.empty(); });
-  Joiner joiner(recording, options);
+  Joiner joiner(log, options);
   joiner.join(tracklets, std::min(1.0, options.longest_gap));
   joiner.join(tracklets, options.longest_gap);
   const double usual = usual_score(tracklets);
-  std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, recording), usual, options); });
+  std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), usual, options); });
   for (Tracklet& tracklet : tracklets) {
-    fill_gaps(tracklet, recording, options.longest_filled);
-    smooth(tracklet, recording, {.place = options.smoothing, .size = options.size_smoothing});
+    fill_gaps(tracklet, log, options.longest_filled);
+    smooth(tracklet, log, {.place = options.smoothing, .size = options.size_smoothing});
   }
   return by_frame(tracklets);
 }

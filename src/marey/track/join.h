@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marey/track/recording.h"
+#include "marey/track/tracklet_log.h"
 
 namespace marey::track {
 
@@ -24,6 +24,6 @@ struct JoinOptions {
 /// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with
 /// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given anew from 1 in the order of
 /// first appearance. Rows in the order of frames, then ids. The recording's tracklets are used up.
-std::vector<TrackRow> join(Recording& recording, const JoinOptions& options = {});
+std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options = {});
 
 }  // namespace marey::track

@@ -24,13 +24,13 @@ Track<2> walker(int id, double x, double y, Track<2>::State state = Track<2>::St
   return track;
 }
 
-Recording record_tracks(int frames, auto&& tracks_of) {
-  Recording recording;
+TrackletLog record_tracks(int frames, auto&& tracks_of) {
+  TrackletLog log;
   for (int k = 0; k < frames; ++k) {
     const std::vector<Track<2>> tracks = tracks_of(k);
-    recording.add(k, timestamp_from_seconds(k / join_rate), tracks);
+    log.add(k, timestamp_from_seconds(k / join_rate), tracks);
   }
-  return recording;
+  return log;
 }
 
 std::set<int> ids(const std::vector<TrackRow>& rows) {
@@ -40,13 +40,13 @@ std::set<int> ids(const std::vector<TrackRow>& rows) {
 }
 
 TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
-  Recording recording = record_tracks(60, [](int k) {
+  TrackletLog log = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(3, 100 + 5 * k, 200));
     if (k >= 35) tracks.push_back(walker(7, 100 + 5 * k, 201));
     return tracks;
   });
-  const auto rows = join(recording);
+  const auto rows = join(log);
   EXPECT_EQ(ids(rows), std::set<int>{1});
   ASSERT_EQ(rows.size(), 60U) << "the gap is filled";
   for (const TrackRow& row : rows) {
@@ -56,17 +56,17 @@ TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
 }
 
 TEST(Join, OneWhoComesFromElsewhereIsAnother) {
-  Recording recording = record_tracks(60, [](int k) {
+  TrackletLog log = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(1, 100 + 5 * k, 200));
     if (k >= 35) tracks.push_back(walker(2, 600 - 5 * k, 330));
     return tracks;
   });
-  EXPECT_EQ(ids(join(recording)), (std::set<int>{1, 2}));
+  EXPECT_EQ(ids(join(log)), (std::set<int>{1, 2}));
 }
 
 TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
-  Recording recording = record_tracks(60, [](int k) {
+  TrackletLog log = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     const bool hidden = k >= 20 && k < 32;
     if (!hidden) {
@@ -76,7 +76,7 @@ TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
     return tracks;
   });
   std::map<int, std::pair<TrackRow, TrackRow>> ends;
-  for (const TrackRow& row : join(recording)) {
+  for (const TrackRow& row : join(log)) {
     if (!ends.contains(row.id)) ends[row.id].first = row;
     ends[row.id].second = row;
   }
@@ -85,33 +85,32 @@ TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
 }
 
 TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
-  Recording recording = record_tracks(30, [](int k) {
+  TrackletLog log = record_tracks(30, [](int k) {
     std::vector<Track<2>> tracks{walker(1, 100 + 5 * k, 200)};
     if (k < 20) tracks.push_back(walker(2, 400, 300, Track<2>::State::observed, false));
     if (k == 10 || k == 11) tracks.push_back(walker(3, 600, 100));
     return tracks;
   });
-  const auto rows = join(recording);
+  const auto rows = join(log);
   EXPECT_EQ(ids(rows), std::set<int>{1});
   EXPECT_EQ(rows.size(), 30U);
 }
 
 TEST(Join, FirstFramesBeforeConfirmationAreReported) {
-  Recording recording =
-      record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
-  EXPECT_EQ(join(recording).front().frame, 0);
+  TrackletLog log = record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
+  EXPECT_EQ(join(log).front().frame, 0);
 }
 
 TEST(Join, TailsWithoutAnObservationAreCut) {
-  Recording recording = record_tracks(30, [](int k) {
+  TrackletLog log = record_tracks(30, [](int k) {
     return std::vector{walker(1, 100 + 5 * k, 200, k < 18 ? Track<2>::State::observed : Track<2>::State::predicted)};
   });
-  EXPECT_EQ(join(recording).back().frame, 17);
+  EXPECT_EQ(join(log).back().frame, 17);
 }
 
 TEST(Join, NothingRecordedIsNothingReported) {
-  Recording recording;
-  EXPECT_TRUE(join(recording).empty());
+  TrackletLog log;
+  EXPECT_TRUE(join(log).empty());
 }
 
 TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
@@ -119,8 +118,8 @@ TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
 }
 
 TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
-  Recording recording = record_tracks(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
-  const auto rows = join(recording, {.smoothing = 0.3});
+  TrackletLog log = record_tracks(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
+  const auto rows = join(log, {.smoothing = 0.3});
   for (const TrackRow& row : rows) {
     if (row.frame < 10 || row.frame >= 90) continue;
     EXPECT_NEAR(row.x, 100 + 5 * row.frame, 1);

@@ -6,7 +6,7 @@
 namespace marey::track {
 namespace {
 
-using Tracklet = Recording::Tracklet;
+using Tracklet = TrackletLog::Tracklet;
 
 float between(float a, float b, double share) {
   return static_cast<float>(a + share * (static_cast<double>(b) - a));
@@ -86,16 +86,16 @@ void smooth_outline(const Tracklet& rows, const std::vector<double>& times, std:
 
 }  // namespace
 
-void fill_gaps(Tracklet& rows, const Recording& recording, double longest) {
+void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest) {
   Tracklet filled;
   filled.reserve(rows.empty() ? 0 : static_cast<std::size_t>(rows.back().frame - rows.front().frame + 1));
   for (const TrackRow& row : rows) {
     if (!row.observed()) continue;
     if (!filled.empty()) {
       const TrackRow last = filled.back();
-      const Duration gap = recording.time_of(row.frame) - recording.time_of(last.frame);
+      const Duration gap = log.time_of(row.frame) - log.time_of(last.frame);
       for (std::int32_t frame = last.frame + 1; frame < row.frame && seconds(gap) <= longest; ++frame) {
-        const double share = seconds(recording.time_of(frame) - recording.time_of(last.frame)) / seconds(gap);
+        const double share = seconds(log.time_of(frame) - log.time_of(last.frame)) / seconds(gap);
         filled.push_back(interpolated(last, row, frame, share));
       }
     }
@@ -104,10 +104,10 @@ void fill_gaps(Tracklet& rows, const Recording& recording, double longest) {
   rows = std::move(filled);
 }
 
-void smooth(Tracklet& rows, const Recording& recording, const Smoothing& smoothing) {
+void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) {
   std::vector<double> times;
   times.reserve(rows.size());
-  for (const TrackRow& row : rows) times.push_back(seconds(recording.time_of(row.frame)));
+  for (const TrackRow& row : rows) times.push_back(seconds(log.time_of(row.frame)));
   const Tracklet before = rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     LocalLine x, y, centre_x, centre_y, width, height;

@@ -18,6 +18,7 @@
 #include "marey/calibrate/board/board_motion_errors.h"
 #include "marey/calibrate/bundle/bundle_deviations.h"
 #include "marey/calibrate/bundle/bundle_residual.h"
+#include "marey/calibrate/solve.h"
 #include "marey/calibrate/wand/rough_path.h"
 
 namespace marey::calibrate::board {
@@ -79,10 +80,7 @@ class Motion {
     how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
     how.max_num_iterations = 30;
     how.function_tolerance = 1e-9;
-    how.num_threads = 1;  // sums in one order: the same bits from run to run
-    how.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(how, problem_.get(), &summary);
+    calibrate::solve(how, *problem_);
   }
 
   /// Judges every corner anew by the noise of the others, and how even the cameras' clocks are.

@@ -10,6 +10,7 @@
 
 #include "marey/calibrate/bundle/bundle_deviations.h"
 #include "marey/calibrate/bundle/bundle_residual.h"
+#include "marey/calibrate/solve.h"
 
 namespace marey::calibrate::bundle {
 namespace {
@@ -88,11 +89,8 @@ class Problem {
     how.function_tolerance = options.tolerance;
     how.parameter_tolerance = 1e-12;
     how.gradient_tolerance = 1e-12;
-    how.num_threads = 1;                // sums in one order: the same bits from run to run
     how.max_trust_region_radius = 1e8;  // damped a little always: a single light's scale is free
-    how.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(how, &problem_, &summary);
+    const ceres::Solver::Summary summary = calibrate::solve(how, problem_);
     if (summary.IsSolutionUsable()) numbers_.store(bundle);
     return summary.termination_type == ceres::CONVERGENCE;
   }

@@ -61,6 +61,49 @@ std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
   return {begin, end};
 }
 
+/// Normal equations of the shift and the systematic part of all pairs; each pair's own systematic part is a block of its own.
+struct ShiftEquations {
+  struct Block {
+    Matrix<2> own;
+    Eigen::Matrix<double, 2, 3> shared = Eigen::Matrix<double, 2, 3>::Zero();
+    Vector<2> right = Vector<2>::Zero();
+  };
+  using Key = std::array<std::int64_t, 3>;  // path of either camera, and when
+
+  explicit ShiftEquations(double systematic_weight) : prior(systematic_weight) {}
+
+  Block& block_of(const Key& key) { return blocks.try_emplace(key, Block{prior * Matrix<2>::Identity()}).first->second; }
+
+  /// apart + velocity · shift = systematic of all + of the pair + noise
+  void add(Block& block, const Vector<2>& apart, const Vector<2>& velocity, const Matrix<2>& noise) {
+    const Matrix<2> weight = kWeight * kSample_s / kMemory_s * noise.inverse();
+    Eigen::Matrix<double, 2, 3> shared;
+    shared << velocity, -Matrix<2>::Identity();
+    normal += shared.transpose() * weight * shared;
+    right -= shared.transpose() * weight * apart;
+    block.own += weight;
+    block.shared -= weight * shared;
+    block.right += weight * apart;
+    cost += apart.dot(weight * apart);
+    samples += kWeight * kSample_s / kMemory_s;
+  }
+
+  void eliminate_blocks() {
+    for (const auto& [key, block] : blocks) {
+      const Matrix<2> inverse = block.own.inverse();
+      normal -= block.shared.transpose() * inverse * block.shared;
+      right -= block.shared.transpose() * inverse * block.right;
+      cost -= block.right.dot(inverse * block.right);
+    }
+  }
+
+  double prior;
+  std::map<Key, Block> blocks;
+  Matrix<3> normal = Eigen::Vector3d(0, prior, prior).asDiagonal();
+  Vector<3> right = Vector<3>::Zero();
+  double cost = 0, samples = 0;
+};
+
 }  // namespace
 
 GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<SmoothPath>& b, const GroundOffsetOptions& options)
@@ -187,55 +230,29 @@ GroundPair::Peaks GroundPair::peaks() const {
 
 /// One step of least squares: the shift, the systematic part of all pairs, and that of each, which is eliminated.
 std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
-  struct Block {
-    Matrix<2> own;
-    Eigen::Matrix<double, 2, 3> shared = Eigen::Matrix<double, 2, 3>::Zero();
-    Vector<2> right = Vector<2>::Zero();
-  };
-  const double prior = 1 / (options_.systematic_m * options_.systematic_m);
-  std::map<std::array<std::int64_t, 3>, Block> blocks;
-  Matrix<3> normal = Eigen::Vector3d(0, prior, prior).asDiagonal();
-  Vector<3> right = Vector<3>::Zero();
-  double cost = 0, samples = 0;
+  ShiftEquations equations(1 / (options_.systematic_m * options_.systematic_m));
   for (const Segment& segment : segments_) {
     const auto found = match(segment, shift_s);
     if (!found || found->score < kPaired) continue;
     const auto when = static_cast<std::int64_t>(std::floor(segment.times_s[0] / kBlock_s));
-    auto& block = blocks
-                      .try_emplace({static_cast<std::int64_t>(segment.path), static_cast<std::int64_t>(found->path), when},
-                                   Block{prior * Matrix<2>::Identity()})
-                      .first->second;
+    auto& block = equations.block_of({static_cast<std::int64_t>(segment.path), static_cast<std::int64_t>(found->path), when});
     for (std::size_t k = 0; k < segment.states.size(); ++k) {
       const auto there = (*b_)[found->path].at(segment.times_s[k] - shift_s);
       if (!there) continue;
       const Matrix<2> noise = noise_scale_ * (segment.states[k].noise + there->noise) + kFloor_m * kFloor_m * Matrix<2>::Identity();
-      const Matrix<2> weight = kWeight * kSample_s / kMemory_s * noise.inverse();
-      // apart + velocity · shift = systematic of all + of the pair + noise
-      const Vector<2> apart = segment.states[k].place - there->place;
-      Eigen::Matrix<double, 2, 3> shared;
-      shared << there->velocity, -Matrix<2>::Identity();
-      normal += shared.transpose() * weight * shared;
-      right -= shared.transpose() * weight * apart;
-      block.own += weight;
-      block.shared -= weight * shared;
-      block.right += weight * apart;
-      cost += apart.dot(weight * apart);
-      samples += kWeight * kSample_s / kMemory_s;
+      equations.add(block, segment.states[k].place - there->place, there->velocity, noise);
     }
   }
-  for (const auto& [key, block] : blocks) {
-    const Matrix<2> inverse = block.own.inverse();
-    normal -= block.shared.transpose() * inverse * block.shared;
-    right -= block.shared.transpose() * inverse * block.right;
-    cost -= block.right.dot(inverse * block.right);
-  }
-  const Eigen::LDLT<Matrix<3>> solver(normal);
-  if (blocks.empty() || solver.info() != Eigen::Success || !solver.isPositive() || !(normal(0, 0) > 1e-9)) return std::nullopt;
-  const Vector<3> by = solver.solve(right);
+  equations.eliminate_blocks();
+  const Eigen::LDLT<Matrix<3>> solver(equations.normal);
+  const auto blocks = static_cast<double>(equations.blocks.size());
+  if (blocks == 0 || solver.info() != Eigen::Success || !solver.isPositive() || !(equations.normal(0, 0) > 1e-9))
+    return std::nullopt;
+  const Vector<3> by = solver.solve(equations.right);
   const double variance = solver.solve(Vector<3>::UnitX()).x();
   if (!(variance > 0) || !std::isfinite(by.x())) return std::nullopt;
-  const double free = 2 * samples - 2 * static_cast<double>(blocks.size()) - 1;
-  const double misfit = free > kLeastFree ? std::max(0.0, cost - right.dot(by)) / free : 1;
+  const double free = 2 * equations.samples - 2 * blocks - 1;
+  const double misfit = free > kLeastFree ? std::max(0.0, equations.cost - equations.right.dot(by)) / free : 1;
   return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0, misfit};
 }
 

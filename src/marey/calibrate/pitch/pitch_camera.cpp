@@ -10,6 +10,7 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "marey/calibrate/solve.h"
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
 
@@ -250,10 +251,7 @@ double solve(Numbers& p, cv::Size size, const std::vector<PitchPoint>& points, c
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 200;
   options.function_tolerance = 1e-12;
-  options.num_threads = 1;  // so that sums are made in one order
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  const ceres::Solver::Summary summary = calibrate::solve(options, problem);
   return summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
 }
 

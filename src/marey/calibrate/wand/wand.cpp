@@ -56,7 +56,8 @@ std::vector<std::size_t> spread_instants(const WandTable& table, std::size_t cam
 
 class WandCalibration {
  public:
-  WandCalibration(const WandInput& input, const WandOptions& options) : in_(input), options_(options), result_{input.rig, {}, {}} {}
+  WandCalibration(const WandInput& input, const WandOptions& options, const Hooks& hooks)
+      : in_(input), options_(options), hooks_(hooks), result_{input.rig, {}, {}} {}
 
   WandResult run() {
     check_wand_input(in_, options_);
@@ -68,12 +69,13 @@ class WandCalibration {
 
  private:
   std::size_t cameras() const { return in_.rig.cameras.size(); }
+  void step(std::string_view what) { hooks_.advance({what, steps_++, std::nullopt}); }
   bool any_unknown_lens() const {
     return std::any_of(in_.rig.cameras.begin(), in_.rig.cameras.end(), [](const RigCamera& camera) { return !camera.lens; });
   }
 
   void find() {
-    options_.step("finding the wand");
+    step("finding the wand");
     for (std::size_t c = 0; c < cameras(); ++c) {
       const RigCamera& camera = in_.rig.cameras[c];
       tracks_.push_back(
@@ -81,7 +83,7 @@ class WandCalibration {
     }
     check_tracks(in_, tracks_);
     if (options_.find_offsets) {
-      options_.step("comparing the clocks");
+      step("comparing the clocks");
       const double sigma_px = any_unknown_lens() ? kUnknownLensSigma : kKnownLensSigma;
       settle_offsets(tracks_, grown_cameras(kLikelyFocal, sigma_px, false), in_.wand, options_.seed);
     }
@@ -115,7 +117,7 @@ class WandCalibration {
   }
 
   void grow() {
-    options_.step("relating the cameras");
+    step("relating the cameras");
     const bool guess = any_unknown_lens();
     const auto instants = spread_instants(table_, cameras(), guess ? kGuessPerCamera : kGrowPerCamera);
     WandTable some;
@@ -148,11 +150,11 @@ class WandCalibration {
   }
 
   void fit() {
-    options_.step("looking again");
+    step("looking again");
     WandFit fit(in_, tracks_, growth_.bundle, growth_.fit.noise_px);
     fit.free_lenses(options_.lens == LensUse::refined);
     fit.match_blobs();
-    options_.step("adjusting everything");
+    step("adjusting everything");
     std::optional<HeldOutReport> held_out;
     fit.adjust_held_out(options_.find_offsets, held_out);
     if (options_.lens == LensUse::automatic && refining_helps(fit)) {
@@ -213,6 +215,8 @@ class WandCalibration {
 
   const WandInput& in_;
   const WandOptions& options_;
+  const Hooks& hooks_;
+  std::int64_t steps_ = 0;
   WandResult result_;
   std::vector<MarkTrack> tracks_;
   WandTable table_;
@@ -221,8 +225,9 @@ class WandCalibration {
 
 }  // namespace
 
-WandResult calibrate_wand(const WandInput& input, const WandOptions& options) {
-  return WandCalibration(input, options).run();
+WandResult calibrate_wand(const WandInput& input, const WandOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  return WandCalibration(input, options, hooks).run();
 }
 
 }  // namespace marey::calibrate::wand

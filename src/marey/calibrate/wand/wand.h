@@ -11,14 +11,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "marey/calibrate/rig_report.h"
 #include "marey/calibrate/wand/wand_marks.h"
+#include "marey/core/hooks.h"
 #include "marey/core/rig.h"
 
 namespace marey::calibrate::wand {
@@ -46,7 +45,6 @@ struct WandOptions {
   bool find_offsets = true;                    ///< whether cameras may have been started at other times than their offsets say
   std::optional<KnownDistance> distance = {};  ///< of two cameras: what a single light's scale comes from
   std::uint64_t seed = 1;
-  std::function<void(std::string_view)> step = [](std::string_view) {};  ///< called with what is done now
 };
 
 struct WandResult {
@@ -56,7 +54,7 @@ struct WandResult {
 };
 
 /// Throws Error, with the cause and what to do, for what cannot become a rig: no common view, a wand in a plane, cameras in one
-/// place, too few poses, a wrong wand.
-WandResult calibrate_wand(const WandInput& input, const WandOptions& options = {});
+/// place, too few poses, a wrong wand; Stopped.
+WandResult calibrate_wand(const WandInput& input, const WandOptions& options = {}, const Hooks& hooks = {});
 
 }  // namespace marey::calibrate::wand

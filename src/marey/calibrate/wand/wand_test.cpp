@@ -57,12 +57,24 @@ TEST(Wand, UnknownLensesAreEstimated) {
     EXPECT_NEAR(geometry::focal_of(*result.rig.cameras[c].lens).x(), 1100 + 10.0 * static_cast<double>(c), 15);
 }
 
-TEST(Wand, TheStepsAreTold) {
+TEST(Wand, EndsWhereItIsAskedTo) {
+  WandScene scene(3);
+  std::stop_source source;
+  int steps = 0;
+  const Hooks hooks{.progress =
+                        [&](const Progress&) {
+                          if (++steps == 2) source.request_stop();
+                        },
+                    .stop = source.get_token()};
+  EXPECT_THROW(calibrate_wand(input_of(scene, 200, 0.1), {}, hooks), Stopped);
+  EXPECT_EQ(steps, 2);
+}
+
+TEST(Wand, TheStepsAreReported) {
   WandScene scene(3);
   std::vector<std::string> steps;
-  WandOptions options{.lens = LensUse::fixed, .find_offsets = false};
-  options.step = [&](std::string_view step) { steps.emplace_back(step); };
-  calibrate_wand(input_of(scene, 200, 0.1), options);
+  const Hooks hooks{.progress = [&](const Progress& now) { steps.emplace_back(now.step); }};
+  calibrate_wand(input_of(scene, 200, 0.1), {.lens = LensUse::fixed, .find_offsets = false}, hooks);
   EXPECT_EQ(steps, (std::vector<std::string>{"finding the wand", "relating the cameras", "looking again", "adjusting everything"}));
 }
 

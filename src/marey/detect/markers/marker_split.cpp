@@ -266,49 +266,67 @@ std::vector<MarkerShape> shapes(const Solution& solution, const MarkerWindow& wi
   return result;
 }
 
+/// The ellipse of a blob's moments, px.
+struct BlobEllipse {
+  double half_length = 0, half_width = 0;
+  Vector<2> along = Vector<2>::UnitX();
+};
+
+BlobEllipse ellipse_of(const MarkerBlob& blob) {
+  const double mean = (blob.var_x + blob.var_y) / 2;
+  const double spread = std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
+  const double angle = std::atan2(blob.cov_xy, (blob.var_x - blob.var_y) / 2) / 2;
+  return {2 * std::sqrt(mean + spread), 2 * std::sqrt(std::max(mean - spread, 1.0 / 12)), {std::cos(angle), std::sin(angle)}};
+}
+
+/// One disc that moved while it was seen.
+Model swept_disc(const BlobEllipse& ellipse, const MarkerWindow& window, double blur) {
+  Model swept{Parameters(kFirstDisc + 5), 1, true};
+  const Vector<2> reach = ellipse.along * std::max(ellipse.half_length - ellipse.half_width, 0.3);
+  swept.p << 0.9, 0.0, blur, window.centroid.x(), window.centroid.y(), std::max(ellipse.half_width - 0.3, 0.4), reach.x(),
+      reach.y();
+  return swept;
+}
+
+/// So many discs, whose places are still to be set.
+Model several_discs(int count, const MarkerWindow& window, const MarkerSurroundings& around, double blur) {
+  Model discs{Parameters(kFirstDisc + 3 * count), count};
+  discs.ceiling = around.dark ? window.background / window.scale : std::abs(around.white - window.background) / window.scale;
+  discs.p.head<kFirstDisc>() << 0.9, 0.0, blur;
+  return discs;
+}
+
 }  // namespace
 
 std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
                                        std::size_t expected) {
   if (window.count < 20) return {};
-  const double mean = (blob.var_x + blob.var_y) / 2;
-  const double spread = std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
-  const double angle = std::atan2(blob.cov_xy, (blob.var_x - blob.var_y) / 2) / 2;
-  const double half_length = 2 * std::sqrt(mean + spread), half_width = 2 * std::sqrt(std::max(mean - spread, 1.0 / 12));
-  const Vector<2> along(std::cos(angle), std::sin(angle));
+  const BlobEllipse ellipse = ellipse_of(blob);
   const double noise = around.noise / window.scale;
   const double stiffness = noise * noise / 0.01;
   const double blur = around.blur.value_or(0.65);
   const std::vector<float> whole(window.value.begin(), window.value.begin() + window.count);
   const std::optional<float> overlap = level_below_overlap(whole, noise);
-  const bool bright_overlap = overlap.has_value();
-  const double level = overlap.value_or(0.9f);
   std::vector<float> value = whole;
-  if (bright_overlap) {
+  if (overlap) {
     for (float& v : value) v = std::min(v, 1.05f * *overlap);
   }
 
-  Model swept{Parameters(kFirstDisc + 5), 1, true};
-  const Vector<2> reach = along * std::max(half_length - half_width, 0.3);
-  swept.p << 0.9, 0.0, blur, window.centroid.x(), window.centroid.y(), std::max(half_width - 0.3, 0.4), reach.x(), reach.y();
-  const Solution rival = minimise(swept, window, value, stiffness);
+  const Solution rival = minimise(swept_disc(ellipse, window, blur), window, value, stiffness);
   const double share = expected >= 2 ? kClearlyExpected : kClearly;
   const double floor = window.count * (1.5 * noise * noise + kModelError * kModelError);  // what right models leave
   const double surely = expected >= 2 ? kSurelyExpected : kSurely;
   double to_beat = rival.normal.squares;
   std::vector<MarkerShape> best;
   for (int k = 2; k <= kMostDiscs; ++k) {
-    Model discs{Parameters(kFirstDisc + 3 * k), k};
-    discs.ceiling = std::abs(around.white - window.background) / window.scale;
-    if (around.dark) discs.ceiling = window.background / window.scale;
-    discs.p.head<kFirstDisc>() << 0.9, 0.0, blur;
+    Model discs = several_discs(k, window, around, blur);
     const double radius = std::max(0.4, std::sqrt(window.half_area / (k * std::numbers::pi)));
-    const auto places = centres(window, value, k, along * half_length * (1 - 1.0 / k));
+    const auto places = centres(window, value, k, ellipse.along * ellipse.half_length * (1 - 1.0 / k));
     for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirstDisc + 3 * i) << places[i].x(), places[i].y(), radius;
     Solution solution = minimise(discs, window, value, stiffness);
-    if (bright_overlap && k == 2) {  // more discs that add up could tell any streak
+    if (overlap && k == 2) {  // more discs that add up could tell any streak
       discs.adds = true;
-      discs.p[kDiscsContrast] = level;
+      discs.p[kDiscsContrast] = *overlap;
       Solution sum = minimise(discs, window, whole, stiffness);
       if (sum.normal.squares < std::min(floor, solution.normal.squares)) solution = std::move(sum);
     }

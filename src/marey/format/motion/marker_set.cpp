@@ -2,12 +2,12 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <string_view>
 
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/text_rows.h"
 
@@ -51,7 +51,7 @@ Vector<3> place_in(const std::vector<std::string_view>& cells, const std::string
 }  // namespace
 
 MarkerSet read_marker_set(const std::string& path) {
-  std::ifstream file(path);
+  InputStream file(path);
   if (!file) throw Error("{}: cannot be read; give a text file with one name a line, or CSV with the header label,x,y,z", path);
   MarkerSet set;
   std::set<std::string> known;

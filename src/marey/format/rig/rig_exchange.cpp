@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/self_cal_folder.h"
@@ -84,7 +84,7 @@ RigFormat parse_rig_format(std::string_view name) {
 
 std::optional<RigFormat> rig_format_of_content(const std::string& path) {
   if (std::filesystem::is_directory(path)) return SelfCalFolder::is_one(path) ? std::optional(RigFormat::self_cal) : std::nullopt;
-  std::ifstream in(path, std::ios::binary);
+  InputStream in(path);
   std::string text(1 << 16, '\0');
   in.read(text.data(), std::ssize(text));
   text.resize(static_cast<std::size_t>(in.gcount()));

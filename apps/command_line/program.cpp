@@ -1,0 +1,180 @@
+// The words of the command line: which command they name, and what is said where they name none; then its run, and the exit code.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "declared.h"
+#include "run_hooks.h"
+#include "spelling.h"
+
+namespace marey::cli {
+namespace {
+
+/// Options that were called otherwise once.
+struct Renamed {
+  const char *before, *now;
+};
+constexpr std::array<Renamed, 2> kRenamed{{{"--out", "--output"}, {"--in-step", "--synced"}}};
+
+/// Help in one notation: "--rate HZ in (0, 1e6] (25)".
+class HelpText : public CLI::Formatter {
+ public:
+  HelpText() { column_width(38); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_type_size() == 0) return {};
+    std::string text = " " + option->get_type_name();
+    if (option->get_expected_min() > 1) text += " x " + std::to_string(option->get_expected_min());
+    if (!option->get_default_str().empty()) text += " (" + option->get_default_str() + ")";
+    if (option->get_expected_max() == CLI::detail::expected_max_vector_size) text += " ...";
+    if (option->get_required()) text += " REQUIRED";
+    return text;
+  }
+};
+
+/// The program or a group of commands was named without the command that is wanted.
+struct CommandMissing {
+  std::string help;
+};
+
+std::map<std::string, std::string> asked_for;  // of the command that runs
+
+void say(const char* sentence) {
+  fmt::print(stderr, "marey: {}\n", sentence);
+}
+
+/// The exit code, after the last byte of standard output: what it did not take was lost.
+int finish(int code) {
+  errno = 0;
+  const bool lost = std::ferror(stdout) != 0 || std::fflush(stdout) != 0;
+  const int reason = errno;
+  if (!lost && std::fclose(stdout) == 0) return code;
+  const std::string why = reason != 0 ? fmt::format(" ({})", std::strerror(reason)) : "";
+  say(fmt::format("standard output: could not be written to the end{}", why).c_str());
+  return code == 0 ? 1 : code;
+}
+
+}  // namespace
+
+struct Program::Parser {
+  CLI::App app;
+  Command::Declared program;
+};
+
+Command::Declared& Command::Declared::child(const std::string& word) {
+  std::vector<std::string> names;
+  for (const auto& each : below) {
+    if (each->app->get_name() == word) return *each;
+    names.push_back(each->app->get_name());
+  }
+  throw WrongUsage("{} has no command \"{}\", but {}.{}", path(), word, CLI::detail::join(names, ", "), suggestion(word, names));
+}
+
+const CLI::Option& Command::Declared::option(const std::string& name) const {
+  if (const CLI::Option* found = app->get_option_no_throw(name)) return *found;
+  for (const Renamed& renamed : kRenamed) {
+    if (name == renamed.before && app->get_option_no_throw(renamed.now) != nullptr)
+      throw WrongUsage("{} is called {} now", name, renamed.now);
+  }
+  std::vector<std::string> names;
+  for (const CLI::Option* each : app->get_options()) {
+    for (const std::string& known : each->get_lnames()) names.push_back("--" + known);
+  }
+  throw WrongUsage("{} has no option {}; `{} --help` lists them.{}", path(), name, path(), suggestion(name, names));
+}
+
+Command::Declared& Command::Declared::named_by(const std::vector<std::string>& words) {
+  Declared* at = this;
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const std::string& word = words[i];
+    if (word == "-h" || word == "--help" || word == "--version") return *at;
+    const bool is_long = word.starts_with("--");
+    const bool is_short = !is_long && word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+    if (is_long) {
+      const CLI::Option& named = at->option(word.substr(0, word.find('=')));
+      if (word.find('=') == std::string::npos) i += static_cast<std::size_t>(named.get_items_expected_min());
+    } else if (is_short) {
+      const CLI::Option& named = at->option(word.substr(0, 2));
+      if (word.size() == 2) i += static_cast<std::size_t>(named.get_items_expected_min());
+    } else if (!at->below.empty()) {
+      at = &at->child(word);
+    }
+  }
+  if (!at->below.empty()) throw CommandMissing{at->app->help()};
+  return *at;
+}
+
+/// What was asked for, by option, but for its files: those are told by name and hash.
+std::map<std::string, std::string> Command::Declared::given() const {
+  std::map<std::string, std::string> texts;
+  for (const auto& option : options) {
+    if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
+    const std::string longest = option->name.substr(option->name.find_last_of(',') + 1);
+    texts[longest.substr(longest.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
+  }
+  return texts;
+}
+
+const std::map<std::string, std::string>& given_options() {
+  return asked_for;
+}
+
+Program::Program(const std::string& name, const std::string& meaning) : parser_(std::make_unique<Parser>()) {
+  parser_->app.name(name);
+  parser_->app.description(meaning);
+  parser_->app.formatter(std::make_shared<HelpText>());
+  parser_->app.require_subcommand(0, 1);
+  parser_->app.set_version_flag("--version", name + " " MAREY_VERSION);
+  parser_->program.app = &parser_->app;
+}
+
+Program::~Program() = default;
+
+Command Program::root() {
+  return Command(parser_->program);
+}
+
+int Program::run(int argc, char** argv) {
+  int code = 0;
+  try {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (!words.empty() && words.front() == "help") {
+      words.erase(words.begin());
+      words.emplace_back("--help");
+    }
+    const Command::Declared& command = parser_->program.named_by(words);
+    std::reverse(words.begin(), words.end());
+    parser_->app.parse(words);
+    command.check_its_files();
+    asked_for = command.given();
+    const StopScope scope(stop_by_signals());
+    command.run();
+  } catch (const EndWith& end) {
+    code = end.code;
+  } catch (const Stopped& stopped) {
+    say(stopped.what());
+    code = kInterrupted;
+  } catch (const CommandMissing& missing) {
+    fmt::print(stderr, "{}", missing.help);
+    code = 2;
+  } catch (const CLI::Success& said) {
+    parser_->app.exit(said);
+  } catch (const CLI::ParseError& error) {
+    say(error.what());
+    code = 2;
+  } catch (const WrongUsage& error) {
+    say(error.what());
+    code = 2;
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) == 0) say(error.what());  // else `finish` says it
+    code = 1;
+  }
+  return finish(code);
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,88 @@
+#include "marey/core/input_file.h"
+
+#include <cerrno>
+#include <streambuf>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "marey/core/error.h"
+
+namespace marey {
+namespace {
+
+[[noreturn]] void fail_to_read(const std::string& path) {
+  throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::string& path, std::stop_token stop) : path_(path), stop_(std::move(stop)) {
+  own_ = path != "-";
+  if (!own_) path_ = "standard input";
+  // Without O_NONBLOCK, a pipe's opening would wait for its writer where nobody could end the wait.
+  file_ = own_ ? open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : STDIN_FILENO;
+  if (file_ < 0) fail_to_read(path_);
+  struct stat status{};
+  waits_ = fstat(file_, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+InputFile::~InputFile() {
+  if (own_ && file_ >= 0) close(file_);
+}
+
+/// Until there is something to read, or the writer has gone. A pipe that never had a writer is neither.
+void InputFile::wait() const {
+  for (;;) {
+    if (stop_.stop_requested()) throw Stopped();
+    pollfd asked{file_, POLLIN, 0};
+    const int ready = poll(&asked, 1, static_cast<int>(kStopSlice.count()));
+    if (ready > 0) return;
+    if (ready < 0 && errno != EINTR) fail_to_read(path_);
+  }
+}
+
+std::size_t InputFile::read(std::span<char> room) {
+  for (;;) {
+    if (waits_) wait();
+    const ssize_t got = ::read(file_, room.data(), room.size());
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR && errno != EAGAIN) fail_to_read(path_);
+  }
+}
+
+class InputStream::Buffer : public std::streambuf {
+ public:
+  explicit Buffer(const std::string& path) : file_(path), bytes_(std::size_t{1} << 16) {}
+
+ protected:
+  int_type underflow() override {
+    const std::size_t got = file_.read(bytes_);
+    if (got == 0) return traits_type::eof();
+    setg(bytes_.data(), bytes_.data(), bytes_.data() + got);
+    return traits_type::to_int_type(bytes_.front());
+  }
+
+ private:
+  InputFile file_;
+  std::vector<char> bytes_;
+};
+
+InputStream::InputStream(const std::string& path) : std::istream(nullptr) {
+  try {
+    buffer_ = std::make_unique<Buffer>(path);
+  } catch (const Error&) {
+    return;  // no buffer: the stream is bad
+  }
+  rdbuf(buffer_.get());
+  exceptions(std::ios::badbit);  // else what the buffer throws would be swallowed
+}
+
+InputStream::~InputStream() = default;
+
+}  // namespace marey

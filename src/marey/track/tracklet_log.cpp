@@ -1,0 +1,72 @@
+#include "marey/track/tracklet_log.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace marey::track {
+namespace {
+
+TrackRow row_of(std::int32_t frame, const Track<2>& track) {
+  TrackRow row;
+  row.frame = frame;
+  row.id = row.first_id = number(track.id);
+  row.x = static_cast<float>(track.position.x());
+  row.y = static_cast<float>(track.position.y());
+  row.vx = static_cast<float>(track.velocity.x());
+  row.vy = static_cast<float>(track.velocity.y());
+  if (track.box) {
+    row.left = static_cast<float>(track.box->left);
+    row.top = static_cast<float>(track.box->top);
+    row.width = static_cast<float>(track.box->width);
+    row.height = static_cast<float>(track.box->height);
+  }
+  if (track.outline && track.outline->state != Outline::State::held) {
+    row.centre_x = static_cast<float>(track.outline->centre.x());
+    row.centre_y = static_cast<float>(track.outline->centre.y());
+    row.has_centre = true;
+  }
+  row.score = static_cast<float>(track.score);
+  row.state = track.state;
+  return row;
+}
+
+}  // namespace
+
+void TrackletLog::add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks) {
+  const auto index = static_cast<std::int32_t>(frame);
+  if (times_.empty()) first_frame_ = index;
+  assert(index == first_frame_ + static_cast<std::int32_t>(times_.size()) && "frames are added in order, each once");
+  times_.push_back(time);
+  std::vector<Open> still_open;
+  still_open.reserve(tracks.size());
+  auto open = open_.begin();  // both lists are in the order of ids
+  for (const Track<2>& track : tracks) {
+    for (; open != open_.end() && open->rows.back().id < number(track.id); ++open) close(*open);
+    const bool known = open != open_.end() && open->rows.back().id == number(track.id);
+    still_open.push_back(known ? std::move(*open++) : Open{});
+    still_open.back().rows.push_back(row_of(index, track));
+    still_open.back().confirmed |= track.confirmed;
+  }
+  for (; open != open_.end(); ++open) close(*open);
+  open_ = std::move(still_open);
+}
+
+void TrackletLog::close(Open& open) {
+  if (open.confirmed) closed_.push_back(std::move(open.rows));
+}
+
+Timestamp TrackletLog::time_of(std::int32_t frame) const {
+  return times_.at(static_cast<std::size_t>(frame - first_frame_));
+}
+
+std::vector<TrackletLog::Tracklet> TrackletLog::take_tracklets() {
+  for (Open& open : open_) close(open);
+  open_.clear();
+  std::vector<Tracklet> all = std::move(closed_);
+  closed_.clear();
+  std::sort(all.begin(), all.end(), [](const Tracklet& a, const Tracklet& b) { return a.front().id < b.front().id; });
+  return all;
+}
+
+}  // namespace marey::track

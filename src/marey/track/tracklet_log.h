@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "marey/core/time.h"
+#include "marey/core/track.h"
+
+namespace marey::track {
+
+/// One target in one frame, as small as a match of 90 minutes needs it: 64 bytes. px and px/s.
+struct TrackRow {
+  std::int32_t frame = 0;  ///< 0-based
+  std::int32_t id = 0;
+  std::int32_t first_id = 0;                       ///< what the tracker called it; `id` is given anew when tracklets are joined
+  float x = 0, y = 0;                              ///< position
+  float vx = 0, vy = 0;                            ///< velocity
+  float left = 0, top = 0, width = 0, height = 0;  ///< box; width and height are 0 where the target has no extent
+  float centre_x = 0, centre_y = 0;                ///< of the outline, where `has_centre`
+  float score = 1;
+  Track<2>::State state = Track<2>::State::observed;
+  bool has_centre = false;  ///< an outline was found; after smoothing, also where one was found shortly before and after
+
+  bool observed() const { return state == Track<2>::State::observed; }
+  bool has_box() const { return width > 0 && height > 0; }
+};
+
+/// What a tracker said, frame by frame, kept for a second pass. Targets that are never confirmed are forgotten as they end.
+class TrackletLog {
+ public:
+  /// One target's rows in the order of frames, without gaps: frames in which it was not seen are predicted.
+  using Tracklet = std::vector<TrackRow>;
+
+  /// The tracks of one frame, as Tracker<2>::step gave them. Frames come in order, each once.
+  void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks);
+
+  /// Time of frames: the one at `frame`, which was added.
+  Timestamp time_of(std::int32_t frame) const;
+
+  /// Every confirmed target, in the order of ids. The recording is empty afterwards, but for its times.
+  std::vector<Tracklet> take_tracklets();
+
+ private:
+  struct Open {
+    Tracklet rows;
+    bool confirmed = false;
+  };
+
+  void close(Open& open);
+
+  std::vector<Timestamp> times_;
+  std::int32_t first_frame_ = 0;
+  std::vector<Open> open_;  // by id
+  std::vector<Tracklet> closed_;
+};
+
+}  // namespace marey::track

@@ -1,0 +1,163 @@
+"""Ctrl-C, SIGTERM and SIGHUP while `marey` waits or works: it ends within a second, with one sentence and exit code 130, and leaves
+whole files or none.
+
+Usage: stopping_test.py MAREY [unittest options]
+"""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+MAREY = ""
+AT_MOST = 1.0  # s from the signal to the end, on a machine that does nothing else
+SLACK = float(os.environ.get("MAREY_TEST_SLACK", "4"))  # times that, on one that does
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+RIG = """[[camera]]
+name = "left"
+size = [640, 480]
+rate_hz = 25
+
+[[camera]]
+name = "right"
+size = [640, 480]
+rate_hz = 25
+"""
+
+
+def usual_signals():
+    """What a test's parent ignores, as a shell's background job does, is not ignored here."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_DFL)
+
+
+class Stopping(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_stop_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.pipe = self.folder / "pipe"
+        os.mkfifo(self.pipe)
+        (self.folder / "rig.toml").write_text(RIG)
+
+    def files(self):
+        return sorted(path.name for path in self.folder.rglob("*"))
+
+    def stopped(self, *arguments, number=signal.SIGINT, after=0.5, stdin=subprocess.DEVNULL, ready=None):
+        """What it said on standard error and how long it took, once it was sent the signal."""
+        run = subprocess.Popen([MAREY, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True, preexec_fn=usual_signals)
+        end = time.monotonic() + 30
+        while ready is not None and not ready() and time.monotonic() < end:
+            time.sleep(0.01)
+        time.sleep(after)
+        self.assertIsNone(run.poll(), "it was over before the signal")
+        begin = time.monotonic()
+        run.send_signal(number)
+        try:
+            said = run.communicate(timeout=60)[1]
+        except subprocess.TimeoutExpired:
+            run.kill()
+            run.communicate()
+            self.fail(f"{arguments}: did not end")
+        took = time.monotonic() - begin
+        self.assertEqual(run.returncode, 130, f"{arguments}\n{said}")
+        self.assertLess(took, SLACK * AT_MOST, arguments)
+        return said
+
+    def leaves_nothing(self, *arguments, **how):
+        before = self.files()
+        said = self.stopped(*arguments, **how)
+        self.assertEqual(self.files(), before, arguments)
+        self.assertEqual(len(said.strip().splitlines()), 1, said)
+        self.assertIn("stopped", said)
+
+    def test_every_command_that_waits_for_a_pipe(self):
+        out = ("-o", "out.csv")
+        for number, arguments in enumerate((
+                ("track", self.pipe, *out),
+                ("track", self.pipe, *out, "--live"),
+                ("track", "--detections", self.pipe, *out),
+                ("track", self.pipe, "--targets", "markers", *out),
+                ("track", "rig.toml", f"left={self.pipe}", f"right={self.pipe}", "--ground", *out),
+                ("reconstruct", "rig.toml", "--observations", self.pipe, "-o", "out.marey"),
+                ("reconstruct", "rig.toml", f"left={self.pipe}", "-o", "out.c3d"),
+                ("calibrate", "wand", "rig.toml", "--observations", self.pipe, "--wand", "led", "-o", "out.toml"),
+                ("calibrate", "ground", "rig.toml", "--observations", self.pipe, "-o", "out.toml"),
+                ("calibrate", "lens", self.pipe, "--board", "chess:9x6:0.025", "-o", "out.toml"),
+                ("calibrate", "board", "rig.toml", f"left={self.pipe}", f"right={self.pipe}", "--board", "chess:9x6:0.025",
+                 "-o", "out.toml"),
+                ("calibrate", "pitch", "rig.toml", "--points", f"left={self.pipe}", "--points", f"right={self.pipe}", "-o", "out.toml"),
+                ("measure", self.pipe, *out),
+                ("convert", self.pipe, "out.csv"),
+                ("evaluate", "--truth", self.pipe, "--tracks", self.pipe))):
+            with self.subTest(arguments=arguments):
+                self.leaves_nothing(*arguments, number=SIGNALS[number % len(SIGNALS)])
+
+    def test_every_signal(self):
+        for number in SIGNALS:
+            self.leaves_nothing("track", self.pipe, "-o", "out.csv", number=number, after=0.3)
+
+    def test_silent_standard_input(self):
+        read, write = os.pipe()
+        self.addCleanup(os.close, write)
+        for arguments in (("track", "--detections", "-", "-o", "out.csv"), ("measure", "-", "-o", "out.csv"),
+                          ("track", "--detections", "/dev/stdin", "-o", "out.csv")):
+            with self.subTest(arguments=arguments):
+                self.leaves_nothing(*arguments, stdin=read, after=0.3)
+        os.close(read)
+
+    def test_a_film_on_a_pipe_that_stalls_keeps_what_was_tracked(self):
+        subprocess.run([MAREY, "simulate", "people", "--frames", "100", "--size", "320", "240", "--height", "60", "-o",
+                        self.folder / "people", "-q"], check=True, timeout=120)
+        subprocess.run(["ffmpeg", "-v", "error", "-i", self.folder / "people/video.mp4", "-c", "copy", self.folder / "film.mkv"],
+                       check=True)
+        shutil.rmtree(self.folder / "people")
+        data = (self.folder / "film.mkv").read_bytes()
+        for more in ((), ("--live",)):
+            writer = None
+
+            def fed():
+                nonlocal writer
+                writer = writer or os.open(self.pipe, os.O_WRONLY)
+                os.write(writer, data[: len(data) * 9 // 10])
+                return True
+
+            said = self.stopped("track", self.pipe, "-o", "out.csv", "-q", *more, ready=fed, after=2)
+            os.close(writer)
+            self.assertIn("what was tracked until then is written", said)
+            self.assertEqual(self.files(), ["film.mkv", "out.csv", "pipe", "rig.toml"], said)
+            os.remove(self.folder / "out.csv")
+
+    def test_simulations_that_are_stopped_leave_no_half_files(self):
+        for arguments in (("simulate", "room", "--frames", "100000000", "-o", "made"),
+                          ("simulate", "people", "--frames", "1000000", "-o", "made"),
+                          ("simulate", "match", "--seconds", "86400", "-o", "made"),
+                          ("simulate", "markers", "crossing", "--frames", "1000000", "--markers", "30", "-o", "made")):
+            with self.subTest(arguments=arguments):
+                said = self.stopped(*arguments, ready=lambda: list(self.folder.glob("made/*.part")), after=0.5)
+                self.assertEqual(list(self.folder.glob("made/*")), [], said)
+                shutil.rmtree(self.folder / "made")
+
+    def test_long_work_on_files(self):
+        rows = "frame,time,id,label,x,y,z\n" + "".join(
+            f"{f},{f / 100:.6f},{m},M{m},{0.1 * m},{f % 1000 / 64},1.5\n" for f in range(60_000) for m in range(30))
+        (self.folder / "walk.csv").write_text(rows)
+        self.leaves_nothing("convert", "walk.csv", "walk.c3d", after=0.4)
+        boxes = "".join(f"{f},{m},{10 * m},{f % 500},20,50,1,-1,-1,-1\n" for f in range(1, 20_000) for m in range(1, 40))
+        (self.folder / "boxes.txt").write_text(boxes)
+        self.leaves_nothing("evaluate", "--truth", "boxes.txt", "--tracks", "boxes.txt", after=0.4)
+        ground = "frame,time,id,x,y\n" + "".join(
+            f"{f},{f / 25:.3f},{m},{m},{f % 500 / 10}\n" for f in range(40_000) for m in range(30))
+        (self.folder / "ground.csv").write_text(ground)
+        self.leaves_nothing("measure", "ground.csv", "-o", "measured.csv", after=0.4)
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
