@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "marey/format/register.h"
+
 #include "file_checks.h"
 #include "spelling.h"
 
@@ -416,6 +418,9 @@ int Program::run(int argc, char** argv) {
     say(error.what());
     code = 2;
   } catch (const WrongUsage& error) {
+    say(error.what());
+    code = 2;
+  } catch (const format::WrongFormat& error) {
     say(error.what());
     code = 2;
   } catch (const std::exception& error) {

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/recording_file.h"
 #include "marey/pipeline/measure_match.h"
 
 #include "command_line.h"
@@ -78,8 +78,8 @@ void run(const MeasureCommand& command) {
   options.path.method = analyse::parse_path_method(command.method);
   options.zones = parse_zones(command.zones);
   options.pitch = parse_pitch_size(command.size);
-  const analyse::Measurement measured = analyse::measure(
-      format::match::read_ground_any(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
+  const analyse::Measurement measured =
+      analyse::measure(format::read_match(command.tracks, {command.metadata, options.pitch, command.rate_hz}).recording, options);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", command.tracks);
   WholeFile file(command.out);
   file.write(pipeline::measurement_csv(measured, options));
