@@ -7,7 +7,8 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "marey/format/motion/motion.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
 
 namespace marey {
@@ -47,8 +48,8 @@ RecordingHeader header() {
   return header;
 }
 
-format::motion::MotionPlan plan() {
-  format::motion::MotionPlan plan;
+format::WritePlan plan() {
+  format::WritePlan plan;
   plan.info.header = header();
   for (int m = 1; m <= kMarkers; ++m) plan.info.tracks.push_back({TrackId(m), fmt::format("M{}", m), {}});
   plan.last_frame = kFrames - 1;
@@ -68,8 +69,8 @@ void write_all(Sink& sink, const std::vector<Instant>& instants) {
   sink.finish();
 }
 
-void write_all(const std::string& path, format::motion::MotionFormat format, const std::vector<Instant>& instants) {
-  write_all(*format::motion::create_motion(path, format, plan()), instants);
+void write_all(const std::string& path, const char* format, const std::vector<Instant>& instants) {
+  write_all(*format::create_recording(path, *format::format_named(format, format::Content::space), plan()), instants);
 }
 
 std::vector<Instant> all_instants(int cameras = 0) {
@@ -78,7 +79,7 @@ std::vector<Instant> all_instants(int cameras = 0) {
   return instants;
 }
 
-void write_format(benchmark::State& state, format::motion::MotionFormat format, const char* name) {
+void write_format(benchmark::State& state, const char* format, const char* name) {
   const std::string path = place(name);
   const auto instants = all_instants();
   for (auto _ : state) write_all(path, format, instants);
@@ -86,11 +87,11 @@ void write_format(benchmark::State& state, format::motion::MotionFormat format, 
   std::filesystem::remove(path);
 }
 
-void read_format(benchmark::State& state, format::motion::MotionFormat format, const char* name) {
+void read_format(benchmark::State& state, const char* format, const char* name) {
   const std::string path = place(name);
   write_all(path, format, all_instants());
   for (auto _ : state) {
-    const auto reader = format::motion::open_motion(path, format);
+    const auto reader = format::open_recording(path);
     while (const auto frame = reader->next()) benchmark::DoNotOptimize(frame->samples.data());
   }
   per_frame(state, std::filesystem::file_size(path));
@@ -197,20 +198,20 @@ void read_plainly(benchmark::State& state) {
 }
 
 BENCHMARK(write_plainly)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, c3d, format::motion::MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, take, format::motion::MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, trc, format::motion::MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(write_format, csv, format::motion::MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, c3d, "c3d", "bench.c3d")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, take, "take", "bench.marey")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, trc, "trc", "bench.trc")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_format, csv, "csv", "bench.csv")->Unit(benchmark::kMillisecond);
 BENCHMARK(write_take_of_cameras)->Unit(benchmark::kMillisecond);
 BENCHMARK(write_match)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK_CAPTURE(read_one_track, whole, 0, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_one_track, joined, 1000, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_one_track, cut_off, 1000, false)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_plainly)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, c3d, format::motion::MotionFormat::c3d, "bench.c3d")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, take, format::motion::MotionFormat::take, "bench.marey")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, trc, format::motion::MotionFormat::trc, "bench.trc")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_format, csv, format::motion::MotionFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, c3d, "c3d", "bench.c3d")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, take, "take", "bench.marey")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, trc, "trc", "bench.trc")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_format, csv, "csv", "bench.csv")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace marey

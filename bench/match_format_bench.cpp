@@ -8,7 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 
 namespace marey {
 namespace {
@@ -56,17 +57,17 @@ void count_bytes(benchmark::State& state, std::size_t bytes) {
       benchmark::Counter(static_cast<double>(state.iterations()) * kPeople * kFrames, benchmark::Counter::kIsRate);
 }
 
-void write_match(benchmark::State& state, format::match::GroundFormat format, const char* name) {
+void write_match(benchmark::State& state, const char* format, const char* name) {
   const Place place(name);
   const format::match::GroundMatch& all = match();
-  for (auto _ : state) format::match::write_ground_as(all, place.path, format);
+  for (auto _ : state) format::write_whole(place.path, *format::format_named(format, format::Content::ground), all);
   count_bytes(state, std::filesystem::file_size(place.path));
 }
 
-void read_match(benchmark::State& state, format::match::GroundFormat format, const char* name) {
+void read_match(benchmark::State& state, const char* format, const char* name) {
   const Place place(name);
-  format::match::write_ground_as(match(), place.path, format);
-  for (auto _ : state) benchmark::DoNotOptimize(format::match::read_ground_as(place.path, format).recording.samples());
+  format::write_whole(place.path, *format::format_named(format, format::Content::ground), match());
+  for (auto _ : state) benchmark::DoNotOptimize(format::read_match(place.path).recording.samples());
   count_bytes(state, std::filesystem::file_size(place.path));
 }
 
@@ -98,15 +99,11 @@ void read_bytes(benchmark::State& state) {
 }
 
 BENCHMARK(write_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(write_match, csv, format::match::GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(write_match, tracab, format::match::GroundFormat::tracab, "bench.dat")
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK_CAPTURE(write_match, csv, "ground", "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(write_match, tracab, "tracab", "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK(read_bytes)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(read_match, csv, format::match::GroundFormat::csv, "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(read_match, tracab, format::match::GroundFormat::tracab, "bench.dat")
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK_CAPTURE(read_match, csv, "ground", "bench.csv")->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK_CAPTURE(read_match, tracab, "tracab", "bench.dat")->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace
 }  // namespace marey

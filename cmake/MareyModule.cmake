@@ -22,14 +22,19 @@ function(marey_unity target)
   endforeach()
 endfunction()
 
-# marey_module(NAME SOURCES ... [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
+# marey_module(NAME [SOURCES ...] [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
 # Adds one room of src/marey, "detect" or "detect/markers", to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
-# `marey_video`, because loading that costs a hundred shared libraries at every start. TESTS become one program, NAME_test.
+# `marey_video`, because loading that costs a hundred shared libraries at every start. Where SOURCES are left out they are all of the folder's that are
+# no tests: a room of formats takes a new one without being told. TESTS become one program, NAME_test.
 function(marey_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;VIDEO_SOURCES;TESTS;TEST_LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "marey_module(${name}): what is ${arg_UNPARSED_ARGUMENTS}?")
+  endif()
+  if(NOT arg_SOURCES)
+    file(GLOB arg_SOURCES RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" CONFIGURE_DEPENDS "*.cpp")
+    list(FILTER arg_SOURCES EXCLUDE REGEX "_test\\.cpp$")
   endif()
   list(TRANSFORM arg_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   list(TRANSFORM arg_VIDEO_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")

@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
   feeds.front().find(std::make_unique<BrightThings>());
   const auto stage = marey::pipeline::people_in_picture(feeds.front(), {});
   marey::pipeline::Sinks sinks;
-  sinks.add(marey::format::tracks::create_tracks(argv[2], marey::format::tracks::TrackFormat::csv));
+  sinks.add(std::make_unique<marey::format::tracks::TrackFile>(argv[2], marey::format::tracks::TrackText::csv));
   marey::pipeline::Clock clock(std::move(feeds));
   std::printf("%lld targets\n", static_cast<long long>(marey::pipeline::run(*stage, clock, sinks).tracks));
   return 0;

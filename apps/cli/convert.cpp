@@ -1,7 +1,7 @@
-#include <algorithm>
+#include "marey/pipeline/convert.h"
+
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,192 +11,110 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/match/ground_exchange.h"
-#include "marey/format/motion/motion.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/register.h"
 
 #include "command_line.h"
 #include "commands.h"
-#include "convert_ground.h"
 #include "json_value.h"
-#include "progress_bar.h"
+#include "pitch_size.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct ConvertOptions {
+struct ConvertCommand {
   std::string from, to;
-  std::string format;
-  std::string up, from_up;
-  GroundConversion ground;
-  bool labelled = false;
+  std::string size = "105x68";
+  std::vector<std::string> periods;
+  pipeline::ConvertOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-format::motion::UpAxis axis_of(const std::string& name) {
-  return name == "y" ? format::motion::UpAxis::y : format::motion::UpAxis::z;
+/// FIRST-LAST, frames counted from 0.
+format::match::GroundPeriod parse_period(const std::string& text, int number) {
+  const std::size_t dash = text.find('-', 1);
+  const auto first = whole_number_of(std::string_view(text).substr(0, dash));
+  const auto last = whole_number_of(dash == std::string::npos ? std::string_view() : std::string_view(text).substr(dash + 1));
+  if (!first || !last || *first < 0 || *last < *first || *last > 1'000'000'000)
+    throw Error("\"{}\" is no period; give its first and last frame, counted from 0, as 0-67499", text);
+  return {number, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)};
 }
 
-/// `--up` is the axis of B; where B is a take, whose z is up always, it is that of A.
-std::pair<format::motion::UpAxis, format::motion::UpAxis> axes(const ConvertOptions& options, format::motion::MotionFormat from,
-                                                               format::motion::MotionFormat to) {
-  const format::motion::UpAxis up = axis_of(options.up);
-  if (!options.from_up.empty()) {
-    if (from == format::motion::MotionFormat::take) throw WrongUsage("a take's z is up always; --from-up is for other files");
-    return {axis_of(options.from_up), up};
+void run(ConvertCommand& command) {
+  command.options.read.pitch = parse_pitch_size(command.size);
+  for (const std::string& period : command.periods)
+    command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
+  const pipeline::ConvertSummary done = [&] {
+    ProgressBar bar(command.quiet);
+    const pipeline::Hooks hooks{.progress = [&](const pipeline::Progress& now) { bar.show(now.step, now.done, now.total); },
+                                .stop = interrupted};
+    catch_interrupts();
+    return pipeline::convert(command.from, command.to, command.options, hooks);
+  }();
+  for (const std::string& sentence : done.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  if (done.stopped) {
+    fmt::print(stderr, "marey: stopped; {} was not finished\n", command.to);
+    throw EndWith{kInterrupted};
   }
-  if (to == format::motion::MotionFormat::take) return {up, format::motion::UpAxis::z};
-  return {format::motion::UpAxis::z, up};
-}
-
-format::motion::MotionFormat format_to_write(const ConvertOptions& options) {
-  if (!options.format.empty()) return format::motion::parse_motion_format(options.format);
-  const auto format = format::motion::motion_format_of_name(options.to);
-  if (!format)
-    throw WrongUsage("{}: its ending is of no format; name one with --format: {}", options.to,
-                     format::motion::motion_format_names());
-  return *format;
-}
-
-format::motion::MotionFormat format_to_read(const ConvertOptions& options) {
-  const auto format = fs::is_directory(options.from) ? std::nullopt : format::motion::motion_format_of_content(options.from);
-  if (!format) throw Error("{}: is none of the files that Marey reads: {}", options.from, format::motion::motion_format_names());
-  return *format;
-}
-
-/// `tracks` by id.
-void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
-  std::erase_if(instant.samples, [&](const Sample& point) {
-    const auto by_id = [](const TrackName& track, TrackId id) { return track.id < id; };
-    const auto found = std::lower_bound(tracks.begin(), tracks.end(), point.track, by_id);
-    return found == tracks.end() || found->id != point.track;
-  });
-}
-
-/// What was written, for the user.
-struct Written {
-  std::string format;
-  std::int64_t count = 0;
-  std::string of;  ///< what is counted, in the plural
-};
-
-Written convert_rig(const ConvertOptions& options) {
-  const auto by_name = format::rig::rig_format_of_name(options.to);
-  if (options.format.empty() && !by_name) {
-    throw WrongUsage("{}: its ending is of no format of calibrations; name one with --format: {}", options.to,
-                     format::rig::rig_format_names());
-  }
-  if (!options.up.empty() || !options.from_up.empty()) {
-    throw WrongUsage("{}: is a calibration, whose z is up always; --up and --from-up are for points", options.from);
-  }
-  const auto to = options.format.empty() ? *by_name : format::rig::parse_rig_format(options.format);
-  const Rig rig = format::rig::read_rig_any(options.from);
-  format::rig::write_rig_as(rig, options.to, to);
-  return {"a calibration", static_cast<std::int64_t>(rig.cameras.size()), "cameras"};
-}
-
-Written convert_motion(const ConvertOptions& options) {
-  const format::motion::MotionFormat from = format_to_read(options), to = format_to_write(options);
-  const auto [from_up, to_up] = axes(options, from, to);
-  // Read twice: most formats begin with what is known only at the end.
-  const auto first = format::motion::open_motion(options.from, from, from_up);
-  format::motion::MotionPlan plan = format::motion::plan_of(*first, options.from);
-  for (const std::string& sentence : first->warnings()) fmt::print(stderr, "marey: warning: {}\n", sentence);
-  // A file that says so itself is still believed only where the user says it too: many say it by mistake.
-  if (plan.info.up == format::motion::UpAxis::y && from_up == format::motion::UpAxis::z) {
-    fmt::print(stderr, "marey: warning: {}: says that y is up; {} turns it so that z is\n", options.from,
-               to == format::motion::MotionFormat::take ? "--up y" : "--from-up y");
-  }
-  if (options.labelled) std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
-  const auto reader = format::motion::open_motion(options.from, from, from_up);
-  const auto sink = format::motion::create_motion(options.to, to, plan, to_up);
-  sink->begin(plan.info.header);
-  ProgressBar progress(options.quiet);
-  std::int64_t done = 0;
-  while (auto instant = reader->next()) {
-    if (options.labelled) leave_out_others(*instant, plan.info.tracks);
-    if (done == 0) instant->named = plan.info.tracks;
-    sink->write(*instant);
-    progress.show("converting", ++done, plan.info.frame_count);
-  }
-  sink->finish();
-  return {std::string(format::motion::motion_format_name(to)), done, "frames"};
-}
-
-Written convert(const ConvertOptions& options) {
-  std::error_code error;
-  if (format::match::ground_format_of_content(options.from) || is_take_of_ground(options.from)) {
-    if (!options.up.empty() || !options.from_up.empty())
-      throw WrongUsage("{}: holds people on the ground; --up and --from-up are for points in space", options.from);
-    const GroundWritten written = convert_ground(options.from, options.to, options.format, options.ground);
-    return {written.format, written.places, "places"};
-  }
-  const bool motion = fs::is_regular_file(options.from, error) && format::motion::motion_format_of_content(options.from);
-  if (!motion && format::rig::rig_format_of_content(options.from)) return convert_rig(options);
-  return convert_motion(options);
-}
-
-void run(const ConvertOptions& options) {
-  const Written written = convert(options);
-  if (options.json) {
-    print({{"from", options.from}, {"to", options.to}, {"format", written.format}, {written.of, written.count}});
-  } else if (!options.quiet) {
-    fmt::print(stderr, "{}: {}, {} {}\n", options.to, written.format, written.count, written.of);
+  if (command.json) {
+    print({{"from", command.from}, {"to", command.to}, {"format", done.format}, {done.counted, done.count}});
+  } else if (!command.quiet) {
+    fmt::print(stderr, "{}: {}, {} {}\n", command.to, done.format, done.count, done.counted);
   }
 }
 
-void check_format(const std::string& name) {
-  const auto is = [&](auto parse) {
-    try {
-      parse(name);
-      return true;
-    } catch (const Error&) {
-      return false;
-    }
-  };
-  if (!is(format::motion::parse_motion_format) && !is(format::rig::parse_rig_format)) format::match::parse_ground_format(name);
-}
-
-/// What is read or written beside a file of people on the ground: Metrica's other half, TRACAB's metadata, EPTS's positions.
+/// What is read or written beside a file of a pair.
 std::vector<std::string> beside(const std::string& path) {
-  const auto with = [&](std::string_view ending, const char* other) { return path.substr(0, path.size() - ending.size()) + other; };
-  if (path.ends_with("_home.csv")) return {with("_home.csv", "_away.csv")};
-  if (path.ends_with("_away.csv")) return {with("_away.csv", "_home.csv")};
-  if (path.ends_with(".dat")) return {with(".dat", ".xml")};
-  if (path.ends_with(".xml")) return {with(".xml", ".txt")};
-  return {};
+  const std::string other = format::file_beside(path);
+  return other.empty() ? std::vector<std::string>{} : std::vector{other};
+}
+
+void add_match_options(Command& command, ConvertCommand& options) {
+  pipeline::ConvertOptions& how = options.options;
+  command.group("People on the ground");
+  command.input_file("--metadata", how.read.metadata, "of TRACAB, EPTS or DFL, where it is not beside A under a like name");
+  command.text("--size", options.size, "of the pitch, LENGTHxWIDTH in m, where A does not say").check(parse_pitch_size);
+  command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where A does not say");
+  command.text("--home", how.home, "the team that is at home; else of the two largest the one whose people come first");
+  command.text("--away", how.away, "the guests");
+  command.texts("--period", options.periods, "first and last frame of a half, counted from 0, as 0-67499; once for each")
+      .check([](const std::string& text) { parse_period(text, 1); });
+  const Option y_down =
+      command.flag("--y-down", how.frame.y_down, "y of CSV and MOT grows downwards, seen from above with x to the right");
+  command.flag("--centred", how.frame.centred, "CSV and MOT count from the middle of the pitch, not from a corner");
+  command.input_file("--rig", how.rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
+  command.group("");
 }
 
 }  // namespace
 
 void add_convert(Command& program) {
-  auto options = std::make_shared<ConvertOptions>();
-  Command command =
-      program.subcommand("convert", "Write a recording of points, people on the ground, or a calibration, in another format");
+  auto options = std::make_shared<ConvertCommand>();
+  pipeline::ConvertOptions& how = options->options;
+  using format::Content;
+  Command command = program.subcommand("convert", "Write a recording, or a calibration, in another format");
   command
-      .input_file("A", options->from,
-                  "take, C3D, TRC, CSV (tidy, Motive's, Nexus's), people on the ground, or calibration; known by its content")
+      .input_file(
+          "A", options->from,
+          "a recording or a calibration, known by its content: " + format::names_of_read(format::kRecordings | Content::rig))
       .required();
   command
       .output_file(
           "B", options->to,
-          "what to write; its ending names the format: .marey, .c3d, .trc, .csv; of people on the ground .csv, .txt (MOT), "
-          "_home.csv (Metrica), .dat (TRACAB), .xml (EPTS), .json (SoccerNet); of a calibration .toml, .yml, .qca.txt, .xml")
+          fmt::format("what to write; its ending names the format. Points in space: {}; people on the ground: {}; tracks in a "
+                      "picture: {}; calibrations: {}",
+                      format::endings_of_written(Content::space), format::endings_of_written(Content::ground),
+                      format::endings_of_written(Content::image), format::endings_of_written(Content::rig)))
       .required();
-  command
-      .text("--format", options->format,
-            "B's format in place of its ending: " + format::motion::motion_format_names() + "; of people on the ground " +
-                format::match::ground_format_names() + "; of a calibration " + format::rig::rig_format_names())
-      .check(check_format);
-  constexpr std::array<std::pair<const char*, const char*>, 2> kAxes{{{"y", "y"}, {"z", "z"}}};
-  command.choice("--up", options->up, kAxes,
+  command.text("--format", how.format, "B's format in place of its ending, by the names above").check(format::check_written_name);
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice("--up", how.up, kAxes,
                  "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
-  command.choice("--from-up", options->from_up, kAxes, "the axis that is up in A, z where it is left out");
-  command.flag("--labelled", options->labelled, "leave out tracks that have no label");
-  add_ground_conversion(command, options->ground);
+  command.choice("--from-up", how.from_up, kAxes, "the axis that is up in A, z where it is left out");
+  command.flag("--labelled", how.labelled, "leave out tracks that have no label");
+  add_match_options(command, *options);
   command.also_reads([options] { return beside(options->from); });
   command.also_writes([options] { return beside(options->to); });
   command.reports(options->json, options->quiet);

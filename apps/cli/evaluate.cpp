@@ -9,7 +9,7 @@
 
 #include "marey/core/error.h"
 #include "marey/evaluate/evaluation.h"
-#include "marey/format/tracks/mot.h"
+#include "marey/format/tracks/boxes.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -110,9 +110,9 @@ void print_table(const evaluate::Evaluation& result, double iou) {
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw WrongUsage("only one of --truth and --tracks can be standard input");
   if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json, options.quiet);
-  format::tracks::MotTable truth = format::tracks::read_mot(options.truth, format::tracks::MotKind::truth);
+  format::tracks::MotTable truth = format::tracks::read_boxes(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
-  const format::tracks::MotTable tracks = format::tracks::read_mot(options.tracks, format::tracks::MotKind::tracks);
+  const format::tracks::MotTable tracks = format::tracks::read_boxes(options.tracks, format::tracks::MotKind::tracks);
   const evaluate::Evaluation result = evaluate::evaluate(truth.boxes, tracks.boxes, options.iou);
   const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
@@ -130,7 +130,8 @@ void add_evaluate(Command& program) {
   Command command = program.subcommand("evaluate", "Judge tracks against the truth");
   command
       .input_file("--truth", options->truth,
-                  "the truth, MOTChallenge text (with --distance, places on the ground); - for standard input")
+                  "the truth: MOTChallenge text, or any file of tracks in a picture (with --distance, of people on the ground); - "
+                  "for standard input")
       .required();
   command.input_file("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input").required();
   const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");
@@ -138,7 +139,7 @@ void add_evaluate(Command& program) {
                                            "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
   command
       .number("--distance", options->distance, "m", closed(1e-6, 1e3),
-              "judge places on the ground (CSV with frame,time,id,x,y): from how near someone counts as found")
+              "judge people on the ground: from how near someone counts as found")
       .excludes(iou)
       .excludes(motchallenge);
   command.reports(options->json, options->quiet, "figures");

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/recording_file.h"
 #include "marey/pipeline/judge_match.h"
 
 #include "command_line.h"
@@ -131,10 +131,10 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 }  // namespace
 
 void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
-  const format::match::GroundMatch tracks_match = format::match::read_ground_any(tracks_name);
+  const format::match::GroundMatch tracks_match = format::read_match(tracks_name);
   const Recording& tracks = tracks_match.recording;
   // A truth that has frames and no times has the tracks'.
-  const Recording truth = format::match::read_ground_any(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
+  const Recording truth = format::read_match(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
   const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);

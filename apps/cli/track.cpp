@@ -5,6 +5,7 @@
 #include <string>
 
 #include "marey/core/error.h"
+#include "marey/format/register.h"
 #include "marey/pipeline/track_in_picture.h"
 
 #include "command_line.h"
@@ -40,27 +41,24 @@ struct TrackCommand {
 };
 
 /// What the command line names and the format's own ending: video.mp4 becomes video.csv, here.
-std::string default_output(const RigCamera& input, format::tracks::TrackFormat format) {
+std::string default_output(const RigCamera& input, const std::string& format) {
   const std::filesystem::path given = input.detections.empty() ? input.source : input.detections;
   std::string stem = (given.has_filename() ? given : given.parent_path()).stem().string();
   std::erase_if(stem, [](char c) { return c == '*' || c == '?' || c == '%'; });
   if (stem.empty() || stem == "." || stem == "..") stem = "video";
-  return stem + "_tracks" + std::string(format::tracks::ending_of(format));
+  return stem + "_tracks" + first_ending(*format::format_named(format, format::Content::image));
 }
 
 pipeline::TrackOutput output_of(const TrackCommand& command) {
   pipeline::TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
-  const auto by_ending = format::tracks::track_format_of(command.out);
-  if (command.format.empty() && !command.out.empty() && !by_ending && !is_stream(command.out) &&
-      !std::filesystem::is_directory(command.out))
-    throw WrongUsage("--output {}: its ending is of no format; end it in .txt (mot), .csv or .jsonl, or name one with --format",
-                     command.out);
-  if (!command.format.empty()) {
-    output.format = format::tracks::parse_track_format(command.format);
-  } else if (by_ending) {
-    output.format = *by_ending;
-  } else if (command.people.outline) {
-    output.format = format::tracks::TrackFormat::jsonl;  // the others hold no outlines
+  const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
+  if (named || !command.format.empty()) {
+    output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
+  } else {
+    const format::Format* by_ending = format::format_of_name(command.out, format::Content::image);
+    output.format = by_ending != nullptr     ? by_ending->name
+                    : command.people.outline ? "jsonl"  // the others hold no outlines
+                                             : "mot";
   }
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty()) output.tracks = default_output(command.input, output.format);
@@ -144,8 +142,9 @@ void add_outputs(Command& command, TrackCommand& options) {
                       "where the tracks go; - for standard output (default: INPUT_tracks.txt in this folder)");
   command
       .text("--format", options.format,
-            "one of " + format::tracks::track_format_names() + " (default: by OUTPUT's ending, else mot, with --outline jsonl)")
-      .check(format::tracks::parse_track_format);
+            "one of " + format::names_of_written(format::Content::image) +
+                " (default: by OUTPUT's ending, else mot, with --outline jsonl)")
+      .check([](const std::string& name) { format::format_to_write({}, name, format::Content::image); });
   command.output_file("--overlay", options.overlay,
                       "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4; with --ground a folder, which gets "
                       "CAMERA.mp4");

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "marey/format/register.h"
+
 #include "declared.h"
 #include "run_hooks.h"
 #include "spelling.h"
@@ -168,6 +170,9 @@ int Program::run(int argc, char** argv) {
     say(error.what());
     code = 2;
   } catch (const WrongUsage& error) {
+    say(error.what());
+    code = 2;
+  } catch (const format::WrongFormat& error) {
     say(error.what());
     code = 2;
   } catch (const std::exception& error) {

@@ -84,12 +84,12 @@ class Files(unittest.TestCase):
         (self.folder / "notes.txt").write_text("hello\n")
         self.assertIn("none of the files", self.refused("info", "notes.txt"))
         self.assertIn("none of the files", self.refused("convert", "notes.txt", "out.c3d"))
-        self.assertIn("its ending is of no format", self.refused("convert", self.csv, "out.xyz", code=2))
+        self.assertIn("unknown ending; these can be written: ", self.refused("convert", self.csv, "out.xyz", code=2))
         self.assertIn("is an input too", self.refused("convert", self.csv, self.csv, code=2))
         self.assertIn("is no take", self.refused("convert", self.csv, "notes.txt", "--format", "take"))
         self.refused("convert", self.csv, "out.c3d", "--up", "x", code=2)
         self.assertIn("cannot be written", self.refused("convert", self.csv, "/dev/full", "--format", "c3d"))
-        self.assertIn("read only", self.refused("convert", self.csv, "out.csv", "--format", "nexus"))
+        self.assertIn("read only", self.refused("convert", self.csv, "out.csv", "--format", "nexus", code=2))
 
     def test_killed_while_it_writes_a_take(self):
         with open(self.csv, "w") as file:

@@ -142,7 +142,7 @@ class GroundFiles(unittest.TestCase):
     def test_conversions_that_cannot_be_are_refused(self):
         self.write_run("run.csv", 12.5)
         self.assertIn("12.5", self.refused("convert", "run.csv", "run.dat"))
-        self.assertIn("read only", self.refused("convert", "run.csv", "run.xml", "--format", "sportec"))
+        self.assertIn("read only", self.refused("convert", "run.csv", "run.xml", "--format", "sportec", code=2))
         self.assertIn("ending", self.refused("convert", "run.csv", "run.odt", code=2))
         self.assertIn("nobody is of the team", self.refused("convert", "run.csv", "run_home.csv", "--home", "green"))
         self.assertIn("input", self.refused("convert", "run.csv", "run.csv", code=2))

@@ -47,7 +47,8 @@ class Takes(unittest.TestCase):
         refused = self.run_marey("measure", "street.marey", "-o", "no.csv", code=1).stderr
         self.assertIn("px", refused)
         self.assertFalse((self.folder / "no.csv").exists())
-        self.assertIn("px", self.run_marey("convert", "street.marey", "street.c3d", code=1).stderr)
+        said = self.run_marey("convert", "street.marey", "street.c3d", code=2).stderr
+        self.assertIn("holds points in space, and not tracks in a picture", said)
 
     def test_people_on_the_ground(self):
         self.run_marey("simulate", "match", "--cameras", "3", "--seconds", "8", "--boxes", "-o", "match", "-q")

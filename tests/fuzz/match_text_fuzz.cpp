@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/ground_file.h"
+#include "marey/format/match/ground_match.h"
 
 #include "fuzz.h"
 

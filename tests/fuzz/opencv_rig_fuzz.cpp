@@ -1,6 +1,6 @@
 // OpenCV's YAML, JSON and XML, through OpenCV's own parser, whose code is not instrumented: a crash in it is found all the same.
 #include "marey/core/error.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/rig_file.h"
 
 #include "fuzz.h"

@@ -16,7 +16,7 @@ using marey::fuzz::check;
 
 namespace {
 
-void walk(marey::format::motion::MotionReader& reader) {
+void walk(marey::format::FileReader& reader) {
   check(reader.info().header.rate_hz > 0);
   std::int64_t last = -1;
   while (const auto frame = reader.next()) {

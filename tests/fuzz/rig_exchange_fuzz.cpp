@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "marey/core/error.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/rig_file.h"
 
 #include "fuzz.h"

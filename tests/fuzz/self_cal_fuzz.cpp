@@ -6,7 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/self_cal_folder.h"
 
 #include "fuzz.h"

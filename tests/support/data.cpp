@@ -12,6 +12,10 @@ std::string data(const std::string& name) {
   return (root / name).lexically_normal().string();
 }
 
+std::string of_project(const std::string& name) {
+  return (std::filesystem::path(MAREY_ROOT) / name).string();
+}
+
 std::string vtest() {
   return "/usr/share/doc/opencv-doc/examples/data/vtest.avi";
 }

@@ -33,7 +33,9 @@ std::string to_string(const FrameOfReference& frame) {
 
 void OptionalColumn::set(std::size_t row, std::span<const double> values) {
   const auto width = static_cast<std::size_t>(width_);
-  if (values_.size() == values_.capacity()) values_.reserve(std::max(rows_, row + 1) * width);
+  // Memory is what the rows need where their number is known, else a quarter more at most.
+  if (values_.size() + width > values_.capacity())
+    values_.reserve(std::max({rows_ * width, (row + 1) * width, values_.size() + values_.size() / 4 + 16 * width}));
   if (known_.empty() && rows_ > row) known_.reserve(rows_), values_.reserve(rows_ * width);
   if (known_.size() < row) {
     unknown_ += row - known_.size();

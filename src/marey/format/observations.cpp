@@ -15,6 +15,7 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/core/input_file.h"
+#include "marey/format/format.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/format/text_rows.h"
 
@@ -301,6 +302,61 @@ void ObservationWriter::write(const SeenFrame& frame) {
     lines_ += '\n';
   }
   file_.write(lines_);
+}
+
+namespace {
+
+bool is_observations(const Beginning& file) {
+  if (!file.is_text()) return false;
+  std::vector<std::string_view> head;
+  split(file.first_line(), head);
+  const auto has = [&](std::string_view name) { return std::find(head.begin(), head.end(), name) != head.end(); };
+  return has("camera") && has("frame") && has("x") && has("y");
+}
+
+std::vector<Fact> facts_of_observations(const std::string& path) {
+  const Rig rig = rig_of_observations(path);
+  ObservationReader reader(path, rig);
+  std::int64_t frames = 0, points = 0, first = 0, last = 0;
+  std::set<std::string> markers;
+  std::vector<std::int64_t> seen(rig.cameras.size());
+  while (const auto frame = reader.next()) {
+    if (frames++ == 0) first = frame->frame;
+    last = frame->frame;
+    points += std::ssize(frame->points);
+    for (const SeenPoint& point : frame->points) {
+      ++seen[static_cast<std::size_t>(marey::number(point.camera))];
+      if (!point.marker.empty()) markers.insert(point.marker);
+    }
+  }
+  std::vector<std::string> names, counts;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    names.push_back(rig.cameras[i].name);
+    counts.push_back(fmt::format("{}: {} points", rig.cameras[i].name, seen[i]));
+  }
+  std::vector<Fact> facts{{"cameras", names, fmt::format("{} ({})", names.size(), fmt::join(counts, ", "))},
+                          {"points", points},
+                          {"frames", frames, fmt::format("{} in which something was seen", frames)}};
+  if (frames > 0) {
+    facts.push_back({"first_frame", first, fmt::format("{}, counted from 0", first)});
+    facts.push_back({"last_frame", last});
+  }
+  if (!markers.empty()) facts.push_back({"markers", std::vector<std::string>(markers.begin(), markers.end())});
+  return facts;
+}
+
+}  // namespace
+
+Format observations_format() {
+  return {.name = "observations",
+          .title = "observations of markers, one row each",
+          .endings = {},
+          .holds = Content::observations,
+          .detail =
+              "px; `camera,frame,x,y`, perhaps `marker`; frames and pixels count from 0. For `marey reconstruct --observations` "
+              "and `marey calibrate wand`; so is a folder of MultiCamSelfCal's",
+          .is = is_observations,
+          .facts = facts_of_observations};
 }
 
 }  // namespace marey::format

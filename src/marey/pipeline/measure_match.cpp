@@ -9,7 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/match_report.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/recording_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::pipeline {
@@ -107,8 +107,8 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
 analyse::Measurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
                                    const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  const format::match::GroundReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
-  analyse::Measurement measured = analyse::measure(format::match::read_ground_any(tracks, reading).recording, options.how);
+  const format::ReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
+  analyse::Measurement measured = analyse::measure(format::read_match(tracks, reading).recording, options.how);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
   WholeFile file(output.figures);
   file.write(measurement_csv(measured, options.how));

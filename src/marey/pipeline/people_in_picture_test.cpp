@@ -117,9 +117,8 @@ TEST(PeopleInPicture, TheSameFilmGivesTheSameBytes) {
   for (const bool live : {false, true}) {
     PeopleInPictureOptions options;
     options.live = live;
-    track_people(input, {.tracks = folder / "a.csv", .format = format::tracks::TrackFormat::csv}, options);
-    track_people(input, {.tracks = folder / "b.csv", .format = format::tracks::TrackFormat::csv, .overlay = folder / "b.mp4"},
-                 options);
+    track_people(input, {.tracks = folder / "a.csv", .format = "csv"}, options);
+    track_people(input, {.tracks = folder / "b.csv", .format = "csv", .overlay = folder / "b.mp4"}, options);
     EXPECT_EQ(test::read_file(folder / "a.csv"), test::read_file(folder / "b.csv"));
   }
 }

@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/format/motion/motion.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
 
 namespace marey::pipeline {
@@ -25,10 +26,10 @@ struct ForAWhile {
 };
 
 /// Most formats begin with what is known only at the end: the take is read twice.
-void rewrite(const std::string& take, const std::string& out, format::motion::MotionFormat format) {
-  const format::motion::MotionPlan plan = plan_of(*open_motion(take, format::motion::MotionFormat::take), take);
-  const auto reader = open_motion(take, format::motion::MotionFormat::take);
-  replay(*reader, *create_motion(out, format, plan));
+void rewrite(const std::string& take, const std::string& out, const format::Format& format) {
+  const format::WritePlan plan = format::plan_of(*format::open_recording(take), take);
+  const auto reader = format::open_recording(take);
+  replay(*reader, *format::create_recording(out, format, plan));
 }
 
 Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInSpaceOptions& options) {
@@ -78,13 +79,12 @@ Summary record(const Rig& rig, const std::string& observations, const std::strin
 Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out, const MarkersInSpaceOptions& options,
                     const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  const auto format = format::motion::motion_format_of_name(out);
-  if (!format) throw Error("{}: its ending is of no format; .marey is a take, {} are others", out, ".c3d, .trc and .csv");
-  if (*format == format::motion::MotionFormat::take) return record(rig, observations, out, options, hooks);
+  const format::Format& format = format::format_to_write(out, {}, format::Content::space);
+  if (format.name == "take") return record(rig, observations, out, options, hooks);
   const ForAWhile take{out + ".part.marey"};
   Summary summary = record(rig, observations, take.path, options, hooks);
   const StopScope keeps_what_there_is{{}};  // of a run that was stopped too
-  rewrite(take.path, out, *format);
+  rewrite(take.path, out, format);
   return summary;
 }
 

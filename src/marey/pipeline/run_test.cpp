@@ -129,7 +129,7 @@ TEST(Run, ASinkThatFailsEndsTheRunAndTheOthersKeepWhatTheyHave) {
   Sinks sinks;
   sinks.add(std::make_unique<Keeper>(whole));
   sinks.add(std::make_unique<Keeper>(broken, 5));
-  sinks.add(std::make_unique<format::tracks::TrackFile>(folder / "out.txt", format::tracks::TrackFormat::mot));
+  sinks.add(std::make_unique<format::tracks::TrackFile>(folder / "out.txt", format::tracks::TrackText::mot));
   Echo stage;
   Clock clock = clock_over(folder / "boxes.txt");
   try {
@@ -185,7 +185,7 @@ TEST(Run, WhatTheStageThrowsLeavesNoFileBehind) {
   } stage;
   {
     Sinks sinks;
-    sinks.add(std::make_unique<format::tracks::TrackFile>(folder / "out.txt", format::tracks::TrackFormat::mot));
+    sinks.add(std::make_unique<format::tracks::TrackFile>(folder / "out.txt", format::tracks::TrackText::mot));
     Clock clock = clock_over(folder / "boxes.txt");
     EXPECT_THROW(run(stage, clock, sinks), Error);
   }

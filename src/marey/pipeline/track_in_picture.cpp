@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/overlay_film.h"
 #include "marey/draw/plot_file.h"
+#include "marey/format/recording_file.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline {
@@ -22,7 +23,8 @@ Feed open(const RigCamera& camera) {
 
 Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayOptions& drawn) {
   Sinks sinks;
-  sinks.add(format::tracks::create_tracks(output.tracks, output.format));
+  const format::Format& format = format::format_to_write(output.tracks, output.format, format::Content::image);
+  sinks.add(format::create_recording(output.tracks, format));
   if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);

@@ -7,7 +7,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "marey/core/rig.h"
-#include "marey/format/tracks/track_file.h"
+#include "marey/format/register.h"
 #include "marey/pipeline/markers_in_picture.h"
 #include "marey/pipeline/people_in_picture.h"
 
@@ -16,7 +16,7 @@ namespace marey::pipeline {
 /// Where the results go; what is empty is not made.
 struct TrackOutput {
   std::string tracks;
-  format::tracks::TrackFormat format = format::tracks::TrackFormat::mot;
+  std::string format = {};   ///< by name; empty: the ending of `tracks` says it
   std::string overlay = {};  ///< a film with the tracks drawn into the pictures
   std::string plot = {};     ///< an SVG picture of the trajectories, in the coordinates of the image
 };

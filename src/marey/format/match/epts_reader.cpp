@@ -11,9 +11,10 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/match/epts.h"
 #include "marey/format/match/epts_periods.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
@@ -198,6 +199,43 @@ class EptsReader {
 GroundMatch parse_epts(std::string_view text, const std::string& name, std::string_view metadata,
                        const std::string& metadata_name) {
   return EptsReader(name, metadata_name).read(text, metadata);
+}
+
+namespace {
+
+bool is_epts_metadata(std::string_view text) {
+  return text.find("<GlobalConfig") != std::string_view::npos;
+}
+
+/// Lines that begin with a frame and a colon; those of TRACAB's are known by their targets.
+bool is_epts(const Beginning& file) {
+  if (is_epts_metadata(file.bytes)) return true;
+  const std::string_view line = file.first_line();
+  const std::size_t colon = line.find(':');
+  return !file.has("<") && colon != std::string_view::npos && whole_number_of(line.substr(0, colon));
+}
+
+const TwoFiles& epts_files() {
+  static const TwoFiles files{parse_epts, is_epts, is_epts_metadata, {".txt", ".dat"}};
+  return files;
+}
+
+}  // namespace
+
+Format epts_format() {
+  return {.name = "epts",
+          .title = "a FIFA EPTS file",
+          .endings = ".xml",
+          .holds = Content::ground,
+          .detail =
+              "with `.txt` beside it; corner above on the left, y down, 0 to 1 (others are read in m); halves, shirts, names, two "
+              "teams, speed in km/h. Whole numbers of frames a second",
+          .is = match::is_epts,
+          .read = [](const std::string& path,
+                     const ReadOptions& options) { return match::read_two_files(path, match::epts_files(), options); },
+          .write = match::write_epts,
+          .from_corner = true,
+          .beside = {{".xml", ".txt"}}};
 }
 
 }  // namespace marey::format::match

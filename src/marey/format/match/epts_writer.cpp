@@ -7,8 +7,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/match/epts.h"
 #include "marey/format/match/epts_periods.h"
-#include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/xml_text.h"
 

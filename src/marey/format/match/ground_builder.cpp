@@ -19,6 +19,8 @@ Sample sample_of(const GroundBuilder::Row& row) {
   if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), 0);
   sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
   sample.cameras = row.cameras;
+  sample.box = row.box;
+  sample.score = row.score;
   return sample;
 }
 

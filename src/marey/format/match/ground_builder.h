@@ -25,6 +25,8 @@ class GroundBuilder {
     Vector<2> place = Vector<2>::Zero();
     std::optional<Vector<2>> velocity = {};
     CameraMask cameras = 0;
+    std::optional<Box> box = {};  ///< px, of one in a picture
+    std::optional<double> score = {};
   };
 
   explicit GroundBuilder(const std::string& name) : name_(name) {}

@@ -22,12 +22,13 @@
 namespace marey::format::match {
 namespace {
 
-enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kColumns };
-constexpr std::array<std::string_view, kColumns> kNames = {"frame", "time", "id", "label", "team",   "x",
-                                                           "y",     "vx",   "vy", "state", "cameras"};
+enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kLeft, kTop, kWidth, kHeight, kColumns };
+constexpr std::array<std::string_view, kColumns> kAllNames = {"frame", "time",  "id",      "label", "team", "x",     "y",     "vx",
+                                                              "vy",    "state", "cameras", "left",  "top",  "width", "height"};
+constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture
 constexpr std::array kNeeded = {kId, kX, kY};
+constexpr double kFarthest = 1e5;  // m
 constexpr std::size_t kMostCameras = 64;
-constexpr std::array<std::string_view, 4> kBox = {"left", "top", "width", "height"};  // columns of tracks in a picture
 constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
 
 /// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 where there are none.
@@ -50,7 +51,7 @@ class GroundFileReader {
  public:
   GroundFileReader(const std::string& name, double rate_hz) : name_(name), rate_hz_(rate_hz), builder_(name) {}
 
-  GroundFile read(std::string_view text) {
+  void read(std::string_view text, GroundMatch& match) {
     TextLines lines(text);
     std::string_view line;
     if (!lines.next(line)) throw Error("{}: the file is empty; its first line must be {}", name_, fmt::join(kNames, ","));
@@ -63,7 +64,7 @@ class GroundFileReader {
       add();
     }
     if (!moves_) builder_.forget_velocities();
-    return finish();
+    finish(match);
   }
 
  private:
@@ -71,29 +72,26 @@ class GroundFileReader {
     split_fields(line, ',', fields_);
     where_.fill(std::nullopt);
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const auto known = std::find(kNames.begin(), kNames.end(), fields_[i]);
-      if (known != kNames.end()) where_[static_cast<std::size_t>(known - kNames.begin())] = i;
+      const auto known = std::find(kAllNames.begin(), kAllNames.end(), fields_[i]);
+      if (known != kAllNames.end()) where_[static_cast<std::size_t>(known - kAllNames.begin())] = i;
     }
     if (!where_[kFrame] && !where_[kTime])
       throw Error("{}:1: the header has neither a column \"frame\" nor \"time\"; it must read {}", name_, fmt::join(kNames, ","));
     for (const Column needed : kNeeded) {
       if (!where_[needed])
-        throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kNames[needed], fmt::join(kNames, ","));
+        throw Error("{}:1: the header has no column \"{}\"; it must read {}", name_, kAllNames[needed], fmt::join(kNames, ","));
     }
-    has_boxes_ = std::all_of(kBox.begin(), kBox.end(), [&](std::string_view edge) {
-      return std::find(fields_.begin(), fields_.end(), edge) != fields_.end();
-    });
+    has_boxes_ = where_[kLeft] && where_[kTop] && where_[kWidth] && where_[kHeight];
   }
 
-  GroundFile finish() {
-    GroundFile file;
-    file.recording.header.name = name_;
-    file.recording.header.frame.kind = has_boxes_ ? FrameOfReference::Kind::image : FrameOfReference::Kind::user_ground;
-    file.order = builder_.finish(file.recording);
-    file.recording.header.rate_hz = rate_of(file.recording.instants());
-    if (!cameras_.empty()) file.recording.header.rig.emplace();
-    for (std::string& camera : cameras_) file.recording.header.rig->cameras.emplace_back().name = std::move(camera);
-    return file;
+  void finish(GroundMatch& match) {
+    RecordingHeader& header = match.recording.header;
+    header.name = name_;
+    header.frame.kind = has_boxes_ ? FrameOfReference::Kind::image : FrameOfReference::Kind::user_ground;
+    match.order = builder_.finish(match.recording);
+    header.rate_hz = rate_of(match.recording.instants());
+    if (!cameras_.empty()) header.rig.emplace();
+    for (std::string& camera : cameras_) header.rig->cameras.emplace_back().name = std::move(camera);
   }
 
   /// The column's field; nothing where it is missing or empty.
@@ -106,7 +104,7 @@ class GroundFileReader {
     const auto text = field(column);
     const auto value = text ? number_of(*text) : std::nullopt;
     if (!value || !(*value >= least && *value <= most))
-      throw Error("{}:{}: {} is {}; a number from {:g} to {:g} is wanted", name_, line_, kNames[column],
+      throw Error("{}:{}: {} is {}; a number from {:g} to {:g} is wanted", name_, line_, kAllNames[column],
                   text ? shown(*text) : std::string("missing"), least, most);
     return *value;
   }
@@ -132,6 +130,10 @@ class GroundFileReader {
       throw Error("{}:{}: state is {}; it must be observed or predicted", name_, line_, shown(how));
     row.observed = how != "predicted";
     row.cameras = cameras_of(text(kCameras));
+    if (has_boxes_ && field(kLeft)) {
+      row.box = Box{number(kLeft, -kFarthest, kFarthest), number(kTop, -kFarthest, kFarthest), number(kWidth, 0, kFarthest),
+                    number(kHeight, 0, kFarthest)};
+    }
     builder_.add(person, row);
   }
 
@@ -191,18 +193,34 @@ class GroundFileReader {
 }  // namespace
 
 Recording parse_ground(std::string_view text, const std::string& name, double rate_hz) {
-  return GroundFileReader(name, rate_hz).read(text).recording;
+  GroundMatch match;
+  GroundFileReader(name, rate_hz).read(text, match);
+  return std::move(match.recording);
 }
 
 Recording read_ground(const std::string& path, double rate_hz) {
-  return read_ground_in_order(path, rate_hz).recording;
+  return read_ground_match(path, {.metadata = {}, .pitch = {}, .rate_hz = rate_hz}).recording;
 }
 
-GroundFile read_ground_in_order(const std::string& path, double rate_hz) {
+GroundMatch read_ground_match(const std::string& path, const ReadOptions& options) {
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return GroundFileReader(path, rate_hz).read(MappedFile(path).text());
-  const std::string name = path == "-" ? "standard input" : path;
-  return GroundFileReader(name, rate_hz).read(read_file(path));
+  GroundMatch match;
+  match.pitch = options.pitch;
+  if (std::filesystem::is_regular_file(path, error)) {
+    GroundFileReader(path, options.rate_hz).read(MappedFile(path).text(), match);
+  } else {
+    const std::string name = path == "-" ? "standard input" : path;
+    GroundFileReader(name, options.rate_hz).read(read_file(path), match);
+  }
+  return match;
+}
+
+bool is_ground_csv(const Beginning& file, bool with_boxes) {
+  std::vector<std::string_view> head;
+  split_fields(file.first_line(), ',', head);
+  const auto has = [&](std::string_view name) { return std::find(head.begin(), head.end(), name) != head.end(); };
+  const bool boxes = has("left") && has("top") && has("width") && has("height");
+  return (has("frame") || has("time")) && has("id") && has("x") && has("y") && !has("z") && boxes == with_boxes;
 }
 
 Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
@@ -248,6 +266,22 @@ void write_ground(const Recording& recording, const std::string& path) {
   InstantsOf instants(recording);
   while (const auto instant = instants.next()) writer.write(*instant);
   writer.finish();
+}
+
+Format ground_format() {
+  return {.name = "ground",
+          .title = "people on the ground, one row each",
+          .endings = ".csv",
+          .holds = Content::ground,
+          .detail =
+              "yours, m; everything: `frame,time,id,label,team,x,y,vx,vy,state,cameras`. Read with any columns beyond `id,x,y` "
+              "and `frame` or `time`, in any order",
+          .is = [](const Beginning& file) { return match::is_ground_csv(file, false); },
+          .read = match::read_ground_match,
+          .create = [](const std::string& path, const WritePlan&) -> std::unique_ptr<Sink> {
+            return std::make_unique<match::GroundWriter>(path);
+          },
+          .while_recording = true};
 }
 
 }  // namespace marey::format::match

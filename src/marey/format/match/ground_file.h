@@ -8,6 +8,7 @@
 #include "marey/core/recording.h"
 #include "marey/core/sink.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/match/ground_match.h"
 
 namespace marey::format::match {
 
@@ -26,11 +27,10 @@ Recording read_ground(const std::string& path, double rate_hz = 25);
 Recording parse_ground(std::string_view text, const std::string& name, double rate_hz = 25);
 
 /// The same, with the people in the order in which the file names them.
-struct GroundFile {
-  Recording recording;
-  std::vector<TrackId> order;
-};
-GroundFile read_ground_in_order(const std::string& path, double rate_hz);
+GroundMatch read_ground_match(const std::string& path, const ReadOptions& options);
+
+/// Whether a file begins as such a CSV does, or as one of tracks in a picture, which has boxes too.
+bool is_ground_csv(const Beginning& file, bool with_boxes);
 
 /// Writes such a file as it comes, so that memory does not grow with its length.
 class GroundWriter : public Sink {

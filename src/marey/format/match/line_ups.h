@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 
 namespace marey::format::match {
 

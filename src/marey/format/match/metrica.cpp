@@ -10,8 +10,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/text_rows.h"
 
@@ -184,6 +185,35 @@ GroundMatch parse_metrica(std::string_view home, const std::string& home_name, s
   return match;
 }
 
+namespace {
+
+GroundMatch read_metrica(const std::string& path, const ReadOptions& options) {
+  std::string other = path;
+  bool is_home = true;
+  for (const auto& [mine, theirs] :
+       {std::pair("home", "away"), std::pair("Home", "Away"), std::pair("away", "home"), std::pair("Away", "Home")}) {
+    const std::size_t at = std::filesystem::path(path).filename().string().rfind(mine);
+    if (at == std::string::npos) continue;
+    other = (std::filesystem::path(path).parent_path() / std::filesystem::path(path).filename().string().replace(at, 4, theirs))
+                .string();
+    is_home = mine[0] == 'h' || mine[0] == 'H';
+    break;
+  }
+  std::error_code error;
+  if (other == path || !std::filesystem::exists(other, error))
+    throw Error("{}: Metrica's files come in pairs, ..._home.csv and ..._away.csv, and the other one is not beside it", path);
+  const MappedFile mine(path), theirs(other);
+  return is_home ? parse_metrica(mine.text(), path, theirs.text(), other, options.pitch)
+                 : parse_metrica(theirs.text(), other, mine.text(), path, options.pitch);
+}
+
+bool is_metrica(const Beginning& file) {
+  TextLines lines(file.text());
+  std::string_view line;
+  while (lines.next(line) && line.empty()) continue;
+  return lines.next(line) && lines.next(line) && line.starts_with("Period,Frame,Time [s]");
+}
+
 std::vector<std::string> write_metrica(const GroundMatch& match, const std::string& path) {
   LineUps line_ups = line_ups_of(match);
   const std::vector<GroundPeriod> periods = periods_of(match);
@@ -200,6 +230,23 @@ std::vector<std::string> write_metrica(const GroundMatch& match, const std::stri
   if (left_out > 0)
     line_ups.warnings.push_back(fmt::format("{} people of neither team were left out: Metrica's files hold two teams", left_out));
   return line_ups.warnings;
+}
+
+}  // namespace
+
+Format metrica_format() {
+  return {.name = "metrica",
+          .title = "a pair of Metrica's CSV files",
+          .endings = "_home.csv _away.csv",
+          .holds = Content::ground,
+          .detail =
+              "corner above on the left, y down, 0 to 1; halves, shirts, two teams, NaN where someone is missing. Frames from 1. "
+              "The pitch's size is not in it: `--size`",
+          .is = match::is_metrica,
+          .read = match::read_metrica,
+          .write = match::write_metrica,
+          .from_corner = true,
+          .beside = {{"_home.csv", "_away.csv"}, {"_away.csv", "_home.csv"}}};
 }
 
 }  // namespace marey::format::match

@@ -9,7 +9,8 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
+#include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::match {
@@ -49,7 +50,9 @@ GroundMatch parse_mot_world(std::string_view text, const std::string& name, doub
   return match;
 }
 
-void write_mot_world(const GroundMatch& match, const std::string& path) {
+namespace {
+
+std::vector<std::string> write_mot_world(const GroundMatch& match, const std::string& path) {
   WholeFile file(path);
   std::string text;
   InstantRows rows(match.recording);
@@ -65,6 +68,36 @@ void write_mot_world(const GroundMatch& match, const std::string& path) {
   }
   file.write(text);
   file.finish();
+  return {};
+}
+
+/// Ten numbers, or the nine that are needed; the place is not (-1, -1), which says that there is none.
+bool is_mot_world(const Beginning& file) {
+  std::vector<std::string_view> fields;
+  const std::string_view line = file.first_line();
+  split_fields(line, line.find(',') == std::string_view::npos ? ' ' : ',', fields);
+  return fields.size() >= 9 && all_numbers(fields) && !(number_of(fields[7]) == -1 && number_of(fields[8]) == -1);
+}
+
+GroundMatch read_mot_world(const std::string& path, const ReadOptions& options) {
+  GroundMatch match = parse_mot_world(read_file(path), path, options.rate_hz);
+  match.pitch = options.pitch;
+  return match;
+}
+
+}  // namespace
+
+Format world_mot_format() {
+  return {.name = "mot",
+          .title = "MOTChallenge text with world coordinates",
+          .endings = ".txt",
+          .holds = Content::ground,
+          .detail =
+              "yours, m; MOTChallenge text, frames from 1, the place in columns 8 and 9; boxes are −1 when written. It has no "
+              "time: `--rate`",
+          .is = match::is_mot_world,
+          .read = match::read_mot_world,
+          .write = match::write_mot_world};
 }
 
 }  // namespace marey::format::match

@@ -11,9 +11,10 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/nesting.h"
+#include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::match {
@@ -30,7 +31,7 @@ constexpr std::int64_t kFirstClip = 1000 * 1'000'000LL;  // what ours begin with
 
 class SoccernetReader {
  public:
-  SoccernetReader(const std::string& name, const GroundReadOptions& options) : name_(name), builder_(name) {
+  SoccernetReader(const std::string& name, const ReadOptions& options) : name_(name), builder_(name) {
     match_.pitch = options.pitch;
     match_.recording.header.rate_hz = options.rate_hz;
   }
@@ -138,7 +139,7 @@ std::string images_of(const Recording& recording) {
 
 }  // namespace
 
-GroundMatch parse_soccernet(std::string_view text, const std::string& name, const GroundReadOptions& options) {
+GroundMatch parse_soccernet(std::string_view text, const std::string& name, const ReadOptions& options) {
   try {
     return SoccernetReader(name, options).read(text);
   } catch (const json::exception& error) {
@@ -148,6 +149,18 @@ GroundMatch parse_soccernet(std::string_view text, const std::string& name, cons
     const auto read = text.substr(0, broken->byte);
     throw Error("{}:{}: is no JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
   }
+}
+
+namespace {
+
+bool is_soccernet(const Beginning& file) {
+  const std::size_t begin = file.text().find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos || file.text()[begin] != '{') return false;
+  return file.has("\"bbox_pitch\"") || file.has("\"predictions\"") || (file.has("\"im_ext\"") && file.has("\"seq_length\""));
+}
+
+GroundMatch read_soccernet(const std::string& path, const ReadOptions& options) {
+  return parse_soccernet(read_file(path), path, options);
 }
 
 std::vector<std::string> write_soccernet(const GroundMatch& match, const std::string& path) {
@@ -185,6 +198,22 @@ std::vector<std::string> write_soccernet(const GroundMatch& match, const std::st
   file.write(text + "]}\n");
   file.finish();
   return line_ups.warnings;
+}
+
+}  // namespace
+
+Format soccernet_format() {
+  return {.name = "soccernet",
+          .title = "a game state of SoccerNet",
+          .endings = ".json",
+          .holds = Content::ground,
+          .detail =
+              "centre spot, y down, m; game state: ids, roles, shirts, teams as left (home) and right. `Labels-GameState.json` is "
+              "written with \"annotations\", any other name with \"predictions\"",
+          .is = match::is_soccernet,
+          .read = match::read_soccernet,
+          .write = match::write_soccernet,
+          .from_corner = true};
 }
 
 }  // namespace marey::format::match

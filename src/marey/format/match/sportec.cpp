@@ -12,7 +12,7 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
 
@@ -128,6 +128,35 @@ class SportecReader {
 GroundMatch parse_sportec(std::string_view text, const std::string& name, std::string_view metadata,
                           const std::string& metadata_name) {
   return SportecReader(name, metadata_name).read(text, metadata);
+}
+
+namespace {
+
+bool is_sportec_metadata(std::string_view text) {
+  return text.find("<MatchInformation") != std::string_view::npos;
+}
+
+bool is_sportec(const Beginning& file) {
+  return file.has("<PutDataRequest") && (file.has("<Positions") || is_sportec_metadata(file.bytes));
+}
+
+const TwoFiles& sportec_files() {
+  static const TwoFiles files{parse_sportec, is_sportec, is_sportec_metadata, {".xml"}, false};
+  return files;
+}
+
+}  // namespace
+
+Format sportec_format() {
+  return {.name = "sportec",
+          .title = "positional data of DFL (Sportec)",
+          .endings = {},
+          .holds = Content::ground,
+          .detail = "centre spot, y up, m; DFL's positional XML; names from the match's information beside it",
+          .is = match::is_sportec,
+          .read = [](const std::string& path,
+                     const ReadOptions& options) { return match::read_two_files(path, match::sportec_files(), options); },
+          .from_corner = true};
 }
 
 }  // namespace marey::format::match

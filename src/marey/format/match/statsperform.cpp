@@ -12,7 +12,8 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
+#include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::match {
@@ -118,6 +119,34 @@ class StatsperformReader {
 
 GroundMatch parse_statsperform(std::string_view text, const std::string& name, const geometry::PitchSize& pitch) {
   return StatsperformReader(name, pitch).read(text);
+}
+
+namespace {
+
+bool is_statsperform(const Beginning& file) {
+  const std::string_view line = file.first_line();
+  const std::size_t semicolon = line.find(';'), colon = line.find(':');
+  if (semicolon == std::string_view::npos || !whole_number_of(line.substr(0, semicolon)) || !(colon > semicolon)) return false;
+  std::vector<std::string_view> fields;
+  split_fields(line.substr(semicolon + 1, colon - semicolon - 1), ',', fields);
+  return fields.size() == 3 && all_numbers(fields);
+}
+
+GroundMatch read_statsperform(const std::string& path, const ReadOptions& options) {
+  return parse_statsperform(read_file(path), path, options.pitch);
+}
+
+}  // namespace
+
+Format statsperform_format() {
+  return {.name = "statsperform",
+          .title = "an MA25 file of StatsPerform",
+          .endings = {},
+          .holds = Content::ground,
+          .detail = "corner above on the left, y down, m; MA25 text, with the pitch's size from `--size`",
+          .is = match::is_statsperform,
+          .read = match::read_statsperform,
+          .from_corner = true};
 }
 
 }  // namespace marey::format::match

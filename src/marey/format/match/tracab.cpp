@@ -13,7 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/match/ground_builder.h"
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
@@ -204,6 +204,32 @@ GroundMatch parse_tracab(std::string_view text, const std::string& name, std::st
   return TracabReader(name, metadata_name).read(text, metadata);
 }
 
+namespace {
+
+bool is_tracab_metadata(std::string_view text) {
+  const auto has = [&](std::string_view part) { return text.find(part) != std::string_view::npos; };
+  return has("<TracabMetaData") || (has("<GameID") && has("<Phase1StartFrame"));
+}
+
+/// Lines begin with a frame and a colon; targets have six numbers, the first of which is a team.
+bool is_tracab(const Beginning& file) {
+  if (file.has("<")) return is_tracab_metadata(file.bytes);
+  const std::string_view line = file.first_line();
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !whole_number_of(line.substr(0, colon))) return false;
+  const std::string_view rest = line.substr(colon + 1);
+  std::vector<std::string_view> target;
+  split_fields(rest.substr(0, rest.find_first_of(";:")), ',', target);
+  if (target.size() != 6 || !all_numbers(target) || rest.find(';') == std::string_view::npos) return false;
+  const auto team = whole_number_of(target[0]);
+  return team && *team >= -1 && *team <= 4;
+}
+
+const TwoFiles& tracab_files() {
+  static const TwoFiles files{parse_tracab, is_tracab, is_tracab_metadata, {".dat", ".txt"}};
+  return files;
+}
+
 std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {
   if (match.recording.samples() == 0) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
   const LineUps line_ups = line_ups_of(match);
@@ -230,6 +256,24 @@ std::vector<std::string> write_tracab(const GroundMatch& match, const std::strin
   write_metadata(match, line_ups, with_ending(path, ".xml"));
   file.finish();
   return line_ups.warnings;
+}
+
+}  // namespace
+
+Format tracab_format() {
+  return {.name = "tracab",
+          .title = "a TRACAB file",
+          .endings = ".dat",
+          .holds = Content::ground,
+          .detail =
+              "with `.xml` beside it; centre spot, y up, whole cm; halves, shirts, teams, referees, people of no known team, "
+              "speed. Whole numbers of frames a second",
+          .is = match::is_tracab,
+          .read = [](const std::string& path,
+                     const ReadOptions& options) { return match::read_two_files(path, match::tracab_files(), options); },
+          .write = match::write_tracab,
+          .from_corner = true,
+          .beside = {{".dat", ".xml"}}};
 }
 
 }  // namespace marey::format::match

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "marey/format/motion/motion.h"
+#include "marey/format/format.h"
 
 namespace marey::format::motion {
 
@@ -12,11 +12,12 @@ namespace marey::format::motion {
 /// becomes CameraId 0 to 6, its residual `residual_m`. A point whose fourth word is 0 is `filled`, unless no point of the file has
 /// another one: then the file does not tell, and all are `measured`. Throws Error for what is no C3D file, and for one that is cut
 /// off.
-std::unique_ptr<MotionReader> open_c3d(const std::string& path);
+std::unique_ptr<FileReader> open_c3d(const std::string& path);
 /// The same of bytes in memory, which must outlive the reader; `name` stands for the path in messages.
-std::unique_ptr<MotionReader> read_c3d(std::span<const std::byte> bytes, const std::string& name);
+std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name);
 
-/// Writes points as a PC's floats, in mm. A track without label is called by its id. `up` is only said, nothing is turned.
-std::unique_ptr<Sink> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up);
+/// Writes points as a PC's floats, in mm. A track without label is called by its id. The plan's `up` is only said, nothing is
+/// turned.
+std::unique_ptr<Sink> create_c3d(const std::string& path, const WritePlan& plan);
 
 }  // namespace marey::format::motion

@@ -164,7 +164,7 @@ class LayoutFinder {
   Layout layout_;
 };
 
-class C3dReader : public MotionReader {
+class C3dReader : public FileReader {
  public:
   C3dReader(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const std::string& name)
       : file_(std::move(file)), head_(read_c3d_head(bytes, name)), bytes_(bytes, head_.processor) {
@@ -182,7 +182,7 @@ class C3dReader : public MotionReader {
     find_tracks();
   }
 
-  const MotionInfo& info() const override { return info_; }
+  const FileInfo& info() const override { return info_; }
   std::vector<std::string> warnings() const override { return warnings_; }
 
   std::optional<Instant> next() override {
@@ -271,20 +271,20 @@ class C3dReader : public MotionReader {
   C3dBytes bytes_;
   Layout layout_;
   bool tells_measured_ = false;
-  MotionInfo info_;
+  FileInfo info_;
   std::vector<std::string> warnings_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<MotionReader> open_c3d(const std::string& path) {
+std::unique_ptr<FileReader> open_c3d(const std::string& path) {
   auto file = std::make_unique<MappedFile>(path);
   const std::span<const std::byte> bytes = file->bytes();
   return std::make_unique<C3dReader>(std::move(file), bytes, path);
 }
 
-std::unique_ptr<MotionReader> read_c3d(std::span<const std::byte> bytes, const std::string& name) {
+std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name) {
   return std::make_unique<C3dReader>(nullptr, bytes, name);
 }
 

@@ -10,6 +10,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/motion/c3d.h"
 #include "marey/format/motion/c3d_parameters.h"
+#include "marey/format/motion/point_sink.h"
 
 namespace marey::format::motion {
 namespace {
@@ -90,10 +91,10 @@ class ParameterSection {
   int group_ = 0;
 };
 
-class C3dWriter : public MotionSink {
+class C3dWriter : public PointSink {
  public:
-  C3dWriter(const std::string& path, const MotionPlan& plan, UpAxis up)
-      : MotionSink(path), plan_(plan), up_(up), points_(plan.info.tracks.size()), next_(plan.first_frame) {
+  C3dWriter(const std::string& path, const WritePlan& plan)
+      : PointSink(path), plan_(plan), points_(plan.info.tracks.size()), next_(plan.first_frame) {
     if (points_ > kMostPoints) {
       throw Error("{}: {} tracks, and a C3D file has room for {}; write fewer", path, points_, kMostPoints);
     }
@@ -118,7 +119,7 @@ class C3dWriter : public MotionSink {
  private:
   void start(const RecordingHeader&) override {
     file_.emplace(path());
-    write_head(up_);
+    write_head(plan_.up);
   }
 
   void put_frame(std::span<const Sample> points) {
@@ -211,8 +212,7 @@ class C3dWriter : public MotionSink {
     }
   }
 
-  MotionPlan plan_;
-  UpAxis up_;
+  WritePlan plan_;
   std::optional<WholeFile> file_;
   std::size_t points_;
   std::int64_t next_;
@@ -223,8 +223,24 @@ class C3dWriter : public MotionSink {
 
 }  // namespace
 
-std::unique_ptr<Sink> create_c3d(const std::string& path, const MotionPlan& plan, UpAxis up) {
-  return std::make_unique<C3dWriter>(path, plan, up);
+std::unique_ptr<Sink> create_c3d(const std::string& path, const WritePlan& plan) {
+  return std::make_unique<C3dWriter>(path, plan);
+}
+
+Format c3d_format() {
+  return {.name = "c3d",
+          .title = "a C3D file",
+          .endings = ".c3d",
+          .holds = Content::space,
+          .detail =
+              "mm; points, residuals in space, the first seven cameras, whether a point was measured. Written as a PC's floats; "
+              "PC, DEC and SGI, integer and real, are read. Analog channels are passed over",
+          .is =
+              [](const Beginning& file) {
+                return file.bytes.size() >= 2 && file.bytes[1] == 0x50 && file.bytes[0] > 0 && !file.bytes.starts_with("PP");
+              },
+          .open = [](const std::string& path, const ReadOptions&) { return motion::open_c3d(path); },
+          .create = [](const std::string& path, const WritePlan& plan) { return motion::create_c3d(path, plan); }};
 }
 
 }  // namespace marey::format::motion

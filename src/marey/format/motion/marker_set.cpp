@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/input_file.h"
 #include "marey/core/text_safety.h"
+#include "marey/format/format.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::motion {
@@ -75,6 +76,40 @@ MarkerSet read_marker_set(const std::string& path) {
   }
   if (set.labels.empty()) throw Error("{}: holds no name; write one a line, or CSV with the header label,x,y,z", path);
   return set;
+}
+
+namespace {
+
+constexpr std::size_t kLongestName = 64;
+
+/// One name a line, or the header label,x,y,z. Asked last: what else may be such a text?
+bool is_labels(const Beginning& file) {
+  if (!file.is_text() || file.text().empty()) return false;
+  if (file.first_line() == "label,x,y,z") return true;
+  int names = 0;  // one alone is any text
+  TextLines lines(file.text());
+  std::string_view line;
+  while (lines.next(line)) {
+    if (line.empty() || line.front() == '#') continue;
+    if (line.size() > kLongestName || line.find_first_of(",;=<>{}[]\"") != std::string_view::npos || number_of(line)) return false;
+    ++names;
+  }
+  return names > 1;
+}
+
+}  // namespace
+
+Format labels_format() {
+  return {.name = "labels",
+          .title = "names of markers",
+          .endings = {},
+          .holds = Content::labels,
+          .detail = "m; one name a line, or `label,x,y,z`: where each marker is at the beginning. For `--labels`",
+          .is = is_labels,
+          .facts = [](const std::string& path) -> std::vector<Fact> {
+            const MarkerSet set = motion::read_marker_set(path);
+            return {{"labels", set.labels}, {"with_places", std::string(set.has_places() ? "yes" : "no")}};
+          }};
 }
 
 }  // namespace marey::format::motion

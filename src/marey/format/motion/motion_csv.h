@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "marey/format/motion/motion.h"
+#include "marey/format/format.h"
 
 namespace marey::format::motion {
 
@@ -13,19 +13,19 @@ namespace marey::format::motion {
 /// Tidy: one row a point, with a header. `frame` (from 0), `x`, `y`, `z` (m) and one of `id` and `label` must be there; `time` (s),
 /// `state` (measured, filled or predicted), `cameras`, `residual_px` and `residual_mm` may be; other columns are passed over. Rows
 /// in any order.
-std::unique_ptr<MotionReader> open_tidy_csv(const std::string& path);
-std::unique_ptr<MotionReader> read_tidy_csv(std::string_view text, const std::string& name);
+std::unique_ptr<FileReader> open_tidy_csv(const std::string& path);
+std::unique_ptr<FileReader> read_tidy_csv(std::string_view text, const std::string& name);
 /// `frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm`: one row a point.
 std::unique_ptr<Sink> create_tidy_csv(const std::string& path);
 
 /// As OptiTrack's Motive exports: markers' positions are read, rotations and errors passed over.
-std::unique_ptr<MotionReader> open_motive_csv(const std::string& path);
-std::unique_ptr<MotionReader> read_motive_csv(std::string_view text, const std::string& name);
+std::unique_ptr<FileReader> open_motive_csv(const std::string& path);
+std::unique_ptr<FileReader> read_motive_csv(std::string_view text, const std::string& name);
 /// The same layout, in m as Motive's default is.
-std::unique_ptr<Sink> create_motive_csv(const std::string& path, const MotionPlan& plan);
+std::unique_ptr<Sink> create_motive_csv(const std::string& path, const WritePlan& plan);
 
 /// As Vicon's Nexus exports: the part that begins with "Trajectories".
-std::unique_ptr<MotionReader> open_nexus_csv(const std::string& path);
-std::unique_ptr<MotionReader> read_nexus_csv(std::string_view text, const std::string& name);
+std::unique_ptr<FileReader> open_nexus_csv(const std::string& path);
+std::unique_ptr<FileReader> read_nexus_csv(std::string_view text, const std::string& name);
 
 }  // namespace marey::format::motion

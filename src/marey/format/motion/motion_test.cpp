@@ -1,5 +1,3 @@
-#include "marey/format/motion/motion.h"
-
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -10,9 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
+#include "marey/format/format.h"
 #include "marey/format/motion/c3d.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/motion/trc.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
 
 #include "support/data.h"
@@ -60,13 +61,23 @@ Recording walk(int markers = 5, int frames = 40, int first = 3) {
   return recording;
 }
 
+const Format& of_points(const char* name) {
+  return *format_named(name, Content::space);
+}
+
+void write_motion(const std::string& path, const char* format, const Recording& recording, UpAxis up = UpAxis::z) {
+  match::GroundMatch whole;
+  whole.recording = recording;
+  write_whole(path, of_points(format), whole, up);
+}
+
 struct Read {
-  MotionInfo info;
+  FileInfo info;
   std::vector<Instant> frames;
   std::vector<std::string> warnings;
 };
 
-Read read_all(MotionReader& reader) {
+Read read_all(FileReader& reader) {
   Read read;
   while (auto frame = reader.next()) read.frames.push_back(std::move(*frame));
   read.info = reader.info();
@@ -75,15 +86,16 @@ Read read_all(MotionReader& reader) {
 }
 
 Read read_all(const std::string& path, UpAxis up = UpAxis::z) {
-  return read_all(*open_motion(path, motion_format_of_content(path).value(), up));
+  return read_all(*open_recording(path, {.metadata = {}, .pitch = {}, .up = up}));
 }
 
-void convert(const std::string& from, const std::string& to, MotionFormat format, UpAxis from_up = UpAxis::z,
+void convert(const std::string& from, const std::string& to, const char* format, UpAxis from_up = UpAxis::z,
              UpAxis to_up = UpAxis::z) {
-  const MotionFormat from_format = motion_format_of_content(from).value();
-  const MotionPlan plan = plan_of(*open_motion(from, from_format, from_up), from);
-  const auto reader = open_motion(from, from_format, from_up);
-  replay(*reader, *create_motion(to, format, plan, to_up));
+  const ReadOptions how{.metadata = {}, .pitch = {}, .up = from_up};
+  WritePlan plan = plan_of(*open_recording(from, how), from);
+  plan.up = to_up;
+  const auto reader = open_recording(from, how);
+  replay(*reader, *create_recording(to, of_points(format), plan));
 }
 
 using Place = std::pair<std::int64_t, std::string>;
@@ -118,16 +130,13 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
   const std::string take = folder_ / "walk.marey";
   take::write_recording(take, walk());
   const Read truth = read_all(take);
-  const std::pair<MotionFormat, const char*> formats[] = {{MotionFormat::c3d, "walk.c3d"},
-                                                          {MotionFormat::trc, "walk.trc"},
-                                                          {MotionFormat::csv, "walk.csv"},
-                                                          {MotionFormat::motive, "walk_motive.csv"},
-                                                          {MotionFormat::take, "copy.marey"}};
+  const std::pair<const char*, const char*> formats[] = {
+      {"c3d", "walk.c3d"}, {"trc", "walk.trc"}, {"csv", "walk.csv"}, {"motive", "walk_motive.csv"}, {"take", "copy.marey"}};
   for (const auto& [format, name] : formats) {
     SCOPED_TRACE(name);
     const std::string path = folder_ / name;
     convert(take, path, format);
-    ASSERT_EQ(motion_format_of_content(path), format);
+    ASSERT_EQ(format_of_content(path)->name, format);
     const Read read = read_all(path);
     EXPECT_TRUE(read.warnings.empty()) << read.warnings.front();
     EXPECT_DOUBLE_EQ(read.info.header.rate_hz, 120);
@@ -139,13 +148,13 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
     EXPECT_NEAR(seconds(read.frames.front().time), 3.0 / 120, 1e-6);
     // And on from there, with the other axis up.
     const std::string turned = folder_ / (std::string("turned_") + name), back = folder_ / "back.csv";
-    if (format == MotionFormat::take) continue;
+    if (std::string_view(format) == "take") continue;
     convert(path, turned, format, UpAxis::z, UpAxis::y);
     const auto first = read_all(turned).frames.front().samples.front().position;
     const auto plain = read.frames.front().samples.front().position;
     EXPECT_NEAR(first.y(), plain.z(), 1e-9) << "what was up is y now";
     EXPECT_NEAR(first.z(), -plain.y(), 1e-9);
-    convert(turned, back, MotionFormat::csv, UpAxis::y, UpAxis::z);
+    convert(turned, back, "csv", UpAxis::y, UpAxis::z);
     expect_same(truth, read_all(back), 1e-9);
   }
 }
@@ -153,7 +162,7 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
 TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
   const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
   take::write_recording(take, walk());
-  convert(take, path, MotionFormat::c3d);
+  convert(take, path, "c3d");
   const auto truth = by_label(read_all(take)), read = by_label(read_all(path));
   for (const auto& [place, point] : truth) {
     const Sample& found = read.at(place);
@@ -167,7 +176,7 @@ TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
 TEST_F(Motion, C3dHoldsMoreThan255Markers) {
   const std::string take = folder_ / "many.marey", path = folder_ / "many.c3d";
   take::write_recording(take, walk(600, 5));
-  convert(take, path, MotionFormat::c3d);
+  convert(take, path, "c3d");
   const Read read = read_all(path);
   ASSERT_EQ(read.info.tracks.size(), 600U);
   EXPECT_EQ(read.info.tracks[599].label, "marker, \"600\"");
@@ -178,7 +187,7 @@ TEST_F(Motion, C3dHoldsMoreThan65535Frames) {
   const std::string take = folder_ / "long.marey", path = folder_ / "long.c3d";
   for (const int first : {0, 70'000}) {
     take::write_recording(take, walk(1, 70'001, first));
-    convert(take, path, MotionFormat::c3d);
+    convert(take, path, "c3d");
     const Read read = read_all(path);
     EXPECT_EQ(read.frames.size(), 70'001U);
     EXPECT_EQ(read.frames.front().index, first);
@@ -189,7 +198,7 @@ TEST_F(Motion, C3dHoldsMoreThan65535Frames) {
 TEST_F(Motion, C3dThatIsCutOffIsRefused) {
   const std::string take = folder_ / "walk.marey", path = folder_ / "walk.c3d";
   take::write_recording(take, walk());
-  convert(take, path, MotionFormat::c3d);
+  convert(take, path, "c3d");
   const std::string whole = test::read_file(path);
   for (const double share : {0.0, 0.01, 0.2, 0.5, 0.99}) {
     test::write_file(path, whole);
@@ -205,7 +214,7 @@ TEST_F(Motion, EmptyTakesCanBeWritten) {
   take::write_recording(take, empty);
   for (const char* name : {"empty.c3d", "empty.trc", "empty.csv"}) {
     const std::string path = folder_ / name;
-    convert(take, path, motion_format_of_name(name).value());
+    convert(take, path, format_of_name(name, Content::space)->name.data());
     EXPECT_TRUE(read_all(path).frames.empty()) << name;
   }
 }
@@ -213,31 +222,31 @@ TEST_F(Motion, EmptyTakesCanBeWritten) {
 TEST_F(Motion, FinishedRecordingsAreWrittenAsTheyAre) {
   const Recording recording = walk();
   take::write_recording(folder_ / "walk.marey", recording);
-  for (const MotionFormat format : {MotionFormat::c3d, MotionFormat::trc, MotionFormat::csv, MotionFormat::motive}) {
+  for (const char* format : {"c3d", "trc", "csv", "motive"}) {
     convert(folder_ / "walk.marey", folder_ / "converted", format);
     write_motion(folder_ / "written", format, recording);
-    if (format == MotionFormat::trc) continue;  // says its own name
-    EXPECT_EQ(test::read_file(folder_ / "written"), test::read_file(folder_ / "converted")) << motion_format_name(format);
+    if (std::string_view(format) == "trc") continue;  // says its own name
+    EXPECT_EQ(test::read_file(folder_ / "written"), test::read_file(folder_ / "converted")) << format;
   }
 }
 
 TEST_F(Motion, TidyCsvIsWrittenWhileRecording) {
-  EXPECT_TRUE(written_while_recording(MotionFormat::csv));
-  EXPECT_FALSE(written_while_recording(MotionFormat::c3d));
+  EXPECT_TRUE(of_points("csv").while_recording);
+  EXPECT_FALSE(of_points("c3d").while_recording);
   const Recording recording = walk();
-  const auto sink = create_motion(folder_ / "live.csv", MotionFormat::csv, {});
+  const auto sink = create_recording(folder_ / "live.csv", of_points("csv"));
   sink->begin(recording.header);
   InstantsOf instants(recording);
   while (const auto instant = instants.next()) sink->write(*instant);
   sink->finish();
-  write_motion(folder_ / "whole.csv", MotionFormat::csv, recording);
+  write_motion(folder_ / "whole.csv", "csv", recording);
   EXPECT_EQ(test::read_file(folder_ / "live.csv"), test::read_file(folder_ / "whole.csv"));
 }
 
 TEST_F(Motion, WhatIsNotInSpaceIsRefused) {
   Recording recording = walk();
   recording.header.frame.kind = FrameOfReference::Kind::ground;
-  for (const MotionFormat format : {MotionFormat::c3d, MotionFormat::trc, MotionFormat::csv, MotionFormat::motive}) {
+  for (const char* format : {"c3d", "trc", "csv", "motive"}) {
     const std::string path = folder_ / "ground";
     EXPECT_NE(error_of([&] { write_motion(path, format, recording); }).find("points in space"), std::string::npos);
     EXPECT_FALSE(fs::exists(path));
@@ -252,9 +261,9 @@ TEST_F(Motion, TakesAreNeverTurned) {
   sample.position = {1, 2, 3};
   recording.add(instant);
   const auto take = folder_ / "walk.marey", csv = folder_ / "walk.csv";
-  write_motion(take, MotionFormat::take, recording, UpAxis::y);
+  write_motion(take, "take", recording, UpAxis::y);
   EXPECT_EQ(take::read_recording(take).tracks().at(0).position(0), Vector<3>(1, 2, 3)) << "a take is never turned";
-  write_motion(csv, MotionFormat::csv, recording, UpAxis::y);
+  write_motion(csv, "csv", recording, UpAxis::y);
   EXPECT_EQ(read_all(csv).frames.at(0).samples.at(0).position, Vector<3>(1, 3, -2));
   EXPECT_EQ(read_all(csv, UpAxis::y).frames.at(0).samples.at(0).position, Vector<3>(1, 2, 3));
 }
@@ -262,8 +271,7 @@ TEST_F(Motion, TakesAreNeverTurned) {
 TEST_F(Motion, GapsOfMillionsOfFramesAreAMistake) {
   const std::string path = folder_ / "slip.csv";
   test::write_file(path, "frame,time,id,label,x,y,z\n0,0,1,a,1,2,3\n400000000,1,1,a,1,2,3\n");
-  EXPECT_NE(error_of([&] { plan_of(*open_motion(path, MotionFormat::csv), path); }).find("a number must be wrong"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { plan_of(*open_recording(path), path); }).find("a number must be wrong"), std::string::npos);
 }
 
 // ----- text

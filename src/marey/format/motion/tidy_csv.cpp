@@ -16,6 +16,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/motion_csv.h"
+#include "marey/format/motion/point_sink.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::motion {
@@ -27,7 +28,7 @@ constexpr std::array<std::string_view, column_count> kColumns{"frame", "time",  
 constexpr std::array<std::string_view, 4> kStates{"measured", "filled", "predicted", "solved"};
 constexpr double kLargest = 1e9;
 
-class TidyReader : public MotionReader {
+class TidyReader : public FileReader {
  public:
   TidyReader(std::unique_ptr<MappedFile> file, std::string_view text, std::string name)
       : file_(std::move(file)), name_(std::move(name)), lines_(text) {
@@ -37,7 +38,7 @@ class TidyReader : public MotionReader {
     lines_.go_to(rows_, 2);
   }
 
-  const MotionInfo& info() const override { return info_; }
+  const FileInfo& info() const override { return info_; }
 
   std::optional<Instant> next() override {
     Instant result;
@@ -227,12 +228,12 @@ class TidyReader : public MotionReader {
   std::vector<Place> order_;  // empty where rows come in the order of frames
   std::size_t at_row_ = 0;
   bool pending_ = false;  // the row at hand belongs to the next frame
-  MotionInfo info_;
+  FileInfo info_;
 };
 
-class TidyWriter : public MotionSink {
+class TidyWriter : public PointSink {
  public:
-  using MotionSink::MotionSink;
+  using PointSink::PointSink;
 
   void write(const Instant& frame) override {
     for (const TrackName& track : frame.named) labels_[track.id] = quoted_field(track.label);
@@ -272,16 +273,35 @@ class TidyWriter : public MotionSink {
 
 }  // namespace
 
-std::unique_ptr<MotionReader> open_tidy_csv(const std::string& path) {
+std::unique_ptr<FileReader> open_tidy_csv(const std::string& path) {
   auto file = std::make_unique<MappedFile>(path);
   const std::string_view text = file->text();
   return std::make_unique<TidyReader>(std::move(file), text, path);
 }
-std::unique_ptr<MotionReader> read_tidy_csv(std::string_view text, const std::string& name) {
+std::unique_ptr<FileReader> read_tidy_csv(std::string_view text, const std::string& name) {
   return std::make_unique<TidyReader>(nullptr, text, name);
 }
 std::unique_ptr<Sink> create_tidy_csv(const std::string& path) {
   return std::make_unique<TidyWriter>(path);
+}
+
+Format tidy_csv_format() {
+  return {.name = "csv",
+          .title = "a CSV file of points, one row each",
+          .endings = ".csv",
+          .holds = Content::space,
+          .detail =
+              "m; one row a point: `frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm`; frames and cameras count "
+              "from 0, the residual is in mm. Read with its columns and rows in any order; `frame,x,y,z` and one of `id`, "
+              "`label` must be there",
+          .is =
+              [](const Beginning& file) {
+                const std::string_view line = file.first_line();
+                return line.starts_with("frame,") || line.find(",frame,") != std::string_view::npos;
+              },
+          .open = [](const std::string& path, const ReadOptions&) { return motion::open_tidy_csv(path); },
+          .create = [](const std::string& path, const WritePlan&) { return motion::create_tidy_csv(path); },
+          .while_recording = true};
 }
 
 }  // namespace marey::format::motion

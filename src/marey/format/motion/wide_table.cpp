@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "marey/core/error.h"
 
 namespace marey::format::motion {
@@ -17,7 +19,39 @@ bool is_missing(std::string_view field) {
 
 }  // namespace
 
-WideTableReader::WideTableReader(std::unique_ptr<MappedFile> file, std::string name, WideTable table, MotionInfo info,
+bool WideTableHead::next_line() {
+  std::string_view text;
+  if (!lines_.next(text)) return false;
+  split_fields(text, table_.separator, fields_);
+  return true;
+}
+
+const std::vector<std::string_view>& WideTableHead::line(const char* which) {
+  if (!next_line()) throw Error("{}: ends before {}; the file is cut off", name_, which);
+  return fields_;
+}
+
+void WideTableHead::set_rate(std::optional<double> rate_hz, const std::string& otherwise) {
+  if (!rate_hz || *rate_hz <= 1e-6 || *rate_hz > 1e9) fail(otherwise);
+  info_.header.rate_hz = *rate_hz;
+}
+
+void WideTableHead::add_marker(std::string label, std::size_t x_column) {
+  info_.tracks.push_back({TrackId(static_cast<int>(info_.tracks.size()) + 1), std::move(label), {}});
+  table_.x_columns.push_back(x_column);
+}
+
+void WideTableHead::fail(const std::string& what) const {
+  throw Error("{}:{}: {}", name_, std::max<std::size_t>(lines_.number(), 1), what);
+}
+
+std::unique_ptr<FileReader> WideTableHead::rows_of(std::unique_ptr<MappedFile> file) {
+  if (table_.rows.data() == nullptr) table_.rows = lines_.rest();
+  table_.first_line = lines_.number() + 1;
+  return std::make_unique<WideTableReader>(std::move(file), name_, std::move(table_), std::move(info_), std::move(warnings_));
+}
+
+WideTableReader::WideTableReader(std::unique_ptr<MappedFile> file, std::string name, WideTable table, FileInfo info,
                                  std::vector<std::string> warnings)
     : file_(std::move(file)),
       name_(std::move(name)),
@@ -95,6 +129,44 @@ std::optional<Sample> WideTableReader::point_at(const std::vector<std::string_vi
 
 void WideTableReader::fail(const std::string& what) const {
   throw Error("{}:{}: {}", name_, lines_.number(), what);
+}
+
+WideTableWriter::WideTableWriter(const std::string& path, const WritePlan& plan)
+    : PointSink(path), plan_(plan), row_(plan.info.tracks.size()) {
+  for (std::size_t i = 0; i < row_.size(); ++i) column_[plan.info.tracks[i].id] = i;
+}
+
+void WideTableWriter::start(const RecordingHeader& header) {
+  file_.emplace(path());
+  file_->write(head(header));
+  rate_hz_ = header.rate_hz;
+  next_ = plan_.first_frame;
+}
+
+void WideTableWriter::write(const Instant& frame) {
+  fill_to(frame.index);
+  put(frame.index, frame.time, frame.samples);
+}
+
+void WideTableWriter::finish() {
+  fill_to(plan_.last_frame + 1);
+  file_->finish();
+}
+
+void WideTableWriter::fill_to(std::int64_t index) {
+  while (next_ < index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+}
+
+void WideTableWriter::put(std::int64_t index, Timestamp time, std::span<const Sample> points) {
+  std::fill(row_.begin(), row_.end(), nullptr);
+  for (const Sample& point : points) {
+    const auto column = column_.find(point.track);
+    if (column != column_.end()) row_[column->second] = &point;
+  }
+  text_.clear();
+  append_row(text_, index, time, row_);
+  file_->write(text_);
+  next_ = index + 1;
 }
 
 }  // namespace marey::format::motion

@@ -12,7 +12,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/rig_section.h"
 
 namespace marey::format::rig {
@@ -203,6 +203,20 @@ void write_aniposelib_rig(const Rig& rig, const std::string& path) {
   WholeFile file(path);
   file.write(text);
   file.finish();
+}
+
+Format aniposelib_format() {
+  return {.name = "aniposelib",
+          .title = "a calibration of aniposelib or Caliscope",
+          .endings = {},
+          .holds = Content::rig,
+          .detail = "TOML of aniposelib and Caliscope; its unit is not said in it: see [the rig](rig.md)",
+          .is =
+              [](const Beginning& file) {
+                return file.is_text() && !rig::is_xml(file) && file.has("matrix") && (file.has("[cam") || file.has("distortions"));
+              },
+          .read_rig = rig::read_aniposelib_rig,
+          .write_rig = rig::write_aniposelib_rig};
 }
 
 }  // namespace marey::format::rig

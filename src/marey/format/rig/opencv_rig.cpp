@@ -13,7 +13,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
@@ -240,6 +240,23 @@ void write_opencv_rig(const Rig& rig, const std::string& path) {
   WholeFile whole(path);
   whole.write(file.releaseAndGetString());
   whole.finish();
+}
+
+Format opencv_format() {
+  return {.name = "opencv",
+          .title = "a calibration of OpenCV",
+          .endings = ".yml .yaml .json",
+          .holds = Content::rig,
+          .detail = "OpenCV's FileStorage: YAML, XML or JSON; lenses and poses",
+          .is =
+              [](const Beginning& file) {
+                if (!file.is_text()) return false;
+                if (file.has("<opencv_storage") || file.bytes.starts_with("%YAML") || file.bytes.starts_with("---")) return true;
+                const bool yaml = file.path.ends_with(".yml") || file.path.ends_with(".yaml");
+                return !rig::is_xml(file) && (yaml || (file.path.ends_with(".json") && file.has("matrix")));
+              },
+          .read_rig = rig::read_opencv_rig,
+          .write_rig = rig::write_opencv_rig};
 }
 
 }  // namespace marey::format::rig

@@ -6,7 +6,7 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/read_file.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
@@ -139,6 +139,20 @@ void write_qualisys_rig(const Rig& rig, const std::string& path) {
   WholeFile file(path);
   file.write(to_text(document));
   file.finish();
+}
+
+Format qualisys_format() {
+  return {.name = "qualisys",
+          .title = "a calibration of Qualisys",
+          .endings = ".qca.txt",
+          .holds = Content::rig,
+          .detail = "mm; lenses and poses",
+          .is =
+              [](const Beginning& file) {
+                return file.is_text() && rig::is_xml(file) && file.has("<calibration") && file.has("<camera");
+              },
+          .read_rig = rig::read_qualisys_rig,
+          .write_rig = rig::write_qualisys_rig};
 }
 
 }  // namespace marey::format::rig

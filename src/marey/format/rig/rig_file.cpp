@@ -15,6 +15,7 @@
 #include "marey/core/error.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/rig_section.h"
 
 namespace marey::format::rig {
@@ -237,6 +238,23 @@ Rig read_rig(const std::string& path) {
   const std::string text = read_file(path);
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return parse_rig(text, path, folder.empty() ? "." : folder);
+}
+
+Format marey_format() {
+  return {.name = "marey",
+          .title = "a rig",
+          .endings = ".toml",
+          .holds = Content::rig,
+          .detail = "m, z up; everything: see [the rig](rig.md)",
+          .is =
+              [](const Beginning& file) {
+                if (!file.is_text() || rig::is_xml(file)) return false;
+                if (file.has("[[camera]]") || file.has("[world]")) return true;
+                const bool aniposelib = file.has("matrix") && (file.has("[cam") || file.has("distortions"));
+                return file.path.ends_with(".toml") && !aniposelib;
+              },
+          .read_rig = rig::read_rig,
+          .write_rig = rig::write_rig};
 }
 
 }  // namespace marey::format::rig

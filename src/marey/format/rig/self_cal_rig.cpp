@@ -9,7 +9,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/geometry/lens_fit.h"
 
@@ -166,6 +166,17 @@ void write_self_cal_rig(const Rig& rig, const std::string& path) {
   write_text(folder / "Res.dat", sizes);
   write_text(folder / "camera_order.txt", names);
   write_text(folder / "calibration_units.txt", "meters\n");
+}
+
+Format self_cal_format() {
+  return {.name = "multicamselfcal",
+          .title = "a folder of MultiCamSelfCal",
+          .endings = "/",
+          .holds = Content::rig,
+          .detail = "m as its units say; a folder: lenses, projections, and what the cameras saw",
+          .is = [](const Beginning& file) { return file.folder && rig::SelfCalFolder::is_one(file.path); },
+          .read_rig = rig::read_self_cal_rig,
+          .write_rig = rig::write_self_cal_rig};
 }
 
 }  // namespace marey::format::rig

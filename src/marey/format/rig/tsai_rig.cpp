@@ -9,7 +9,7 @@
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/read_file.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 #include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
@@ -90,6 +90,19 @@ void write_tsai_rig(const Rig& rig, const std::string& path) {
                   kPitch, kPitch, kPitch, focal, tsai->distortion[0] / (focal * focal), tsai->principal.x(), tsai->principal.y(),
                   tsai->focal.x() / tsai->focal.y(), t.x(), t.y(), t.z(), rx, ry, rz));
   file.finish();
+}
+
+Format tsai_format() {
+  return {
+      .name = "tsai",
+      .title = "a camera in Tsai's model",
+      .endings = ".xml",
+      .holds = Content::rig,
+      .detail = "mm; one camera, as PETS gives it",
+      .is =
+          [](const Beginning& file) { return file.is_text() && rig::is_xml(file) && file.has("<Camera") && file.has("<Geometry"); },
+      .read_rig = rig::read_tsai_rig,
+      .write_rig = rig::write_tsai_rig};
 }
 
 }  // namespace marey::format::rig

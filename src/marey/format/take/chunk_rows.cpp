@@ -215,13 +215,6 @@ std::optional<ChunkReader::Row> ChunkReader::find(std::int64_t index) {
   return row;
 }
 
-ChunkReader::Row ChunkReader::find_by_id(std::int64_t chunk_id) {
-  Statement statement(*database_, "SELECT id, first_index, last_index, instants FROM chunk WHERE id = ?");
-  statement.bind(0, chunk_id);
-  if (!statement.step()) throw Error("{}: is damaged (chunk {} is missing); restore it from a copy", database_->path(), chunk_id);
-  return checked_row(statement);
-}
-
 void ChunkReader::read_moments(const Row& row, std::vector<Recording::Moment>& moments) {
   moments_.reset();
   moments_.bind(0, row.id);

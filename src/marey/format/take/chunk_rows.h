@@ -45,8 +45,6 @@ class ChunkReader {
   std::vector<Row> rows();
   /// The first chunk that ends at this index or later.
   std::optional<Row> find(std::int64_t index);
-  /// Throws Error where it is not there.
-  Row find_by_id(std::int64_t id);
   /// These append to what is there; `at` goes on counting from the instants that are there.
   void read(const Row& row, bool with_seen, Chunk& chunk);
   void read_moments(const Row& row, std::vector<Recording::Moment>& moments);

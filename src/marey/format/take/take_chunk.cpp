@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -36,7 +38,32 @@ typename Map::mapped_type& entry_of(Map& map, typename Map::iterator& hint, cons
   return (hint++)->second;
 }
 
+void append_column(const OptionalColumn& from, std::size_t first, OptionalColumn& to) {
+  if (from.empty()) return;
+  std::vector<bool> known;
+  if (!from.all_known(from.size())) {
+    for (std::size_t row = 0; row < from.size(); ++row) known.push_back(from.known(row));
+  }
+  to.add_rows(first, from.values(), known);
+}
+
+std::vector<std::int32_t> moved_by(std::int32_t offset, std::span<const std::int32_t> at) {
+  std::vector<std::int32_t> moved(at.begin(), at.end());
+  for (std::int32_t& instant : moved) instant += offset;
+  return moved;
+}
+
 }  // namespace
+
+void SeenColumns::append(const SeenColumns& other, std::int32_t offset) {
+  append_column(other.sigma, size(), sigma);
+  append_column(other.area, size(), area);
+  const auto put = [](auto& column, const auto& more) { column.insert(column.end(), more.begin(), more.end()); };
+  put(at, moved_by(offset, other.at));
+  put(x, other.x);
+  put(y, other.y);
+  put(track, other.track);
+}
 
 void SeenColumns::add(std::int32_t instant, const SeenPoint& point) {
   const std::size_t row = at.size();
@@ -87,6 +114,25 @@ void Chunk::add(const Instant& instant, int dimensions) {
     seen_by->add(at, point);
   }
   bytes += 16 + 32 * instant.seen.size();
+}
+
+void Chunk::append(const Chunk& other, int dimensions) {
+  const auto offset = static_cast<std::int32_t>(moments.size());
+  moments.insert(moments.end(), other.moments.begin(), other.moments.end());
+  bytes += other.bytes;
+  for (const auto& [id, columns] : other.tracks) {
+    if (columns.empty()) continue;
+    TrackColumns& to = track(id, dimensions);
+    const std::size_t first = to.size();
+    const std::vector<std::int32_t> at = moved_by(offset, columns.at());
+    to.add_rows({at, columns.x(), columns.y(), columns.z(), columns.provenance(), columns.cameras()});
+    for (int i = 0; i < TrackColumns::kOptionals; ++i) {
+      const auto which = static_cast<TrackColumns::Optional>(i);
+      append_column(columns.column(which), first, to.column(which));
+    }
+    for (const auto& [row, outline] : columns.outlines()) to.set_outline(first + row, outline);
+  }
+  for (const auto& [camera, columns] : other.seen) seen[camera].append(columns, offset);
 }
 
 void Chunk::clear() {

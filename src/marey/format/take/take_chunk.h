@@ -22,6 +22,8 @@ struct SeenColumns {
   std::size_t size() const { return at.size(); }
   void add(std::int32_t instant, const SeenPoint& point);
   SeenPoint point(CameraId camera, std::size_t row) const;
+  /// `offset` is added to the instants.
+  void append(const SeenColumns& other, std::int32_t offset);
   void clear();
 };
 
@@ -34,6 +36,8 @@ struct Chunk {
 
   bool empty() const { return moments.empty(); }
   void add(const Instant& instant, int dimensions);
+  /// What another one holds, whose instants are later.
+  void append(const Chunk& other, int dimensions);
   TrackColumns& track(TrackId id, int dimensions);
   void clear();
 };

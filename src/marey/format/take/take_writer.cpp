@@ -1,9 +1,9 @@
 // A take grows at its end only: what is recorded is gathered in columns for half a second, then written as one chunk in one
 // transaction, which adds pages and touches few. SQLite's rollback journal then holds next to nothing, the file is one and complete
 // after each transaction, and a program killed between two leaves a journal that the next reader rolls back. (A write-ahead log
-// would write everything twice, and leave two files more beside the take.) When the take is finished, short chunks are joined to
-// one of about a minute, so that a track's path lies in few places. What comes faster than real time comes in long chunks by
-// itself.
+// would write everything twice, and leave two files more beside the take.) Short chunks are replaced by one of about a minute when
+// there are as many, and at the end, so that a track's path lies in few places; what they hold is kept in memory until then. What
+// comes faster than real time comes in long chunks by itself.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/take/chunk_joiner.h"
 #include "marey/format/take/chunk_rows.h"
 #include "marey/format/take/frame_names.h"
 #include "marey/format/take/sqlite.h"
@@ -29,8 +30,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
-constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
-constexpr Duration kLongestChunk = std::chrono::seconds(60);
 
 /// Clears the way for a new take. What is no take is somebody's work, named by mistake.
 std::string place_for(const std::string& path) {
@@ -70,7 +69,8 @@ class TakeWriter::Recorder {
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
         set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         add_edit_(database_, "INSERT INTO edit VALUES (?, ?, ?, ?)"),
-        chunks_(database_) {
+        chunks_(database_),
+        joiner_(dimensions_) {
     open_ = true;
     began_ = Clock::now();
     set("name", header.name.empty() ? fs::path(path).stem().string() : header.name);
@@ -128,28 +128,26 @@ class TakeWriter::Recorder {
     begin();
     write_counts();
     commit();
+    if (joiner_.ready()) join_chunks();
   }
 
   void finish() {
     cut();
     begin();
     write_counts();
-    if (has_groups()) {
+    joiner_.seal();
+    if (joiner_.ready()) {
       commit();
       join_chunks();
-      begin();
     }
+    begin();
+    if (joined_) database_.run("PRAGMA incremental_vacuum");
     set("complete", std::int64_t{1});
     commit();
     if (open_) throw Error("{}: another program keeps reading it, so its end could not be written; close that program", path_);
   }
 
  private:
-  struct Written {
-    std::int64_t id;
-    Timestamp begin, end;
-    std::size_t bytes;
-  };
   struct Counts {
     RecordingSummary::TrackCount count;
     bool changed = true;
@@ -251,7 +249,7 @@ class TakeWriter::Recorder {
     if (next_id_ == kMostChunks) throw Error("{}: is too long to go on; begin another take", path_);
     const FailureMark mark(broken_);
     chunks_.write(next_id_, chunk_);
-    chunks_written_.push_back({next_id_++, chunk_.moments.front().time, chunk_.moments.back().time, chunk_.bytes});
+    joiner_.add(next_id_++, chunk_);
     written_ += chunk_.bytes;
     chunk_.clear();
   }
@@ -301,60 +299,20 @@ class TakeWriter::Recorder {
     }
   }
 
-  /// A take is whole without this: where it fails (a full disk), the short chunks stay.
+  /// Each group in a transaction of its own. A take is whole without this: where it fails (a full disk), the short chunks stay.
   void join_chunks() {
-    if (open_) return;
     try {
-      ChunkReader reader(database_, dimensions_);
-      bool joined = false;
-      for (std::size_t first = 0, end = 0; first < chunks_written_.size(); first = end) {
-        end = end_of_group(first);
-        if (end - first < 2) continue;
-        join(reader, first, end);
-        joined = true;
-        if (!database_.commit()) return;
-        open_ = false;
+      while (!open_ && joiner_.ready()) {
+        begin();
+        joiner_.join(chunks_, next_id_++);
+        joined_ = true;
+        if (database_.commit()) open_ = false;
       }
-      if (!joined) return;
-      begin();
-      database_.run("PRAGMA incremental_vacuum");
     } catch (const Error&) {
       database_.roll_back();
       open_ = false;
+      joiner_.forget();
     }
-  }
-
-  bool has_groups() const {
-    for (std::size_t first = 0, end = 0; first < chunks_written_.size(); first = end) {
-      end = end_of_group(first);
-      if (end - first > 1) return true;
-    }
-    return false;
-  }
-
-  std::size_t end_of_group(std::size_t first) const {
-    std::size_t bytes = 0, end = first;
-    while (end < chunks_written_.size()) {
-      const Written& next = chunks_written_[end];
-      bytes += next.bytes;
-      if (end > first && (bytes > kLargestChunk || next.end - chunks_written_[first].begin > kLongestChunk)) break;
-      ++end;
-    }
-    return end;
-  }
-
-  /// The new rows come before the old ones go, so that they take the pages that the group before has left.
-  void join(ChunkReader& reader, std::size_t first, std::size_t end) {
-    begin();
-    chunk_.clear();
-    for (std::size_t i = first; i < end; ++i) {
-      const auto row = reader.find_by_id(chunks_written_[i].id);
-      reader.read(row, true, chunk_);
-    }
-    for (std::size_t i = first; i < end; ++i) chunks_.remove_instants(chunks_written_[i].id);
-    chunks_.write(next_id_++, chunk_);
-    for (std::size_t i = first; i < end; ++i) chunks_.remove_rows(chunks_written_[i].id);
-    chunk_.clear();
   }
 
   std::string path_;
@@ -370,8 +328,9 @@ class TakeWriter::Recorder {
   Clock::time_point began_;
   std::size_t written_ = 0;  // within the transaction
   Chunk chunk_;
+  ChunkJoiner joiner_;
+  bool joined_ = false;
   std::int64_t next_id_ = 1;
-  std::vector<Written> chunks_written_;
   std::int64_t instants_ = 0, samples_ = 0, seen_ = 0;
   std::optional<std::int64_t> first_index_, last_index_;
   std::map<TrackId, Counts> tracks_;

@@ -1,28 +1,27 @@
 #include "marey/format/tracks/track_file.h"
 
-#include <array>
-#include <cassert>
+#include <algorithm>
+#include <cstdint>
 #include <iterator>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/format/take/take_file.h"
+#include "marey/format/format.h"
+#include "marey/format/match/ground_builder.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/nesting.h"
+#include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/format/tracks/mot.h"
 #include "marey/format/tracks/outline_json.h"
 
 namespace marey::format::tracks {
 namespace {
-
-struct NamedFormat {
-  TrackFormat format;
-  std::string_view name;
-  std::string_view ending;
-};
-constexpr std::array kFormats{NamedFormat{TrackFormat::mot, "mot", ".txt"}, NamedFormat{TrackFormat::csv, "csv", ".csv"},
-                              NamedFormat{TrackFormat::jsonl, "jsonl", ".jsonl"}, NamedFormat{TrackFormat::take, "take", ".marey"}};
 
 std::string_view state_of(const Sample& sample) {
   return sample.measured() ? "observed" : "predicted";
@@ -73,48 +72,20 @@ void append_json(std::string& lines, const Instant& instant, const Sample& sampl
   lines += "}\n";
 }
 
+template <TrackText text>
+std::unique_ptr<Sink> create(const std::string& path, const WritePlan&) {
+  return std::make_unique<TrackFile>(path, text);
+}
+
 }  // namespace
 
-std::string track_format_names() {
-  std::string names;
-  for (const NamedFormat& format : kFormats) names.append(names.empty() ? "" : ", ").append(format.name);
-  return names;
-}
-
-TrackFormat parse_track_format(std::string_view name) {
-  for (const NamedFormat& format : kFormats) {
-    if (format.name == name) return format.format;
-  }
-  throw Error("\"{}\" is no format of tracks; these are: {}", name, track_format_names());
-}
-
-std::optional<TrackFormat> track_format_of(std::string_view path) {
-  for (const NamedFormat& format : kFormats) {
-    if (path.ends_with(format.ending)) return format.format;
-  }
-  return std::nullopt;
-}
-
-std::string_view ending_of(TrackFormat format) {
-  for (const NamedFormat& named : kFormats) {
-    if (named.format == format) return named.ending;
-  }
-  return {};
-}
-
-std::unique_ptr<Sink> create_tracks(const std::string& path, TrackFormat format) {
-  if (format == TrackFormat::take) return std::make_unique<take::TakeWriter>(path);
-  return std::make_unique<TrackFile>(path, format);
-}
-
-TrackFile::TrackFile(const std::string& path, TrackFormat format) : path_(path), file_(path), format_(format) {}
+TrackFile::TrackFile(const std::string& path, TrackText text) : path_(path), file_(path), text_(text) {}
 
 Sink::Wants TrackFile::begin(const RecordingHeader& header) {
   if (header.frame.metric()) {
-    throw Error("{}: {} holds boxes in a picture, and these positions are {}", path_, track_format_names(),
-                to_string(header.frame));
+    throw Error("{}: such a file holds boxes in a picture, and these positions are {}", path_, to_string(header.frame));
   }
-  if (format_ == TrackFormat::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
+  if (text_ == TrackText::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
   return {};
 }
 
@@ -122,21 +93,178 @@ void TrackFile::write(const Instant& instant) {
   names_.add(instant.named);
   lines_.clear();
   for (const Sample& sample : instant.samples) {
-    switch (format_) {
-      case TrackFormat::mot:
+    switch (text_) {
+      case TrackText::mot:
         append_mot(lines_, instant, sample);
         break;
-      case TrackFormat::csv:
+      case TrackText::csv:
         append_csv(lines_, instant, sample, names_.label(sample.track));
         break;
-      case TrackFormat::jsonl:
+      case TrackText::jsonl:
         append_json(lines_, instant, sample, names_.label(sample.track));
         break;
-      case TrackFormat::take:
-        assert(!"a take is no text: create_tracks knows its writer");
     }
   }
   file_.write(lines_);
+}
+
+namespace {
+
+match::GroundMatch in_picture(double rate_hz) {
+  match::GroundMatch match;
+  match.recording.header.frame.kind = FrameOfReference::Kind::image;
+  match.recording.header.rate_hz = rate_hz;
+  return match;
+}
+
+match::GroundMatch read_mot_tracks(const std::string& path, const ReadOptions& options) {
+  MotTable table = read_mot(path, MotKind::tracks);
+  match::GroundMatch match = in_picture(options.rate_hz);
+  match::GroundBuilder builder(path);
+  for (const LabelledBox& box : table.boxes) {
+    builder.add(
+        builder.person(std::to_string(box.id), box.id, {}, {}),
+        {.frame = box.frame, .time = box.frame / options.rate_hz, .place = box.box.centre(), .box = box.box, .score = box.score});
+  }
+  match.order = builder.finish(match.recording);
+  match.warnings = std::move(table.warnings);
+  return match;
+}
+
+/// Lines of JSON as TrackFile writes them. Outlines are passed over.
+class JsonLines {
+ public:
+  explicit JsonLines(const std::string& path) : path_(path), builder_(path) {}
+
+  match::GroundMatch read(const std::string& text, double rate_hz) {
+    match::GroundMatch match = in_picture(rate_hz);
+    for_each_line(text, path_, [&](std::string_view line, const std::string& where) {
+      check_nesting(line, Notation::json, where);
+      try {
+        add(nlohmann::json::parse(line));
+      } catch (const nlohmann::json::exception&) {
+        throw Error("{}: is no JSON of a track: frame, time, id, x and y are wanted", where);
+      }
+    });
+    match.order = builder_.finish(match.recording);
+    if (const auto rate = median_rate_hz(match.recording.instants())) match.recording.header.rate_hz = *rate;
+    if (outlines_) match.warnings.push_back(path_ + ": its outlines are passed over");
+    return match;
+  }
+
+ private:
+  void add(const nlohmann::json& line) {
+    const auto number = [&](const char* name) { return line.at(name).get<double>(); };
+    match::GroundBuilder::Row row{.frame = line.at("frame").get<std::int32_t>(),
+                                  .observed = line.value("state", "observed") != "predicted",
+                                  .time = number("time"),
+                                  .place = {number("x"), number("y")}};
+    if (line.contains("vx")) row.velocity = Vector<2>(number("vx"), number("vy"));
+    if (line.contains("left")) row.box = Box{number("left"), number("top"), number("width"), number("height")};
+    const int id = line.at("id").get<int>();
+    if (id < 1 || row.frame < 0 || !row.place.allFinite()) throw Error("{}: track {} in frame {} is nowhere", path_, id, row.frame);
+    outlines_ |= line.contains("outline");
+    builder_.add(builder_.person(id, line.value("label", ""), {}), row);
+  }
+
+  const std::string& path_;
+  match::GroundBuilder builder_;
+  bool outlines_ = false;
+};
+
+/// Six numbers or more on the first lines; `id` says whether an id, the second, may be.
+bool is_mot(const Beginning& file, bool (*id)(double id)) {
+  if (!file.is_text()) return false;
+  TextLines lines(file.text());
+  std::string_view line;
+  std::vector<std::string_view> fields;
+  int count = 0;
+  while (lines.next(line) && lines.ended() && count < 100) {
+    if (line.empty()) continue;
+    split_fields(line, line.find(',') == std::string_view::npos ? ' ' : ',', fields);
+    std::erase(fields, std::string_view());
+    if (fields.size() < 6) return false;
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!number_of(fields[i])) return false;
+    }
+    if (!id(*number_of(fields[1]))) return false;
+    ++count;
+  }
+  return count > 0;
+}
+
+std::vector<Fact> facts_of_detections(const std::string& path) {
+  MotReader reader(path);
+  std::int64_t boxes = 0;
+  std::int32_t first = std::numeric_limits<std::int32_t>::max(), last = 0;
+  double smallest = std::numeric_limits<double>::max(), largest = 0, least = smallest, most = -smallest;
+  while (const auto piece = reader.next()) {
+    for (const LabelledBox& box : *piece) {
+      ++boxes;
+      first = std::min(first, box.frame), last = std::max(last, box.frame);
+      smallest = std::min(smallest, box.box.height), largest = std::max(largest, box.box.height);
+      least = std::min(least, box.score), most = std::max(most, box.score);
+    }
+  }
+  std::vector<Fact> facts{{"boxes", boxes}};
+  if (boxes == 0) return facts;
+  const std::int64_t frames = std::int64_t{last} - first + 1;
+  facts.push_back({"first_frame", std::int64_t{first}, fmt::format("{}, counted from 0", first)});
+  facts.push_back({"last_frame", std::int64_t{last}});
+  facts.push_back({"boxes_a_frame", static_cast<double>(boxes) / static_cast<double>(frames),
+                   fmt::format("{:.1f}", static_cast<double>(boxes) / static_cast<double>(frames))});
+  facts.push_back({"heights_px", fmt::format("{:.0f} to {:.0f}", smallest, largest)});
+  facts.push_back({"scores", fmt::format("{:g} to {:g}", least, most)});
+  return facts;
+}
+
+}  // namespace
+
+Format image_mot_format() {
+  return {.name = "mot",
+          .title = "MOTChallenge text with boxes",
+          .endings = ".txt",
+          .holds = Content::image,
+          .detail = "px; `frame,id,left,top,width,height,score,-1,-1,-1`; frames and pixels count from 1. It has no time: `--rate`",
+          .is = [](const Beginning& file) { return tracks::is_mot(file, [](double id) { return id >= 0; }); },
+          .read = tracks::read_mot_tracks,
+          .create = tracks::create<tracks::TrackText::mot>,
+          .while_recording = true};
+}
+
+Format image_csv_format() {
+  return {.name = "csv",
+          .title = "tracks in a picture, one row each",
+          .endings = ".csv",
+          .holds = Content::image,
+          .detail = "px; `frame,time,id,label,x,y,vx,vy,left,top,width,height,state`; frames and pixels count from 0",
+          .is = [](const Beginning& file) { return match::is_ground_csv(file, true); },
+          .read = match::read_ground_match,
+          .create = tracks::create<tracks::TrackText::csv>,
+          .while_recording = true};
+}
+
+Format jsonl_format() {
+  return {.name = "jsonl",
+          .title = "tracks in a picture, one JSON object a line",
+          .endings = ".jsonl",
+          .holds = Content::image,
+          .detail = "px; the names of the CSV, and `outline` where there is one, which is passed over when read",
+          .is = [](const Beginning& file) { return file.text().starts_with("{\"frame\":"); },
+          .read = [](const std::string& path,
+                     const ReadOptions& options) { return tracks::JsonLines(path).read(read_file(path), options.rate_hz); },
+          .create = tracks::create<tracks::TrackText::jsonl>,
+          .while_recording = true};
+}
+
+Format detections_format() {
+  return {.name = "detections",
+          .title = "another program's detections, MOTChallenge text",
+          .endings = {},
+          .holds = Content::detections,
+          .detail = "px; `frame,-1,left,top,width,height,score`; frames and pixels count from 1. For `marey track --detections`",
+          .is = [](const Beginning& file) { return tracks::is_mot(file, [](double id) { return id == -1; }); },
+          .facts = tracks::facts_of_detections};
 }
 
 }  // namespace marey::format::tracks

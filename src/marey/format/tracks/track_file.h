@@ -1,9 +1,6 @@
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 
 #include "marey/core/sink.h"
 #include "marey/core/track_names.h"
@@ -16,26 +13,13 @@ namespace marey::format::tracks {
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
 ///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
 ///          (outline_json.h)
-///   take   a recording with all that is known (format/take/take_file.h)
-enum class TrackFormat { mot, csv, jsonl, take };
-
-/// Every format's name with commas between, the default one first.
-std::string track_format_names();
-/// Throws Error with the list of names where there is no such format.
-TrackFormat parse_track_format(std::string_view name);
-/// What the file name's ending says: .txt, .csv or .jsonl.
-std::optional<TrackFormat> track_format_of(std::string_view path);
-/// The ending that track_format_of knows it by, with its dot.
-std::string_view ending_of(TrackFormat format);
-
-/// What writes that format at `path`. Throws Error where nothing can be written there.
-std::unique_ptr<Sink> create_tracks(const std::string& path, TrackFormat format);
+enum class TrackText { mot, csv, jsonl };
 
 /// Writes tracks as text as they come; the file is there whole or not at all.
 class TrackFile final : public Sink {
  public:
   /// Throws Error where nothing can be written there.
-  TrackFile(const std::string& path, TrackFormat format);
+  TrackFile(const std::string& path, TrackText format);
 
   std::string name() const override { return path_; }
   /// Throws Error for positions that are not of a picture.
@@ -46,7 +30,7 @@ class TrackFile final : public Sink {
  private:
   std::string path_;
   WholeFile file_;
-  TrackFormat format_;
+  TrackText text_;
   TrackNames names_;
   std::string lines_;
 };

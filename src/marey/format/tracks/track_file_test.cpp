@@ -55,7 +55,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   instant.samples[0].outline = outline;
   instant.samples.pop_back();
   const test::TemporaryFolder folder;
-  TrackFile file(folder / "tracks", TrackFormat::jsonl);
+  TrackFile file(folder / "tracks", TrackText::jsonl);
   file.begin(in_pictures());
   file.write(instant);
   file.finish();
@@ -73,7 +73,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   EXPECT_EQ(json["scale_rate_deviation"], 0.0625);
 }
 
-std::string written(TrackFormat format) {
+std::string written(TrackText format) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", format);
   file.begin(in_pictures());
@@ -84,11 +84,11 @@ std::string written(TrackFormat format) {
 }
 
 TEST(TrackFile, MotCountsFramesAndPixelsFromOneAndHoldsBoxesAlone) {
-  EXPECT_EQ(written(TrackFormat::mot), "7,3,10.00,21.00,8.00,21.00,0.75,-1,-1,-1\n");
+  EXPECT_EQ(written(TrackText::mot), "7,3,10.00,21.00,8.00,21.00,0.75,-1,-1,-1\n");
 }
 
 TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
-  EXPECT_EQ(written(TrackFormat::csv),
+  EXPECT_EQ(written(TrackText::csv),
             "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"
             "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
             "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,,,,,,,predicted\n");
@@ -96,14 +96,14 @@ TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
 
 TEST(TrackFile, PositionsInMetresAreRefused) {
   const test::TemporaryFolder folder;
-  TrackFile file(folder / "tracks", TrackFormat::csv);
+  TrackFile file(folder / "tracks", TrackText::csv);
   RecordingHeader header = in_pictures();
   header.frame.kind = FrameOfReference::Kind::ground;
   EXPECT_THROW(file.begin(header), Error);
 }
 
 TEST(TrackFile, EveryJsonLineIsAnObject) {
-  std::istringstream lines(written(TrackFormat::jsonl));
+  std::istringstream lines(written(TrackText::jsonl));
   std::vector<nlohmann::json> objects;
   for (std::string line; std::getline(lines, line);) objects.push_back(nlohmann::json::parse(line));
   ASSERT_EQ(objects.size(), 2u);
@@ -114,20 +114,6 @@ TEST(TrackFile, EveryJsonLineIsAnObject) {
   EXPECT_FALSE(objects[0].contains("label"));
   EXPECT_EQ(objects[1]["label"], "the \"tall\", one");
   EXPECT_FALSE(objects[1].contains("left"));
-}
-
-TEST(TrackFile, FormatsAreKnownByNameAndByEnding) {
-  for (const TrackFormat format : {TrackFormat::mot, TrackFormat::csv, TrackFormat::jsonl}) {
-    EXPECT_EQ(track_format_of("a/b" + std::string(ending_of(format))), format);
-  }
-  EXPECT_EQ(parse_track_format("jsonl"), TrackFormat::jsonl);
-  EXPECT_EQ(track_format_of("tracks.xml"), std::nullopt);
-  try {
-    parse_track_format("xml");
-    FAIL() << "xml was taken";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("mot, csv, jsonl"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
+#include "marey/format/register.h"
 #include "marey/format/rig/self_cal_folder.h"
 
 #include "support/data.h"
@@ -20,6 +21,14 @@ namespace marey::format::rig {
 namespace {
 
 /// Two cameras that look at the origin from some metres.
+const Format& of_rigs(const char* name) {
+  return *format_named(name, Content::rig);
+}
+
+Rig read_known_rig(const std::string& path) {
+  return format_to_read(path, Content::rig).read_rig(path);
+}
+
 Rig two_cameras() {
   Rig rig;
   for (int i = 0; i < 2; ++i) {
@@ -56,13 +65,13 @@ double apart(const Rig& a, const Rig& b) {
 TEST(RigExchange, EveryFormatReadsBackWhatItWrites) {
   const test::TemporaryFolder folder;
   const Rig rig = two_cameras();
-  const std::vector<std::pair<RigFormat, std::string>> formats{{RigFormat::marey, "a.toml"},  {RigFormat::opencv, "b.yml"},
-                                                               {RigFormat::opencv, "c.json"}, {RigFormat::aniposelib, "d.toml"},
-                                                               {RigFormat::self_cal, "e/"},   {RigFormat::qualisys, "f.qca.txt"}};
+  const std::vector<std::pair<const char*, std::string>> formats{{"marey", "a.toml"},       {"opencv", "b.yml"},
+                                                                 {"opencv", "c.json"},      {"aniposelib", "d.toml"},
+                                                                 {"multicamselfcal", "e/"}, {"qualisys", "f.qca.txt"}};
   for (const auto& [format, name] : formats) {
-    write_rig_as(rig, folder / name, format);
-    EXPECT_EQ(rig_format_of_content(folder / name), format) << name;
-    const Rig again = read_rig_any(folder / name);
+    of_rigs(format).write_rig(rig, folder / name);
+    EXPECT_EQ(format_of_content(folder / name)->name, format) << name;
+    const Rig again = read_known_rig(folder / name);
     EXPECT_EQ(again.cameras[1].name, "right") << name;
     EXPECT_EQ(again.cameras[1].size, cv::Size(1280, 800)) << name;
     EXPECT_LT(apart(rig, again), 1e-6) << name;
@@ -70,44 +79,43 @@ TEST(RigExchange, EveryFormatReadsBackWhatItWrites) {
   Rig one;
   one.cameras.push_back(rig.cameras[0]);
   one.cameras[0].lens = geometry::TsaiLens{{900, 880}, {640, 360}, {0.08}};
-  for (const auto& [format, name, limit] :
-       {std::tuple{RigFormat::tsai, "g.xml", 1e-6}, std::tuple{RigFormat::opencv, "h.yml", 0.05}}) {
-    write_rig_as(one, folder / name, format);
-    EXPECT_LT(apart(one, read_rig_any(folder / name)), limit) << name;
+  for (const auto& [format, name, limit] : {std::tuple{"tsai", "g.xml", 1e-6}, std::tuple{"opencv", "h.yml", 0.05}}) {
+    of_rigs(format).write_rig(one, folder / name);
+    EXPECT_LT(apart(one, read_known_rig(folder / name)), limit) << name;
   }
   one.cameras[0].lens = geometry::FisheyeLens{{700, 710}, {640, 360}, {0.02, -0.01, 0.003, 0.001}};
-  for (const auto& [format, name] : {std::pair{RigFormat::opencv, "i.yml"}, std::pair{RigFormat::aniposelib, "j.toml"}}) {
-    write_rig_as(one, folder / name, format);
-    EXPECT_LT(apart(one, read_rig_any(folder / name)), 1e-6) << name;
+  for (const auto& [format, name] : {std::pair{"opencv", "i.yml"}, std::pair{"aniposelib", "j.toml"}}) {
+    of_rigs(format).write_rig(one, folder / name);
+    EXPECT_LT(apart(one, read_known_rig(folder / name)), 1e-6) << name;
   }
 }
 
 TEST(RigExchange, WhatAFormatCannotHoldIsSaid) {
   const test::TemporaryFolder folder;
   Rig rig = two_cameras();
-  EXPECT_THROW(write_rig_as(rig, folder / "a.xml", RigFormat::tsai), Error);
+  EXPECT_THROW(of_rigs("tsai").write_rig(rig, folder / "a.xml"), Error);
   rig.cameras[0].lens = geometry::FisheyeLens{{400, 400}, {640, 360}, {0.05, 0, 0, 0}};
-  EXPECT_THROW(write_rig_as(rig, folder / "a.qca.txt", RigFormat::qualisys), Error);
+  EXPECT_THROW(of_rigs("qualisys").write_rig(rig, folder / "a.qca.txt"), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.qca.txt"));
   rig = two_cameras();
   rig.cameras[1].camera_from_world.reset();
-  for (const RigFormat format : {RigFormat::qualisys, RigFormat::aniposelib, RigFormat::self_cal}) {
-    EXPECT_THROW(write_rig_as(rig, folder / "b", format), Error);
+  for (const char* format : {"qualisys", "aniposelib", "multicamselfcal"}) {
+    EXPECT_THROW(of_rigs(format).write_rig(rig, folder / "b"), Error);
   }
 }
 
 TEST(RigExchange, FormatsAreKnownByTheirNames) {
-  EXPECT_EQ(rig_format_of_name("a.qca.txt"), RigFormat::qualisys);
-  EXPECT_EQ(rig_format_of_name("a.yaml"), RigFormat::opencv);
-  EXPECT_EQ(rig_format_of_name("folder/"), RigFormat::self_cal);
-  EXPECT_FALSE(rig_format_of_name("a.c3d"));
-  EXPECT_EQ(parse_rig_format("tsai"), RigFormat::tsai);
-  EXPECT_THROW(parse_rig_format("c3d"), Error);
+  const auto of_name = [](const char* name) { return format_of_name(name, Content::rig); };
+  EXPECT_EQ(of_name("a.qca.txt")->name, "qualisys");
+  EXPECT_EQ(of_name("a.yaml")->name, "opencv");
+  EXPECT_EQ(of_name("folder/")->name, "multicamselfcal");
+  EXPECT_EQ(of_name("a.c3d"), nullptr);
+  EXPECT_EQ(format_named("c3d", Content::rig), nullptr);
   const test::TemporaryFolder folder;
   test::write_file(folder / "take", std::string("SQLite format 3\0[[camera]]", 26));
-  EXPECT_FALSE(rig_format_of_content(folder / "take"));
-  EXPECT_THROW(read_rig_any(folder / "take"), Error);
-  EXPECT_THROW(read_rig_any(folder / "nothing"), Error);
+  EXPECT_EQ(format_of_content(folder / "take"), nullptr);
+  EXPECT_THROW(read_known_rig(folder / "take"), Error);
+  EXPECT_THROW(read_known_rig(folder / "nothing"), Error);
 }
 
 TEST(OpenCvRig, ReadsASingleCameraAndAStereoPair) {
@@ -128,7 +136,7 @@ distortion_coefficients: !!opencv-matrix
    data: [ -0.266, -0.0385, 0.00178, -0.000281, 0.238 ]
 avg_reprojection_error: 0.39
 )");
-  const Rig one = read_rig_any(folder / "one.yml");
+  const Rig one = read_known_rig(folder / "one.yml");
   EXPECT_EQ(one.cameras[0].size, cv::Size(640, 480));
   EXPECT_EQ(std::get<geometry::BrownLens>(*one.cameras[0].lens).distortion[4], 0.238);
   EXPECT_EQ(one.cameras[0].rms_px, 0.39);
@@ -142,17 +150,17 @@ avg_reprojection_error: 0.39
   test::write_file(folder / "intrinsics.yml", "%YAML:1.0\n---\n" + matrix("M1", 3, 3, K) +
                                                   matrix("D1", 1, 5, "0.1, 0., 0., 0., 0.") + matrix("M2", 3, 3, K) +
                                                   matrix("D2", 1, 5, "0.2, 0., 0., 0., 0."));
-  EXPECT_FALSE(read_rig_any(folder / "intrinsics.yml").cameras[1].camera_from_world);
+  EXPECT_FALSE(read_known_rig(folder / "intrinsics.yml").cameras[1].camera_from_world);
   test::write_file(folder / "extrinsics.yml", "%YAML:1.0\n---\n" + matrix("R", 3, 3, "1., 0., 0., 0., 1., 0., 0., 0., 1.") +
                                                   matrix("T", 3, 1, "-3.3, 0.1, 0.2"));
-  const Rig pair = read_rig_any(folder / "intrinsics.yml");
+  const Rig pair = read_known_rig(folder / "intrinsics.yml");
   EXPECT_EQ(pair.cameras[1].camera_from_world->translation, Vector<3>(-3.3, 0.1, 0.2));
   EXPECT_EQ(std::get<geometry::BrownLens>(*pair.cameras[1].lens).distortion[0], 0.2);
 
   for (const char* bad : {"%YAML:1.0\n---\na: 3\n", "%YAML:1.0\n---\ncamera_matrix: 3\n", "%YAML:1.0\n---\ncamera_matrix: [1, 2\n",
                           "%YAML:1.0\n---\ncamera_matrix: [0, 0, 0, 0, 0, 0, 0, 0, 1]\n", "{\"matrix\": [}"}) {
     test::write_file(folder / "bad.yml", bad);
-    EXPECT_THROW(read_rig_any(folder / "bad.yml"), Error) << bad;
+    EXPECT_THROW(read_known_rig(folder / "bad.yml"), Error) << bad;
   }
 }
 
@@ -169,7 +177,7 @@ translation = [ 10.0, 20.0, 900.0,]
 error = 0.4
 )";
   test::write_file(folder / "a.toml", text);
-  const Rig rig = read_rig_any(folder / "a.toml");
+  const Rig rig = read_known_rig(folder / "a.toml");
   EXPECT_EQ(rig.cameras[0].name, "A");
   EXPECT_NEAR(rig.cameras[0].camera_from_world->translation.z(), 0.9, 1e-12);
   EXPECT_NEAR(geometry::angle_axis_of(rig.cameras[0].camera_from_world->rotation).y(), 0.1, 1e-12);
@@ -193,7 +201,7 @@ error = 0.4
 TEST(AniposelibRig, ReadsCaliscopesCameras) {
   const std::string path = test::data("charuco_pair/camera_array.toml");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const Rig rig = read_rig_any(path);
+  const Rig rig = read_known_rig(path);
   ASSERT_EQ(rig.cameras.size(), 2u);
   EXPECT_EQ(rig.cameras[0].name, "cam0");
   EXPECT_NEAR((rig.cameras[0].camera()->centre() - rig.cameras[1].camera()->centre()).norm(), 1.132, 0.001)
@@ -212,7 +220,7 @@ TEST(QualisysRig, AxesPointRightUpAndBack) {
   radialDistortion2="0.1" radialDistortion3="0" tangentalDistortion1="0.0006" tangentalDistortion2="0.0007"/></camera>
 <camera active="0" serial="7"/></cameras></calibration>)";
   test::write_file(folder / "a.qca.txt", text);
-  const Rig rig = read_rig_any(folder / "a.qca.txt");
+  const Rig rig = read_known_rig(folder / "a.qca.txt");
   ASSERT_EQ(rig.cameras.size(), 1u) << "the second is not in use";
   EXPECT_EQ(rig.cameras[0].name, "22139");
   EXPECT_EQ(rig.cameras[0].size, cv::Size(1824, 1088));
@@ -230,14 +238,14 @@ TEST(QualisysRig, AxesPointRightUpAndBack) {
     std::string bad = text;
     bad.replace(bad.find(from), std::string(from).size(), to);
     test::write_file(folder / "b.qca.txt", bad);
-    EXPECT_THROW(read_rig_any(folder / "b.qca.txt"), Error) << from;
+    EXPECT_THROW(read_known_rig(folder / "b.qca.txt"), Error) << from;
   }
 }
 
 TEST(TsaiRig, FeetOfBoxesStandWhereTheTruthSays) {
   const std::string path = test::data("pets2009/Tsai_View_001.xml");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const Rig rig = read_rig_any(path);
+  const Rig rig = read_known_rig(path);
   const Camera camera = *rig.cameras[0].camera();
   const GroundView view(camera);
   std::istringstream lines(test::read_file(test::data("pets2009/gt_001_300.txt")));
@@ -265,7 +273,7 @@ TEST(TsaiRig, FeetOfBoxesStandWhereTheTruthSays) {
 /// How far the projections of a folder's rig are from the observations, where its own points in space are known.
 double median_error(const std::string& path, bool mirrored) {
   const SelfCalFolder folder(path);
-  const Rig rig = read_rig_any(path);
+  const Rig rig = read_known_rig(path);
   std::vector<double> errors;
   for (int i = 0; i < folder.cameras(); ++i) {
     const RigCamera& camera = rig.cameras[static_cast<std::size_t>(i)];
@@ -285,7 +293,7 @@ TEST(SelfCalRig, MatricesAndLensesAreOneLens) {
   const std::string four = test::data("led_rig_4"), five = test::data("led_rig_5");
   if (!std::filesystem::exists(four)) GTEST_SKIP() << four << " is not here";
   EXPECT_LT(median_error(five, false), 0.28) << "px, where MultiCamSelfCal's own matrices, which have a skew, leave 0.21";
-  const Rig rig = read_rig_any(four);
+  const Rig rig = read_known_rig(four);
   EXPECT_LT((rig.cameras[0].camera()->centre() - Vector<3>(0.376991, -0.241439, 0.540068)).norm(), 1e-5) << "as basename1.cal says";
 
   // Without the aligned matrices those of the first reconstruction count, whose world is a mirror image.

@@ -1,4 +1,4 @@
-#include "marey/format/match/ground_exchange.h"
+#include "marey/format/match/ground_match.h"
 
 #include <filesystem>
 #include <functional>
@@ -11,6 +11,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 
 #include "support/data.h"
 #include "support/files.h"
@@ -90,15 +92,18 @@ void expect_same(const std::map<Key, Vector<2>>& found, const std::map<Key, Vect
   }
 }
 
+const Format& of_ground(const char* name) {
+  return *format_named(name, Content::ground);
+}
+
 struct Case {
-  GroundFormat format;
+  const char* format;
   const char* name;
   bool referee, teams, halves;  ///< what it can hold
 };
 
-const std::vector<Case> kWritten = {{GroundFormat::tracab, "m.dat", false, true, true},
-                                    {GroundFormat::metrica, "m_home.csv", false, true, true},
-                                    {GroundFormat::epts, "m.xml", false, true, true}};
+const std::vector<Case> kWritten = {
+    {"tracab", "m.dat", false, true, true}, {"metrica", "m_home.csv", false, true, true}, {"epts", "m.xml", false, true, true}};
 
 /// Without the referee, whom only some formats hold.
 std::map<Key, Vector<2>> players_of(const GroundMatch& match) {
@@ -113,10 +118,10 @@ TEST(GroundExchange, MatchesComeBackFromEveryFormat) {
     const GroundMatch match = made_up(seed);
     for (const Case& one : kWritten) {
       const TemporaryFolder folder;
-      const std::string what = fmt::format("{}, seed {}", ground_format_name(one.format), seed);
-      write_ground_as(match, folder / one.name, one.format);
-      ASSERT_EQ(ground_format_of_content(folder / one.name), one.format) << what;
-      const GroundMatch back = read_ground_any(folder / one.name, {{}, match.pitch, 25});
+      const std::string what = fmt::format("{}, seed {}", one.format, seed);
+      write_whole(folder / one.name, of_ground(one.format), match);
+      ASSERT_EQ(format_of_content(folder / one.name)->name, one.format) << what;
+      const GroundMatch back = read_match(folder / one.name, {{}, match.pitch, 25});
       expect_same(players_of(back), players_of(match), what);
       EXPECT_EQ(back.home, "red") << what;
       EXPECT_EQ(back.away, "green") << what;
@@ -140,11 +145,10 @@ TEST(GroundExchange, SoccerNetAndMotKeepIds) {
     return places;
   };
   for (const auto& [name, format] :
-       {std::pair("m.json", GroundFormat::soccernet), std::pair("Labels-GameState.json", GroundFormat::soccernet),
-        std::pair("m.txt", GroundFormat::mot)}) {
-    write_ground_as(match, folder / name, format);
-    ASSERT_EQ(ground_format_of_content(folder / name), format) << name;
-    const GroundMatch back = read_ground_any(folder / name, {{}, match.pitch, 25});
+       {std::pair("m.json", "soccernet"), std::pair("Labels-GameState.json", "soccernet"), std::pair("m.txt", "mot")}) {
+    write_whole(folder / name, of_ground(format), match);
+    ASSERT_EQ(format_of_content(folder / name)->name, format) << name;
+    const GroundMatch back = read_match(folder / name, {{}, match.pitch, 25});
     const auto found = by_id(back), wanted = by_id(match);
     ASSERT_EQ(found.size(), wanted.size()) << name;
     for (const auto& [key, place] : wanted) EXPECT_LT((found.at(key) - place).norm(), 0.002) << name;
@@ -154,11 +158,11 @@ TEST(GroundExchange, SoccerNetAndMotKeepIds) {
 TEST(GroundExchange, OneFormatAfterTheOtherChangesNothing) {
   const TemporaryFolder folder;
   const GroundMatch match = made_up(11);
-  write_ground_as(match, folder / "a.dat", GroundFormat::tracab);
-  const GroundMatch first = read_ground_any(folder / "a.dat");
-  write_ground_as(first, folder / "b.xml", GroundFormat::epts);
-  write_ground_as(read_ground_any(folder / "b.xml"), folder / "c_home.csv", GroundFormat::metrica);
-  const GroundMatch last = read_ground_any(folder / "c_away.csv", {{}, match.pitch, 25});
+  write_whole(folder / "a.dat", of_ground("tracab"), match);
+  const GroundMatch first = read_match(folder / "a.dat");
+  write_whole(folder / "b.xml", of_ground("epts"), first);
+  write_whole(folder / "c_home.csv", of_ground("metrica"), read_match(folder / "b.xml"));
+  const GroundMatch last = read_match(folder / "c_away.csv", {{}, match.pitch, 25});
   expect_same(players_of(last), players_of(first), "TRACAB, EPTS, Metrica");
 }
 
@@ -169,14 +173,14 @@ TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
   instant.named = {{TrackId{1}, "1", "red"}, {TrackId{2}, "2", "green"}};
   instant.samples = {sample_at(1, 0, 0), sample_at(2, 105, 68)};
   match.recording.add(instant);
-  write_ground_as(match, folder / "m.dat", GroundFormat::tracab);
+  write_whole(folder / "m.dat", of_ground("tracab"), match);
   EXPECT_EQ(read_file(folder / "m.dat"), "0:1,1,1,-5250,-3400,0.00;0,2,2,5250,3400,0.00;:0,0,0,0.00,H,Dead;:\n");
-  write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  write_whole(folder / "m_home.csv", of_ground("metrica"), match);
   EXPECT_EQ(read_file(folder / "m_home.csv"),
             ",,,red,,,\n,,,1,,,\nPeriod,Frame,Time [s],Player1,,Ball,\n1,1,0.04000,0.00000,1.00000,NaN,NaN\n");
-  write_ground_as(match, folder / "e.xml", GroundFormat::epts);
+  write_whole(folder / "e.xml", of_ground("epts"), match);
   EXPECT_EQ(read_file(folder / "e.txt"), "0:0.00000,1.00000;1.00000,0.00000:NaN,NaN\n");
-  write_ground_as(match, folder / "m.json", GroundFormat::soccernet);
+  write_whole(folder / "m.json", of_ground("soccernet"), match);
   EXPECT_NE(read_file(folder / "m.json").find("\"x_bottom_middle\":-52.500,\"y_bottom_middle\":34.000"), std::string::npos);
   const Recording turned = to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
   EXPECT_EQ(turned.tracks()[0].place(0).y(), 68);
@@ -189,25 +193,25 @@ TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(2);
   for (int id = 1; id <= 7; ++id) match.recording.set_name({TrackId{id}, "", ""});
-  const auto warnings = write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  const auto warnings = write_whole(folder / "m_home.csv", of_ground("metrica"), match);
   ASSERT_EQ(warnings.size(), 1U);
-  const GroundMatch back = read_ground_any(folder / "m_home.csv", {{}, match.pitch, 25});
+  const GroundMatch back = read_match(folder / "m_home.csv", {{}, match.pitch, 25});
   EXPECT_EQ(back.recording.samples(), match.recording.samples());
   match.home = "white";
-  EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
+  EXPECT_THROW(write_whole(folder / "m.dat", of_ground("tracab"), match), Error);
 }
 
 TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(1);
   match.recording.header.rate_hz = 12.5;
-  EXPECT_THROW(write_ground_as(match, folder / "m.dat", GroundFormat::tracab), Error);
-  EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::epts), Error);
-  EXPECT_THROW(write_ground_as({}, folder / "m.dat", GroundFormat::tracab), Error);
-  EXPECT_THROW(write_ground_as(match, folder / "m.xml", GroundFormat::sportec), Error);
+  EXPECT_THROW(write_whole(folder / "m.dat", of_ground("tracab"), match), Error);
+  EXPECT_THROW(write_whole(folder / "m.xml", of_ground("epts"), match), Error);
+  EXPECT_THROW(write_whole(folder / "m.dat", of_ground("tracab"), {}), Error);
+  EXPECT_THROW(write_whole(folder / "m.xml", of_ground("sportec"), match), Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "what failed left something behind";
-  EXPECT_NO_THROW(write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica));
-  EXPECT_NEAR(read_ground_any(folder / "m_home.csv").recording.header.rate_hz, 12.5, 1e-9);
+  EXPECT_NO_THROW(write_whole(folder / "m_home.csv", of_ground("metrica"), match));
+  EXPECT_NEAR(read_match(folder / "m_home.csv").recording.header.rate_hz, 12.5, 1e-9);
 }
 
 /// Ends in a recording or in one Error of one line.
@@ -225,10 +229,10 @@ TEST(GroundExchange, TornAndScrambledFilesEndInOneSentence) {
   for (const Case& one : std::vector<Case>{kWritten[0],
                                            kWritten[1],
                                            kWritten[2],
-                                           {GroundFormat::soccernet, "m.json", true, true, false},
-                                           {GroundFormat::mot, "m.txt", true, false, false}}) {
+                                           {"soccernet", "m.json", true, true, false},
+                                           {"mot", "m.txt", true, false, false}}) {
     const TemporaryFolder folder;
-    write_ground_as(made_up(4), folder / one.name, one.format);
+    write_whole(folder / one.name, of_ground(one.format), made_up(4));
     std::vector<std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) files.push_back(entry.path().string());
     std::mt19937 random(7);
@@ -241,7 +245,7 @@ TEST(GroundExchange, TornAndScrambledFilesEndInOneSentence) {
         else
           for (int i = 0; i < 5; ++i) text[random() % text.size()] = static_cast<char>(random());
         write_file(file, text);
-        survives([&] { read_ground_as(folder / one.name, one.format); });
+        survives([&] { read_whole(folder / one.name, of_ground(one.format)); });
       }
       write_file(file, whole);
     }
@@ -253,7 +257,7 @@ TEST(GroundExchange, BadFilesAreNamed) {
   const auto said = [&](const std::string& name, const std::string& text) -> std::string {
     write_file(folder / name, text);
     try {
-      read_ground_any(folder / name);
+      read_match(folder / name);
     } catch (const Error& error) {
       return error.what();
     }
@@ -266,16 +270,16 @@ TEST(GroundExchange, BadFilesAreNamed) {
   EXPECT_NE(said("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
   EXPECT_NE(said("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
   EXPECT_NE(said("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
-  EXPECT_THROW(read_ground_any(folder / "missing.dat"), Error);
-  EXPECT_THROW(read_ground_any(folder.path()), Error);
+  EXPECT_THROW(read_match(folder / "missing.dat"), Error);
+  EXPECT_THROW(read_match(folder.path()), Error);
 }
 
 TEST(GroundExchange, PeopleAreListedAsTheFileNamesThem) {
   const TemporaryFolder folder;
   write_file(folder / "m.txt", "1,9,-1,-1,-1,-1,1,5,5,0\n1,2,-1,-1,-1,-1,1,6,6,0\n2,4,-1,-1,-1,-1,1,7,7,0\n");
-  const GroundMatch match = read_ground_any(folder / "m.txt");
+  const GroundMatch match = read_match(folder / "m.txt");
   EXPECT_EQ(match.order, (std::vector<TrackId>{TrackId{9}, TrackId{2}, TrackId{4}}));
-  write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
+  write_whole(folder / "m_home.csv", of_ground("metrica"), match);
   EXPECT_NE(read_file(folder / "m_home.csv").find("Player9,,Player2,,Player4"), std::string::npos);
 }
 
@@ -284,11 +288,10 @@ TEST(GroundExchange, PixelsAreRefusedByEveryFormat) {
   GroundMatch match = made_up(1);
   match.recording.header.name = "tracks.csv";
   match.recording.header.frame.kind = FrameOfReference::Kind::image;
-  for (const GroundFormat format : {GroundFormat::csv, GroundFormat::mot, GroundFormat::metrica, GroundFormat::tracab,
-                                    GroundFormat::epts, GroundFormat::soccernet}) {
+  for (const char* format : {"ground", "mot", "metrica", "tracab", "epts", "soccernet"}) {
     try {
-      write_ground_as(match, folder / "m_home.csv", format);
-      ADD_FAILURE() << ground_format_name(format);
+      write_whole(folder / "m_home.csv", of_ground(format), match);
+      ADD_FAILURE() << format;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("tracks.csv"), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("px"), std::string::npos) << error.what();
@@ -310,20 +313,19 @@ TEST(GroundExchange, FilesOfVendors) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
   struct Expected {
     const char* name;
-    GroundFormat format;
+    const char* format;
     std::int64_t samples;
     std::size_t people, periods;
     Vector<2> first;
   };
   // By hand: of TRACAB the first target, -4.72 m of its second shirt; of the others the first line's first person.
-  for (const Expected& one :
-       {Expected{"tracab_raw.dat", GroundFormat::tracab, 505, 0, 2, {52.56, 24.87}},
-        Expected{"epts_metrica_tracking.txt", GroundFormat::epts, 1900, 22, 2, {105 * 0.30602, 68 * (1 - 0.97029)}},
-        Expected{"metrica_away.csv", GroundFormat::metrica, 132, 28, 2, {105 * 0.00082, 68 * (1 - 0.48238)}},
-        Expected{"sportec_positional.xml", GroundFormat::sportec, 288, 3, 2, {0, 0}},
-        Expected{"statsperform_tracking_ma25.txt", GroundFormat::statsperform, 2025, 0, 2, {52.803, 68 - 23.617}}}) {
-    ASSERT_EQ(ground_format_of_content(folder + one.name), one.format) << one.name;
-    const GroundMatch match = read_ground_any(folder + one.name);
+  for (const Expected& one : {Expected{"tracab_raw.dat", "tracab", 505, 0, 2, {52.56, 24.87}},
+                              Expected{"epts_metrica_tracking.txt", "epts", 1900, 22, 2, {105 * 0.30602, 68 * (1 - 0.97029)}},
+                              Expected{"metrica_away.csv", "metrica", 132, 28, 2, {105 * 0.00082, 68 * (1 - 0.48238)}},
+                              Expected{"sportec_positional.xml", "sportec", 288, 3, 2, {0, 0}},
+                              Expected{"statsperform_tracking_ma25.txt", "statsperform", 2025, 0, 2, {52.803, 68 - 23.617}}}) {
+    ASSERT_EQ(format_of_content(folder + one.name)->name, one.format) << one.name;
+    const GroundMatch match = read_match(folder + one.name);
     EXPECT_EQ(match.recording.samples(), one.samples) << one.name;
     if (one.people > 0) {
       EXPECT_EQ(match.recording.tracks().size(), one.people) << one.name;
@@ -333,7 +335,7 @@ TEST(GroundExchange, FilesOfVendors) {
       EXPECT_LT((first_place(match) - one.first).norm(), 1e-6) << one.name;
     }
   }
-  const GroundMatch pets = read_ground_any(test::data("pets2009/gt_001_300.txt"));
+  const GroundMatch pets = read_match(test::data("pets2009/gt_001_300.txt"));
   EXPECT_EQ(pets.order.front(), TrackId{9}) << "people are listed as the file names them";
   EXPECT_LT((pets.recording.find(TrackId{9})->place(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
 }
@@ -366,7 +368,7 @@ TEST(GroundExchange, TheRateIsTheMedianStep) {
   std::string text = "frame,time,id,x,y\n";
   for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.4f},1,2,3\n", i, i == 99 ? -5000 : i / 25.0);
   write_file(folder / "m.csv", text);
-  EXPECT_DOUBLE_EQ(read_ground_any(folder / "m.csv").recording.header.rate_hz, 25);
+  EXPECT_DOUBLE_EQ(read_match(folder / "m.csv").recording.header.rate_hz, 25);
   std::string far = "1,1,-1,-1,-1,-1,1,5,0,0\n2,1,-1,-1,-1,-1,1,5,0,0\n999999999,1,-1,-1,-1,-1,1,5,0,0\n";
   try {
     parse_mot_world(far, "m.txt", 25);
@@ -383,8 +385,8 @@ TEST(GroundExchange, ForeignBytesInNamesMakeFilesThatCanBeRead) {
   match.recording.set_name({TrackId{2}, "=1+1", "red"});
   for (const Case& one : kWritten) {
     const TemporaryFolder folder;
-    write_ground_as(match, folder / one.name, one.format);
-    EXPECT_NO_THROW(read_ground_as(folder / one.name, one.format)) << one.name;
+    write_whole(folder / one.name, of_ground(one.format), match);
+    EXPECT_NO_THROW(read_whole(folder / one.name, of_ground(one.format))) << one.name;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
       const std::string text = read_file(entry.path().string());
       EXPECT_EQ(plain_text(text).find("\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"), std::string::npos);

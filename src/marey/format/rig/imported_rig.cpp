@@ -1,9 +1,7 @@
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/rig/imported_rig.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include <Eigen/LU>
@@ -12,24 +10,11 @@
 #include "marey/core/error.h"
 #include "marey/core/input_file.h"
 #include "marey/core/text_safety.h"
-#include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/self_cal_folder.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/lens_fit.h"
 
 namespace marey::format::rig {
 namespace {
-
-struct NamedFormat {
-  std::string_view name;
-  RigFormat format;
-};
-constexpr std::array<NamedFormat, 6> kFormats{{{"marey", RigFormat::marey},
-                                               {"opencv", RigFormat::opencv},
-                                               {"aniposelib", RigFormat::aniposelib},
-                                               {"multicamselfcal", RigFormat::self_cal},
-                                               {"qualisys", RigFormat::qualisys},
-                                               {"tsai", RigFormat::tsai}}};
 
 constexpr double kNearEnough = 0.05;  // px RMS, of a lens that stands for another
 
@@ -69,89 +54,9 @@ void check_rotation(Matrix<3>& rotation, const std::string& path, const std::str
 
 }  // namespace
 
-std::string rig_format_names() {
-  std::string names;
-  for (const NamedFormat& each : kFormats) names.append(names.empty() ? "" : ", ").append(each.name);
-  return names;
-}
-
-RigFormat parse_rig_format(std::string_view name) {
-  for (const NamedFormat& each : kFormats) {
-    if (each.name == name) return each.format;
-  }
-  throw Error("\"{}\" is no format of calibrations; these are: {}", name, rig_format_names());
-}
-
-std::optional<RigFormat> rig_format_of_content(const std::string& path) {
-  if (std::filesystem::is_directory(path)) return SelfCalFolder::is_one(path) ? std::optional(RigFormat::self_cal) : std::nullopt;
-  InputStream in(path);
-  std::string text(1 << 16, '\0');
-  in.read(text.data(), std::ssize(text));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.find('\0') != std::string::npos) return std::nullopt;  // a take holds a rig's text among other things
-  if (has(text, "<opencv_storage") || text.starts_with("%YAML") || text.starts_with("---")) return RigFormat::opencv;
-  const bool xml = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF") == text.find('<') && has(text, "<");
-  if (xml && has(text, "<calibration") && has(text, "<camera")) return RigFormat::qualisys;
-  if (xml && has(text, "<Camera") && has(text, "<Geometry")) return RigFormat::tsai;
-  if (xml) return std::nullopt;
-  if (has(text, "[[camera]]") || has(text, "[world]")) return RigFormat::marey;
-  if (has(text, "matrix") && (has(text, "[cam") || has(text, "distortions"))) return RigFormat::aniposelib;
-  if (path.ends_with(".toml")) return RigFormat::marey;
-  if (path.ends_with(".yml") || path.ends_with(".yaml") || (path.ends_with(".json") && has(text, "matrix")))
-    return RigFormat::opencv;
-  return std::nullopt;
-}
-
-std::optional<RigFormat> rig_format_of_name(std::string_view path) {
-  constexpr std::array<std::pair<std::string_view, RigFormat>, 7> kEndings{{{".toml", RigFormat::marey},
-                                                                            {".yml", RigFormat::opencv},
-                                                                            {".yaml", RigFormat::opencv},
-                                                                            {".json", RigFormat::opencv},
-                                                                            {".qca.txt", RigFormat::qualisys},
-                                                                            {".xml", RigFormat::tsai},
-                                                                            {"/", RigFormat::self_cal}}};
-  for (const auto& [ending, format] : kEndings) {
-    if (path.ends_with(ending)) return format;
-  }
-  return std::nullopt;
-}
-
-Rig read_rig_any(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw Error("{}: there is no such file; is the name right?", path);
-  const auto format = rig_format_of_content(path);
-  if (!format) throw Error("{}: this is no calibration that is known; these are: {}", path, rig_format_names());
-  switch (*format) {
-    case RigFormat::marey:
-      return read_rig(path);
-    case RigFormat::opencv:
-      return read_opencv_rig(path);
-    case RigFormat::aniposelib:
-      return read_aniposelib_rig(path);
-    case RigFormat::self_cal:
-      return read_self_cal_rig(path);
-    case RigFormat::qualisys:
-      return read_qualisys_rig(path);
-    case RigFormat::tsai:
-      return read_tsai_rig(path);
-  }
-  return {};
-}
-
-void write_rig_as(const Rig& rig, const std::string& path, RigFormat format) {
-  switch (format) {
-    case RigFormat::marey:
-      return write_rig(rig, path);
-    case RigFormat::opencv:
-      return write_opencv_rig(rig, path);
-    case RigFormat::aniposelib:
-      return write_aniposelib_rig(rig, path);
-    case RigFormat::self_cal:
-      return write_self_cal_rig(rig, path);
-    case RigFormat::qualisys:
-      return write_qualisys_rig(rig, path);
-    case RigFormat::tsai:
-      return write_tsai_rig(rig, path);
-  }
+bool is_xml(const Beginning& file) {
+  const std::size_t first = file.text().find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && file.text()[first] == '<';
 }
 
 void check_imported(Rig& rig, const std::string& path) {

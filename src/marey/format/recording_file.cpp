@@ -1,0 +1,201 @@
+#include "marey/format/recording_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
+#include "marey/format/register.h"
+
+namespace marey::format {
+namespace {
+
+/// (x, y, z) with y up, where z is up: (x, −z, y).
+Matrix<3> z_up_from_y_up() {
+  return Matrix<3>{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+}
+
+void turn(Instant& instant, const Matrix<3>& rotation) {
+  for (Sample& sample : instant.samples) {
+    sample.position = (rotation * sample.position).eval();
+    if (sample.velocity) sample.velocity = (rotation * *sample.velocity).eval();
+    if (sample.covariance) sample.covariance = (rotation * *sample.covariance * rotation.transpose()).eval();
+  }
+}
+
+/// Turns a world whose y is up so that its z is.
+class TurningReader : public FileReader {
+ public:
+  explicit TurningReader(std::unique_ptr<FileReader> reader) : reader_(std::move(reader)) {}
+  const FileInfo& info() const override { return reader_->info(); }
+  std::vector<std::string> warnings() const override { return reader_->warnings(); }
+  std::optional<Instant> next() override {
+    auto instant = reader_->next();
+    if (instant) turn(*instant, z_up_from_y_up());
+    return instant;
+  }
+
+ private:
+  std::unique_ptr<FileReader> reader_;
+};
+
+/// And back.
+class TurningSink : public Sink {
+ public:
+  explicit TurningSink(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) {}
+  std::string name() const override { return sink_->name(); }
+  Wants begin(const RecordingHeader& header) override { return sink_->begin(header); }
+  void write(const Instant& instant) override {
+    Instant turned = instant;
+    turn(turned, z_up_from_y_up().transpose());
+    sink_->write(turned);
+  }
+  void finish() override { sink_->finish(); }
+
+ private:
+  std::unique_ptr<Sink> sink_;
+};
+
+/// A recording in memory as a file's.
+class WholeReader : public FileReader {
+ public:
+  explicit WholeReader(const Recording& recording) : reader_(recording) {
+    info_ = {.header = recording.header,
+             .tracks = reader_.tracks(),
+             .edits = recording.edits,
+             .head = recording.head,
+             .frame_count = reader_.instant_count(),
+             .up = {}};
+  }
+  const FileInfo& info() const override { return info_; }
+  std::optional<Instant> next() override { return reader_.next(); }
+
+ private:
+  MemoryReader reader_;
+  FileInfo info_;
+};
+
+/// The same of one that was read whole, which it owns.
+class MatchReader : public FileReader {
+ public:
+  explicit MatchReader(match::GroundMatch match) : match_(std::move(match)), reader_(match_.recording) {}
+  const FileInfo& info() const override { return reader_.info(); }
+  std::optional<Instant> next() override { return reader_.next(); }
+  std::vector<std::string> warnings() const override { return match_.warnings; }
+
+ private:
+  match::GroundMatch match_;
+  WholeReader reader_;
+};
+
+/// Gathers what a format that is written whole writes at the end.
+class GatheringSink : public Sink {
+ public:
+  GatheringSink(std::string path, const Format& format, std::vector<std::string>* lost)
+      : path_(std::move(path)), format_(&format), lost_(lost) {}
+  std::string name() const override { return path_; }
+  Wants begin(const RecordingHeader& header) override {
+    match_.recording = Recording(header);
+    return {};
+  }
+  void write(const Instant& instant) override { match_.recording.add(instant); }
+  void finish() override {
+    for (const TrackColumns& track : match_.recording.tracks()) match_.order.push_back(track.id());
+    std::vector<std::string> lost = format_->write(match_, path_);
+    if (lost_ != nullptr) *lost_ = std::move(lost);
+  }
+
+ private:
+  std::string path_;
+  const Format* format_;
+  std::vector<std::string>* lost_;
+  match::GroundMatch match_;
+};
+
+}  // namespace
+
+std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options) {
+  if (format.read != nullptr) return std::make_unique<MatchReader>(read_whole(path, format, options));
+  if (format.open == nullptr) throw Error("{}: is {}, which is no recording", path, format.title);
+  auto reader = format.open(path, options);
+  if (options.up == UpAxis::z || format.z_up) return reader;
+  return std::make_unique<TurningReader>(std::move(reader));
+}
+
+std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options) {
+  return open_recording(path, format_to_read(path, kRecordings), options);
+}
+
+match::GroundMatch read_whole(const std::string& path, const Format& format, const ReadOptions& options) {
+  match::GroundMatch match;
+  if (format.read != nullptr) {
+    match = format.read(path, options);
+  } else {
+    const auto reader = open_recording(path, format, options);
+    match.recording = read_all(*reader);
+    match.warnings = reader->warnings();
+    match.pitch = options.pitch;
+    for (const TrackColumns& track : match.recording.tracks()) match.order.push_back(track.id());
+  }
+  match.recording.header.name = path == "-" ? "standard input" : path;
+  return match;
+}
+
+match::GroundMatch read_match(const std::string& path, const ReadOptions& options) {
+  // What is no format at all is told by the reader of ours, which says what it wants.
+  const Format* format = path == "-" ? nullptr : format_of_content(path);
+  if (format == nullptr && std::filesystem::is_directory(path)) throw Error("{}: is a folder, not a file", path);
+  if (format == nullptr || !format->holds.any_of(kRecordings)) format = format_named("ground", Content::ground);
+  // Boxes in a picture are told by the reader of the same text with places.
+  if (const Format* places = format_named(format->name, Content::ground); !format->holds.has(Content::ground) && places != nullptr)
+    format = places;
+  match::GroundMatch match = read_whole(path, *format, options);
+  require_ground(match.recording, "a match");
+  return match;
+}
+
+std::unique_ptr<FileReader> reader_of(const Recording& recording) {
+  return std::make_unique<WholeReader>(recording);
+}
+
+WritePlan plan_of(FileReader& reader, const std::string& name) {
+  WritePlan plan;
+  FrameNumbers numbers;
+  while (const auto instant = reader.next()) {
+    if (numbers.count() == 0) plan.first_frame = instant->index;
+    numbers.add(instant->index);
+    plan.last_frame = instant->index;
+    for (const Sample& sample : instant->samples) {
+      plan.farthest_m = std::max(plan.farthest_m, sample.position.cwiseAbs().maxCoeff());
+      plan.tells_measured |= !sample.measured() || sample.cameras != 0 || sample.residual_m.has_value();
+    }
+  }
+  numbers.check(name);
+  plan.info = reader.info();
+  plan.info.frame_count = plan.last_frame - plan.first_frame + 1;
+  return plan;
+}
+
+std::unique_ptr<Sink> create_recording(const std::string& path, const Format& format, const WritePlan& plan,
+                                       std::vector<std::string>* lost) {
+  if (format.create == nullptr && format.write == nullptr) throw Error("{}: {} is read only", path, format.title);
+  if (format.create == nullptr) return std::make_unique<GatheringSink>(path, format, lost);
+  auto sink = format.create(path, plan);
+  if (plan.up == UpAxis::z || format.z_up) return sink;
+  return std::make_unique<TurningSink>(std::move(sink));
+}
+
+std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match, UpAxis up) {
+  if (format.write != nullptr) {
+    require_ground(match.recording, format.name);
+    return format.write(match, path);
+  }
+  WritePlan plan = plan_of(*reader_of(match.recording), match.recording.header.name);
+  plan.up = up;
+  const auto sink = create_recording(path, format, plan);
+  replay(*reader_of(match.recording), *sink);
+  return {};
+}
+
+}  // namespace marey::format

@@ -1,0 +1,40 @@
+// Recordings in files of any format of the register: opened, read whole, written.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/format/format.h"
+#include "marey/format/match/ground_match.h"
+
+namespace marey::format {
+
+/// Opens a recording instant by instant, whatever its format. Throws Error for what cannot be read.
+std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options = {});
+/// The same, known by its content.
+std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options = {});
+
+/// A whole recording, with what formats of matches tell beyond it.
+match::GroundMatch read_whole(const std::string& path, const Format& format, const ReadOptions& options = {});
+/// One of people on the ground, known by its content; "-" is CSV from standard input. Throws Error where it is not of the ground.
+match::GroundMatch read_match(const std::string& path, const ReadOptions& options = {});
+
+/// A reader in memory; what formats of matches tell beyond the recording is left out. The recording must outlive it.
+std::unique_ptr<FileReader> reader_of(const Recording& recording);
+
+/// What a writer must know beforehand. Reads all of it. Throws Error, with `name` for the file, where millions of frames are
+/// missing, which most formats would have to write out: a slip in a frame's number would fill the disk.
+WritePlan plan_of(FileReader& reader, const std::string& name);
+
+/// What writes a recording instant by instant, or gathers it where the format is written whole. A take's edits are the plan's; a
+/// format that is written while recording needs none. `lost` gets what the format could not hold, with `finish`.
+std::unique_ptr<Sink> create_recording(const std::string& path, const Format& format, const WritePlan& plan = {},
+                                       std::vector<std::string>* lost = nullptr);
+
+/// Writes a recording that is whole, and says what the format could not hold.
+std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match,
+                                     UpAxis up = UpAxis::z);
+
+}  // namespace marey::format

@@ -1,0 +1,148 @@
+#include "marey/pipeline/convert.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+#include "marey/format/rig/rig_file.h"
+
+namespace marey::pipeline {
+namespace {
+
+using format::Content;
+using format::Format;
+using format::UpAxis;
+using format::match::GroundMatch;
+
+format::match::GroundFrame user_frame(const ConvertOptions& options) {
+  format::match::GroundFrame frame = options.frame;
+  if (options.rig.empty()) return frame;
+  const Rig rig = format::rig::read_rig(options.rig);
+  if (!rig.ground_from_world)
+    throw Error("{}: says nothing of the ground; `marey calibrate pitch` makes a rig that does", options.rig);
+  // A reflection: seen from above, y grows to the right of x, downwards.
+  frame.y_down = rig.ground_from_world->topLeftCorner<2, 2>().determinant() < 0;
+  return frame;
+}
+
+/// The axes that are up in the two files.
+std::pair<UpAxis, UpAxis> axes(const ConvertOptions& options, const Format& from, const Format& to) {
+  const UpAxis up = options.up.value_or(UpAxis::z);
+  if (options.from_up) {
+    if (from.z_up) throw format::WrongFormat("{}", "a take's z is up always; --from-up is for other files");
+    return {*options.from_up, up};
+  }
+  return to.z_up ? std::pair(up, UpAxis::z) : std::pair(UpAxis::z, up);
+}
+
+void refuse_axes(const std::string& from, const ConvertOptions& options, const char* what) {
+  if (options.up || options.from_up) throw format::WrongFormat("{}: {}; --up and --from-up are for points in space", from, what);
+}
+
+ConvertSummary convert_rig(const std::string& from, const std::string& to, const Format& format, const ConvertOptions& options) {
+  const Format& other = format::format_to_write(to, options.format, Content::rig);
+  refuse_axes(from, options, "is a calibration, whose z is up always");
+  const Rig rig = format.read_rig(from);
+  other.write_rig(rig, to);
+  return {.format = "a calibration", .counted = "cameras", .count = std::ssize(rig.cameras), .warnings = {}};
+}
+
+/// Of people on the ground users count the places, of others the frames.
+void count(const RecordingHeader& header, std::int64_t frames, std::int64_t samples, ConvertSummary& summary) {
+  const bool ground = format::content_of(header.frame) == Content::ground;
+  summary.counted = ground ? "places" : "frames";
+  summary.count = ground ? samples : frames;
+}
+
+/// A recording that is written whole, or was read whole.
+ConvertSummary convert_match(GroundMatch match, const std::string& to, const Format& from, const Format& format,
+                             const ConvertOptions& options) {
+  if (!options.home.empty()) match.home = options.home;
+  if (!options.away.empty()) match.away = options.away;
+  if (!options.periods.empty()) match.periods = options.periods;
+  if (options.labelled) match.recording.erase_tracks_if([](const TrackColumns& track) { return track.name.label.empty(); });
+  if (from.from_corner != format.from_corner) {
+    const auto turned = format.from_corner ? format::match::to_corner : format::match::from_corner;
+    match.recording = turned(std::move(match.recording), match.pitch, user_frame(options));
+  }
+  ConvertSummary summary{.format = std::string(format.name), .counted = {}, .warnings = match.warnings};
+  const std::vector<std::string> lost = format::write_whole(to, format, match);
+  summary.warnings.insert(summary.warnings.end(), lost.begin(), lost.end());
+  count(match.recording.header, std::ssize(match.recording.instants()), match.recording.samples(), summary);
+  return summary;
+}
+
+/// `tracks` by id.
+void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
+  std::erase_if(instant.samples, [&](const Sample& point) {
+    const auto by_id = [](const TrackName& track, TrackId id) { return track.id < id; };
+    const auto found = std::lower_bound(tracks.begin(), tracks.end(), point.track, by_id);
+    return found == tracks.end() || found->id != point.track;
+  });
+}
+
+/// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with what is known only at the
+/// end.
+ConvertSummary convert_stream(const std::string& from, const std::string& to, const Format& in, const Format& out,
+                              const ConvertOptions& options, const Hooks& hooks) {
+  ConvertSummary summary{.format = std::string(out.name), .counted = {}, .warnings = {}};
+  std::int64_t frames = 0, samples = 0;
+  format::ReadOptions how = options.read;
+  const auto [from_up, to_up] = axes(options, in, out);
+  how.up = from_up;
+  format::WritePlan plan;
+  {
+    const auto first = format::open_recording(from, in, how);
+    plan = format::plan_of(*first, from);
+    summary.warnings = first->warnings();
+  }
+  plan.up = to_up;
+  // A file that says so itself is still believed only where the user says it too: many say it by mistake.
+  if (plan.info.up == UpAxis::y && from_up == UpAxis::z) {
+    summary.warnings.push_back(
+        fmt::format("{}: says that y is up; {} turns it so that z is", from, out.z_up ? "--up y" : "--from-up y"));
+  }
+  if (options.labelled) std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
+  const auto reader = format::open_recording(from, in, how);
+  const auto sink = format::create_recording(to, out, plan);
+  sink->begin(plan.info.header);
+  while (auto instant = reader->next()) {
+    if (options.labelled) leave_out_others(*instant, plan.info.tracks);
+    if (frames == 0) instant->named = plan.info.tracks;
+    samples += std::ssize(instant->samples);
+    sink->write(*instant);
+    if (hooks.report({.step = "converting", .done = ++frames, .total = plan.info.frame_count}) == Continue::no) {
+      summary.stopped = true;
+      return summary;
+    }
+  }
+  sink->finish();
+  count(plan.info.header, frames, samples, summary);
+  return summary;
+}
+
+}  // namespace
+
+ConvertSummary convert(const std::string& from, const std::string& to, const ConvertOptions& options, const Hooks& hooks) {
+  const Format& in = format::format_to_read(from, format::kRecordings | Content::rig);
+  if (in.read_rig != nullptr) return convert_rig(from, to, in, options);
+  if (in.read != nullptr) {
+    refuse_axes(from, options, "holds no points in space");
+    GroundMatch match = format::read_whole(from, in, options.read);
+    const Format& out = format::format_to_write(to, options.format, format::content_of(match.recording.header.frame));
+    return convert_match(std::move(match), to, in, out, options);
+  }
+  const Content content = format::content_of(format::open_recording(from, in, options.read)->header().frame);
+  if (content != Content::space) refuse_axes(from, options, "holds no points in space");
+  const Format& out = format::format_to_write(to, options.format, content);
+  if (out.create != nullptr) return convert_stream(from, to, in, out, options, hooks);
+  return convert_match(format::read_whole(from, in, options.read), to, in, out, options);
+}
+
+}  // namespace marey::pipeline
