@@ -56,6 +56,9 @@ class MarkersInPicture final : public Stage {
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
+    const cv::Size size = feed.info().size;
+    if (!size.empty())
+      options_.tracker.picture = Box{-0.5, -0.5, static_cast<double>(size.width), static_cast<double>(size.height)};
     if (options.fit_noise && !options.live) fit(feed.again());
     tracker_ = track::make_roster_tracker<2>(options_.tracker);
   }

@@ -13,6 +13,9 @@ constexpr double kMostOfStayed = 12;        // the same for a newcomer that stay
 constexpr double kStayed = 0.5;             // s
 constexpr double kShortPath = 5;            // marker widths that a target without rigid neighbours may have gone astray
 constexpr double kUnknown = 100;            // variances: targets that rigid neighbours identify go first
+constexpr double kOnItsWay = 0.25;          // of the path of a target that is lost, by which it may have left it
+constexpr double kTurned = 0.15;            // of them turn round or stop unseen
+constexpr double kLeastImprobable = 50;     // so that no cost is below 0
 constexpr double kFar = 1e6;                // px
 constexpr long kMostLostPairs = 1'000'000;  // glare: no target is searched for in it
 
@@ -42,6 +45,19 @@ double RosterAdoption<D>::path_to(const Target& target, const Vector<D>& place) 
   return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
 }
 
+/// A target most likely went on as it did, or nearly; it may have turned round or stopped; and nothing is impossible. 0 or more.
+template <int D>
+double RosterAdoption<D>::improbability(const Target& target, const Vector<D>& place) const {
+  const double speed = target.filter.velocity().norm();
+  const auto density = [](double distance, double scale) {
+    const double r = distance / scale;
+    return std::pow(scale, -D) * std::pow(1 + r * r, -0.5 * (D + 1));
+  };
+  const double on = density((place - target.filter.position()).norm(), target.width + kOnItsWay * speed * target.unseen);
+  const double back = density((place - target.last_place).norm(), target.width + speed * target.unseen);
+  return std::max(0.0, kLeastImprobable - std::log((1 - kTurned) * on + kTurned * back));
+}
+
 /// What it costs to believe that a target that was lost is at a place; nothing where it cannot be. Where enough of its rigid
 /// neighbours are seen, their misfit decides; else the path. Less is asked of a newcomer that has `stayed` there for a while: some
 /// target it must be.
@@ -64,7 +80,8 @@ std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector
   }
   if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
   if (options_.rigid_neighbours && path_to(target, place) > kShortPath * target.width) return std::nullopt;
-  return (options_.rigid_neighbours ? kUnknown : 0) + path_to(target, place);
+  if (options_.rigid_neighbours) return kUnknown + path_to(target, place);
+  return improbability(target, place);
 }
 
 template <int D>

@@ -27,6 +27,7 @@ class RosterAdoption {
 
  private:
   double path_to(const Target& target, const Vector<D>& place) const;
+  double improbability(const Target& target, const Vector<D>& place) const;
   std::optional<double> cost(const Target& target, const Vector<D>& place, const RigidNeighbours& neighbours, bool stayed) const;
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
                     const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
