@@ -45,6 +45,15 @@ struct RosterTarget {
     double dt = 0;      ///< s, since the one before
     bool whole = true;  ///< not smaller than the marker
   };
+  /// What it was before it took a point that may as well be a false one; given back where the next frame does not bear that out.
+  struct Doubt {
+    filter::AnyFilter<D> filter;
+    Vector<D> last_place;
+    double unseen = 0;  ///< s
+    double score = 0;   ///< log-likelihood ratio of its points since, against clutter
+  };
+  std::vector<Doubt> doubt = {};  ///< one or none
+
   static constexpr std::size_t kKept = 14;
   std::vector<Measured> measured = {};  ///< at most 2 · kKept; its end counts
 
@@ -118,6 +127,9 @@ class RosterLikelihood {
     return log_likelihood - std::log(std::max(unexplained_, kLeastClutter) / std::pow(extent_, D));
   }
 
+  /// Whether there are so many false points that one that stands alone proves little.
+  bool cluttered() const { return D == 2 && unexplained_ > kCluttered; }
+
   static constexpr double kWidthNoise = 0.2;   // of the width: what the pixels' raster makes of it
   static constexpr double kPartWidth = 0.08;   // of the width, and
   static constexpr double kPartPixels = 0.35;  // px less than it: it shows in part
@@ -127,11 +139,13 @@ class RosterLikelihood {
   static constexpr double kMostGrowth = 2.5;     // a lost marker comes back no larger, no smaller than by this
   static constexpr double kClutterMemory = 0.1;  // a frame
   static constexpr double kClutterLimit = 0.02;  // false points to be expected where a jump is still believed at once
+  static constexpr double kAtFirst = 0.5;        // false points a frame, before anything is known
+  static constexpr double kCluttered = 0.05;     // false points a frame, from which a single one is doubted
   static constexpr double kLeastClutter = 0.01;  // false points a frame that are always thought possible
 
   RosterTrackerOptions options_;
-  double unexplained_ = 0;  // points a frame that no target explains, a running mean
-  double extent_ = 1;       // of the scene, px
+  double unexplained_ = D == 2 ? kAtFirst : 0;  // points a frame that no target explains, a running mean
+  double extent_ = 1;                           // of the scene, px
 };
 
 }  // namespace marey::track
