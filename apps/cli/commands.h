@@ -30,5 +30,6 @@ void add_experiment(Command& program);
 void add_experiment_trackers(Command& experiment);  ///< below `experiment`
 void add_experiment_outlines(Command& experiment);
 void add_experiment_hypotheses(Command& experiment);
+void add_experiment_markers(Command& experiment);
 
 }  // namespace marey::cli

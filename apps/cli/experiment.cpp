@@ -8,6 +8,7 @@ void add_experiment(Command& program) {
   add_experiment_trackers(experiment);
   add_experiment_outlines(experiment);
   add_experiment_hypotheses(experiment);
+  add_experiment_markers(experiment);
 }
 
 }  // namespace marey::cli

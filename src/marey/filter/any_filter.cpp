@@ -1,9 +1,12 @@
 #include "marey/filter/any_filter.h"
 
+#include <cmath>
 #include <limits>
 #include <new>
 #include <type_traits>
 #include <utility>
+
+#include <Eigen/LU>
 
 namespace marey::filter {
 
@@ -31,6 +34,16 @@ struct AnyFilter<D>::CallsOf {
     read(filter, estimate);
   }
 
+  static void predict_unseen(void* model, double dt, Estimate& estimate) {
+    F& filter = *static_cast<F*>(model);
+    if constexpr (requires { filter.predict_unseen(dt); }) {
+      filter.predict_unseen(dt);
+    } else {
+      filter.predict(dt);
+    }
+    read(filter, estimate);
+  }
+
   static void correct(void* model, const Vector<D>& z, const Matrix<D>& R, Estimate& estimate) {
     F& filter = *static_cast<F*>(model);
     filter.correct(z, R);
@@ -53,9 +66,28 @@ struct AnyFilter<D>::CallsOf {
     }
   }
 
-  static constexpr Calls table = {copy,          move,        std::is_trivially_destructible_v<F> ? nullptr : destroy,
-                                  predict,       correct,     innovation_covariance,
-                                  gate_distance, search_reach};
+  static double log_likelihood(const void* model, const Vector<D>& z, const Matrix<D>& R) {
+    const F& filter = *static_cast<const F*>(model);
+    if constexpr (requires { filter.log_likelihood(z, R); }) {
+      return filter.log_likelihood(z, R);
+    } else {
+      constexpr double kLogTwoPi = 1.8378770664093453;
+      const Matrix<D> S = filter.innovation_covariance(R);
+      const Vector<D> residual = z - filter.position();
+      return -0.5 * (residual.dot(S.inverse() * residual) + std::log(S.determinant()) + D * kLogTwoPi);
+    }
+  }
+
+  static constexpr Calls table = {.copy = copy,
+                                  .move = move,
+                                  .destroy = std::is_trivially_destructible_v<F> ? nullptr : destroy,
+                                  .predict = predict,
+                                  .correct = correct,
+                                  .innovation_covariance = innovation_covariance,
+                                  .gate_distance = gate_distance,
+                                  .search_reach = search_reach,
+                                  .log_likelihood = log_likelihood,
+                                  .predict_unseen = predict_unseen};
 };
 
 template <int D>

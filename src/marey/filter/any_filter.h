@@ -39,6 +39,8 @@ class AnyFilter {
   ~AnyFilter() { destroy(); }
 
   void predict(double dt) { calls_->predict(model_, dt, estimate_); }
+  /// The same while the target is hidden; like `predict` where the method makes no difference.
+  void predict_unseen(double dt) { calls_->predict_unseen(model_, dt, estimate_); }
   void correct(const Vector<D>& z, const Matrix<D>& R) { calls_->correct(model_, z, R, estimate_); }
 
   const Vector<D>& position() const { return estimate_.position; }
@@ -46,6 +48,9 @@ class AnyFilter {
   const Matrix<D>& covariance() const { return estimate_.covariance; }
   Matrix<D> innovation_covariance(const Matrix<D>& R) const { return calls_->innovation_covariance(model_, R); }
   double gate_distance(const Vector<D>& z, const Matrix<D>& R) const { return calls_->gate_distance(model_, z, R); }
+
+  /// Logarithm of the density of a measurement at z: the method's own where it knows several models, else that of a Gaussian.
+  double log_likelihood(const Vector<D>& z, const Matrix<D>& R) const { return calls_->log_likelihood(model_, z, R); }
 
   /// No measurement whose covariance is at most `variance` in any direction lies in the search area and farther than this from
   /// position(); infinite where the method knows no such bound that is cheaper than gate_distance.
@@ -67,6 +72,8 @@ class AnyFilter {
     Matrix<D> (*innovation_covariance)(const void* model, const Matrix<D>& R);
     double (*gate_distance)(const void* model, const Vector<D>& z, const Matrix<D>& R);
     double (*search_reach)(const void* model, double variance);
+    double (*log_likelihood)(const void* model, const Vector<D>& z, const Matrix<D>& R);
+    void (*predict_unseen)(void* model, double dt, Estimate& estimate);
   };
 
   template <typename F>

@@ -121,18 +121,29 @@ void InteractingModels<D>::mix(double dt) {
 template <int D>
 void InteractingModels<D>::predict(double dt) {
   if (dt == 0) return;
-  const double speed = velocity_.norm();
-  const double acceleration = options_.acceleration + options_.agility * speed;
   mix(dt);
+  const double swerve_sigma = options_.swerve_speed + options_.swerve_share * velocity_.norm();
+  move(dt, jump(dt, swerve_sigma));
+}
+
+template <int D>
+void InteractingModels<D>::predict_unseen(double dt) {
+  if (dt == 0) return;
+  move(dt, kinematics::constant_velocity(dt, options_.steady_noise * options_.steady_noise).Q);
+}
+
+/// Each model by itself; `swerve` is what the one that swerves adds to position and velocity.
+template <int D>
+void InteractingModels<D>::move(double dt, const Matrix<2>& swerve) {
+  const double acceleration = options_.acceleration + options_.agility * velocity_.norm();
   const State& turning = states_[kTurn];
   const double rate = turn_rate<D>(turning.mean[1], turning.cov(1, 1), turning.mean[2], options_.turn_limit);
   const double jerk_density = 2 * acceleration * acceleration / options_.acceleration_time;
   const double steady_density = options_.steady_noise * options_.steady_noise;
-  const double swerve_sigma = options_.swerve_speed + options_.swerve_share * speed;
   predict_straight(states_[kSteady], dt, kinematics::constant_velocity(dt, steady_density).Q, acceleration);
   kinematics::predict(states_[kPull], kinematics::singer(dt, acceleration, options_.acceleration_time));
   kinematics::predict(states_[kTurn], kinematics::turn(dt, rate, jerk_density));
-  predict_straight(states_[kSwerve], dt, jump(dt, swerve_sigma), acceleration);
+  predict_straight(states_[kSwerve], dt, swerve, acceleration);
   summarise();
 }
 
@@ -163,6 +174,8 @@ double InteractingModels<D>::log_likelihood(const Vector<D>& z, const Matrix<D>&
   std::array<double, kModels> terms;
   double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t j = 0; j < kModels; ++j) {
+    terms[j] = -std::numeric_limits<double>::infinity();
+    if (!(probabilities_[j] > 0)) continue;
     const Matrix<D> S = states_[j].cov(0, 0) + R;
     const Vector<D> residual = z - states_[j].mean[0];
     terms[j] =

@@ -75,6 +75,9 @@ class InteractingModels {
   InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R);
 
   void predict(double dt);
+  /// The same while the target is hidden: the models run on side by side, unmixed, and none swerves. What was known of a steady
+  /// target thus stays as sharp as it was, however many steps nothing is seen of it.
+  void predict_unseen(double dt);
   void correct(const Vector<D>& z, const Matrix<D>& R);
 
   Vector<D> position() const { return position_; }
@@ -105,6 +108,7 @@ class InteractingModels {
 
   double chance_of_change(std::size_t from, std::size_t to, double keep, double swerve) const;
   void mix(double dt);
+  void move(double dt, const Matrix<2>& swerve);
   void summarise();
 
   Options options_;

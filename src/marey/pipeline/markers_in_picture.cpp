@@ -56,6 +56,9 @@ class MarkersInPicture final : public Stage {
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
+    const cv::Size size = feed.info().size;
+    if (!size.empty())
+      options_.tracker.picture = Box{-0.5, -0.5, static_cast<double>(size.width), static_cast<double>(size.height)};
     if (options.fit_noise && !options.live) fit(feed.again());
     tracker_ = track::make_roster_tracker<2>(options_.tracker);
   }
@@ -87,7 +90,8 @@ class MarkersInPicture final : public Stage {
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
-    return std::make_unique<FilledRows>(track::fill_gaps(recording_), std::move(moments_), std::move(labels_));
+    const int fewest = static_cast<int>(std::min<std::size_t>(3, moments_.size()));  // a single picture has markers too
+    return std::make_unique<FilledRows>(track::fill_gaps(recording_, {}, fewest), std::move(moments_), std::move(labels_));
   }
 
   void report(Summary& summary) const override {

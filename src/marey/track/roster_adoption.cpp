@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace marey::track {
 namespace {
@@ -13,6 +14,12 @@ constexpr double kMostOfStayed = 12;        // the same for a newcomer that stay
 constexpr double kStayed = 0.5;             // s
 constexpr double kShortPath = 5;            // marker widths that a target without rigid neighbours may have gone astray
 constexpr double kUnknown = 100;            // variances: targets that rigid neighbours identify go first
+constexpr double kOnItsWay = 0.25;          // of the path of a target that is lost, by which it may have left it
+constexpr double kTurned = 0.15;            // of them turn round or stop unseen
+constexpr double kTogether = 7;             // the same of a newcomer and of its place, from which it is the target
+constexpr double kBegun = 2;                // log-likelihood ratio against clutter of a newcomer that was seen again
+constexpr double kReturns = 5;              // log-likelihood ratio against clutter from which one point brings a target back
+constexpr double kLeastImprobable = 50;     // so that no cost is below 0
 constexpr double kFar = 1e6;                // px
 constexpr long kMostLostPairs = 1'000'000;  // glare: no target is searched for in it
 
@@ -32,7 +39,7 @@ void RosterAdoption<D>::find_lost(std::span<Target> targets, std::span<const Obs
   likelihood.count_unexplained(std::max<double>(0, static_cast<double>(free_.size()) - static_cast<double>(lost_.size())));
   if (lost_.empty()) return;
   adopt_points(targets, seen, taken, likelihood, neighbours);
-  adopt_newcomers(targets, neighbours);
+  adopt_newcomers(targets, likelihood, neighbours);
 }
 
 /// How far a target's own motion leaves it from a place; where it turned or stopped unseen, its last place is the better guess.
@@ -40,6 +47,20 @@ template <int D>
 double RosterAdoption<D>::path_to(const Target& target, const Vector<D>& place) const {
   if (target.predicted_variance > 0) return (place - target.filter.position()).norm();
   return std::min((place - target.filter.position()).norm(), (place - target.last_place).norm());
+}
+
+/// Of a lost target at a place, as a logarithm: it most likely went on as it did, or nearly; it may have turned round or stopped;
+/// and nothing is impossible.
+template <int D>
+double RosterAdoption<D>::log_density(const Target& target, const Vector<D>& place) const {
+  const double speed = target.filter.velocity().norm();
+  const auto density = [](double distance, double scale) {
+    const double r = distance / scale;
+    return std::pow(scale, -D) * std::pow(1 + r * r, -0.5 * (D + 1)) / (2 * std::numbers::pi);
+  };
+  const double on = density((place - target.filter.position()).norm(), target.width + kOnItsWay * speed * target.unseen);
+  const double back = density((place - target.last_place).norm(), target.width + speed * target.unseen);
+  return std::log((1 - kTurned) * on + kTurned * back);
 }
 
 /// What it costs to believe that a target that was lost is at a place; nothing where it cannot be. Where enough of its rigid
@@ -64,7 +85,8 @@ std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector
   }
   if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
   if (options_.rigid_neighbours && path_to(target, place) > kShortPath * target.width) return std::nullopt;
-  return (options_.rigid_neighbours ? kUnknown : 0) + path_to(target, place);
+  if (options_.rigid_neighbours) return kUnknown + path_to(target, place);
+  return std::max(0.0, kLeastImprobable - log_density(target, place));
 }
 
 template <int D>
@@ -79,6 +101,7 @@ void RosterAdoption<D>::adopt_points(std::span<Target> targets, std::span<const 
       const auto price = cost(target, place, neighbours, false);
       if (!price || !likelihood.alike(target, seen[free_[column]])) continue;
       if (!likelihood.believes_jump(path_to(target, place) + target.width)) continue;
+      if (likelihood.cluttered() && likelihood.log_return(log_density(target, place)) < kReturns) continue;
       pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
     }
   }
@@ -105,18 +128,24 @@ void RosterAdoption<D>::begin_anew(Target& target, const Vector<D>& place, const
 
 /// A newcomer that has stayed is one of the targets that are missed.
 template <int D>
-void RosterAdoption<D>::adopt_newcomers(std::span<Target> targets, const RigidNeighbours& neighbours) {
+void RosterAdoption<D>::adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood,
+                                        const RigidNeighbours& neighbours) {
   pairs_.clear();
   proven_.clear();
   for (int i = 0; i < std::ssize(targets); ++i) {
     const Target& newcomer = targets[i];
-    if (!newcomer.on_roster() && newcomer.observation && newcomer.score >= options_.confirm) proven_.push_back(i);
+    const bool shown = newcomer.score >= (likelihood.cluttered() ? kBegun : options_.confirm);
+    if (!newcomer.on_roster() && newcomer.observation && shown) proven_.push_back(i);
   }
   for (int row = 0; row < std::ssize(lost_); ++row) {
     const Target& target = targets[lost_[row]];
     if (target.observation) continue;
     for (const int column : proven_) {
       const Target& newcomer = targets[column];
+      if (likelihood.cluttered()) {  // that it stays, and that it is where the target may be, prove it together
+        const double there = likelihood.log_return(log_density(target, newcomer.last_place));
+        if (newcomer.score + there < kTogether) continue;
+      }
       const auto price = cost(target, newcomer.last_place, neighbours, options_.rigid_neighbours && newcomer.seen > kStayed);
       if (price) pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
     }

@@ -27,11 +27,12 @@ class RosterAdoption {
 
  private:
   double path_to(const Target& target, const Vector<D>& place) const;
+  double log_density(const Target& target, const Vector<D>& place) const;
   std::optional<double> cost(const Target& target, const Vector<D>& place, const RigidNeighbours& neighbours, bool stayed) const;
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
                     const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
   void begin_anew(Target& target, const Vector<D>& place, const Matrix<D>& R) const;
-  void adopt_newcomers(std::span<Target> targets, const RigidNeighbours& neighbours);
+  void adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
 
   RosterTrackerOptions options_;
   // What a frame needs, kept so that it is allocated once.

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/LU>
 
@@ -37,6 +38,25 @@ struct RosterTarget {
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established
 
+  /// Its last observations, the newest last: from them the filter is begun again without those that show a marker in part.
+  struct Measured {
+    Vector<D> place;
+    Matrix<D> covariance;
+    double dt = 0;      ///< s, since the one before
+    bool whole = true;  ///< not smaller than the marker
+  };
+  /// What it was before it took a point that may as well be a false one; given back where the next frame does not bear that out.
+  struct Doubt {
+    filter::AnyFilter<D> filter;
+    Vector<D> last_place;
+    double unseen = 0;  ///< s
+    double score = 0;   ///< log-likelihood ratio of its points since, against clutter
+  };
+  std::vector<Doubt> doubt = {};  ///< one or none
+
+  static constexpr std::size_t kKept = 14;
+  std::vector<Measured> measured = {};  ///< at most 2 · kKept; its end counts
+
   bool on_roster() const { return standing != Standing::newcomer; }
   bool missed() const { return !observation && !covered_by; }
 };
@@ -60,13 +80,21 @@ class RosterLikelihood {
     return R;
   }
 
-  /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that.
+  /// A marker that shows in part, at the edge of what hides it, is smaller than it was, and its centre off by up to half of that:
+  /// always to the same side, so that the filter would take it for a change of velocity.
   Matrix<D> noise_of(const Observation<D>& observation, const RosterTarget<D>& target) const {
     Matrix<D> R = noise_of(observation);
     R.diagonal().array() += target.predicted_variance;
-    const double change = std::abs(width_of(observation) - target.width) - kWidthNoise * target.width;
-    if (change > 0) R.diagonal().array() += change * change;
+    const double lost = target.width - width_of(observation);
+    if (!shows_whole(target, observation)) R.diagonal().array() += kPartNoise * kPartNoise * lost * lost;
+    const double growth = -lost - kWidthNoise * target.width;
+    if (growth > 0) R.diagonal().array() += growth * growth;
     return R;
+  }
+
+  /// Whether the point is as large as the target, but for what the pixels' raster makes of it.
+  bool shows_whole(const RosterTarget<D>& target, const Observation<D>& observation) const {
+    return target.width - width_of(observation) < kPartWidth * target.width + kPartPixels;
   }
 
   /// Whether the point may be a target that comes back.
@@ -94,17 +122,30 @@ class RosterLikelihood {
            std::log(clutter_density);
   }
 
-  static constexpr double kWidthNoise = 0.2;  // of the width: what the pixels' raster makes of it
+  /// How much likelier it is that the target comes back at the point than that the point is a false one, as a logarithm.
+  double log_return(double log_likelihood) const {
+    return log_likelihood - std::log(std::max(unexplained_, kLeastClutter) / std::pow(extent_, D));
+  }
+
+  /// Whether there are so many false points that one that stands alone proves little.
+  bool cluttered() const { return D == 2 && unexplained_ > kCluttered; }
+
+  static constexpr double kWidthNoise = 0.2;   // of the width: what the pixels' raster makes of it
+  static constexpr double kPartWidth = 0.08;   // of the width, and
+  static constexpr double kPartPixels = 0.35;  // px less than it: it shows in part
+  static constexpr double kPartNoise = 3;      // times what it has lost of its width: a marker's place that shows in part
 
  private:
   static constexpr double kMostGrowth = 2.5;     // a lost marker comes back no larger, no smaller than by this
   static constexpr double kClutterMemory = 0.1;  // a frame
   static constexpr double kClutterLimit = 0.02;  // false points to be expected where a jump is still believed at once
+  static constexpr double kAtFirst = 0.5;        // false points a frame, before anything is known
+  static constexpr double kCluttered = 0.05;     // false points a frame, from which a single one is doubted
   static constexpr double kLeastClutter = 0.01;  // false points a frame that are always thought possible
 
   RosterTrackerOptions options_;
-  double unexplained_ = 0;  // points a frame that no target explains, a running mean
-  double extent_ = 1;       // of the scene, px
+  double unexplained_ = D == 2 ? kAtFirst : 0;  // points a frame that no target explains, a running mean
+  double extent_ = 1;                           // of the scene, px
 };
 
 }  // namespace marey::track

@@ -57,9 +57,11 @@ class RosterTracker final : public ImmediateTracker<D> {
         match(seen, [&](const Target& target) { return !target.observation; });
       } else {
         match(seen, [](const Target&) { return true; });
+        if (undo_doubted()) match(seen, [](const Target& target) { return !target.observation; });
       }
       meet(seen);
       adoption_.find_lost(targets_, seen, taken_, likelihood_, neighbours_.all());
+      forget_parts();
       correct(seen);
       judge_newcomers();
       start_unmatched(seen);
@@ -90,13 +92,95 @@ class RosterTracker final : public ImmediateTracker<D> {
     dt_ = this->seconds_to(now);
     now_ = now;
     for (Target& target : targets_) {
-      // A lost target drifts on for a while; then it is waited for where that led, not flown out of the picture.
-      if (target.unseen < kCoast || target.predicted_variance > 0) target.filter.predict(dt_);
+      // A lost target goes on as it went; where that leads out of the picture it is waited for.
+      if (target.unseen == 0) {
+        target.filter.predict(dt_);
+      } else if (coasts(target)) {
+        target.filter.predict_unseen(dt_);
+      }
+      for (auto& doubt : target.doubt) {
+        doubt.filter.predict_unseen(dt_);
+        doubt.unseen += dt_;
+      }
       target.unseen += dt_;
       target.observation.reset();
       target.covered_by.reset();
       target.crowded = false;
     }
+  }
+
+  /// Targets that took a doubtful point and are missed right afterwards are what they were before. Whether there are any.
+  bool undo_doubted() {
+    bool any = false;
+    for (Target& target : targets_) {
+      if (target.doubt.empty() || target.observation) continue;
+      auto& before = target.doubt.front();
+      target.filter = std::move(before.filter);
+      target.last_place = before.last_place;
+      target.unseen = before.unseen;
+      if (!target.measured.empty()) target.measured.pop_back();
+      target.doubt.clear();
+      any = true;
+    }
+    return any;
+  }
+
+  /// Keeps what the target was before it takes a point, as long as that may as well be clutter.
+  void doubt(Target& target, const Vector<D>& place, const Matrix<D>& R) {
+    if (!likelihood_.cluttered() || !target.on_roster()) return;
+    const double worth = likelihood_.log_return(target.filter.log_likelihood(place, R));
+    if (!target.doubt.empty()) {
+      target.doubt.front().score += worth;
+      if (target.doubt.front().score > kBelieved) target.doubt.clear();
+    } else if (worth < kDoubted) {
+      target.doubt.push_back({target.filter, target.last_place, target.unseen, worth});
+    }
+  }
+
+  bool coasts(const Target& target) const {
+    if (target.predicted_variance > 0) return true;
+    if constexpr (D == 2) {
+      const Vector<2>& place = target.filter.position();
+      const auto& picture = options_.picture;
+      if (picture) {
+        return place.x() > picture->left && place.x() < picture->right() && place.y() > picture->top &&
+               place.y() < picture->bottom();
+      }
+      return target.unseen < kLongCoast;
+    }
+    return target.unseen < kCoast;
+  }
+
+  /// A target that vanished behind an edge was seen in part before: its filter is begun again from what was seen of it whole.
+  void forget_parts() {
+    for (Target& target : targets_) {
+      auto& measured = target.measured;
+      if (!target.missed() || target.unseen > 1.5 * dt_ || measured.empty() || measured.back().whole) continue;
+      double unseen = dt_;
+      int more = kUnnoticed;
+      while (measured.size() > kFewestKept && (!measured.back().whole || more-- > 0)) {
+        unseen += measured.back().dt;
+        measured.pop_back();
+      }
+      const std::size_t first = measured.size() > Target::kKept ? measured.size() - Target::kKept : 0;
+      filter::AnyFilter<D> fresh(options_.filter, measured[first].place, measured[first].covariance);
+      for (std::size_t i = first + 1; i < measured.size(); ++i) {
+        fresh.predict(measured[i].dt);
+        fresh.correct(measured[i].place, measured[i].covariance);
+      }
+      fresh.predict(dt_);
+      fresh.predict_unseen(unseen - dt_);
+      target.filter = std::move(fresh);
+    }
+  }
+
+  static void remember(Target& target, const Vector<D>& place, const Matrix<D>& R, bool whole) {
+    auto& measured = target.measured;
+    if (measured.size() >= 2 * Target::kKept) {
+      measured.erase(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(measured.size() - Target::kKept));
+    }
+    if (target.unseen > kLongGap) measured.clear();
+    measured.push_back({place, R, target.unseen, whole});
   }
 
   void start_roster(std::span<const Observation<D>> seen) {
@@ -118,6 +202,7 @@ class RosterTracker final : public ImmediateTracker<D> {
   }
 
   void start(const Observation<D>& observation, int index, Standing standing) {
+    if (D == 2) likelihood_.widen_scene(observation.value);
     targets_.push_back({.id = TrackId{next_id_++},
                         .label = {},
                         .filter = {options_.filter, observation.value, likelihood_.noise_of(observation)},
@@ -196,9 +281,15 @@ class RosterTracker final : public ImmediateTracker<D> {
     if (residual.squaredNorm() > square(options_.max_speed * target.unseen + target.width)) return 0;
     const Matrix<D> R = likelihood_.noise_of(point, target);
     if (target.filter.gate_distance(point.value, R) > 1) return 0;
-    if (target.unseen > 1.5 * dt_ && !likelihood_.believes_jump(residual.norm() + target.width)) return 0;
-    const Matrix<D> S = target.filter.innovation_covariance(R);
-    const double cost = residual.dot(S.inverse() * residual) + std::log(S.determinant() / square(reference_variance()));
+    const double log_likelihood = target.filter.log_likelihood(point.value, R);
+    if (target.unseen > 1.5 * dt_) {
+      if (!likelihood_.believes_jump(residual.norm() + target.width)) return 0;
+      if (likelihood_.cluttered() && likelihood_.log_return(log_likelihood) < kReturns) return 0;
+    }
+    if (likelihood_.cluttered()) {  // against a false point here and, where the target is known to be there, none of its own
+      return 2 * (likelihood_.log_return(log_likelihood) + (target.standing == Standing::established ? kHardlyMissed : 0));
+    }
+    const double cost = -2 * log_likelihood - D * kLogTwoPi - std::log(square(reference_variance()));
     return std::max(1e-3, kRoom - cost) + (target.on_roster() ? kRoom : 0);
   }
 
@@ -253,7 +344,9 @@ class RosterTracker final : public ImmediateTracker<D> {
       Matrix<D> R = likelihood_.noise_of(point, target);
       if (target.crowded) R.diagonal().array() += square(kCrowdNoise * target.width);
       if (target.standing != Standing::established) target.score += likelihood_.log_ratio(target, point.value, R);
+      doubt(target, point.value, R);
       target.filter.correct(point.value, R);
+      remember(target, point.value, R, likelihood_.shows_whole(target, point));
       if (!target.crowded) target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
       target.last_place = point.value;
       target.unseen = 0;
@@ -320,13 +413,22 @@ class RosterTracker final : public ImmediateTracker<D> {
 
   static double square(double value) { return value * value; }
 
-  static constexpr double kCoast = 0.5;           // s that a lost target drifts on
-  static constexpr double kProof = 1;             // s: a target seen for less and gone was never there
-  static constexpr double kRoom = 24;             // twice the log-likelihood that a pair may cost
-  static constexpr double kWidestGate = 5;        // standard deviations
-  static constexpr double kCrowded = 1.4;         // marker widths between two that disturb each other's centres
-  static constexpr double kCrowdNoise = 0.25;     // marker widths by which they do
-  static constexpr double kMissPenalty = 3;       // log of 1 over the chance that a marker is missed
+  static constexpr double kCoast = 0.5;          // s that a lost target drifts on in space
+  static constexpr double kLongCoast = 3;        // s that it does in an image of unknown size
+  static constexpr double kLongGap = 0.2;        // s, before which nothing is remembered
+  static constexpr double kReturns = 5;          // log-likelihood ratio against clutter from which a point brings a target back
+  static constexpr double kDoubted = 4;          // the same below which what was before is kept
+  static constexpr double kBelieved = 8;         // and of all points since, from which it is no more
+  static constexpr int kUnnoticed = 2;           // frames in which less is missing than can be told
+  static constexpr std::size_t kFewestKept = 3;  // observations
+  static constexpr double kLogTwoPi = 1.8378770664093453;
+  static constexpr double kProof = 1;          // s: a target seen for less and gone was never there
+  static constexpr double kRoom = 24;          // twice the log-likelihood that a pair may cost
+  static constexpr double kWidestGate = 5;     // standard deviations
+  static constexpr double kCrowded = 1.4;      // marker widths between two that disturb each other's centres
+  static constexpr double kCrowdNoise = 0.25;  // marker widths by which they do
+  static constexpr double kHardlyMissed = 14;  // the same of one that was just seen: a corner is likelier than that it is hidden now
+  static constexpr double kMissPenalty = 3;   // log of 1 over the chance that a marker is missed
   static constexpr double kWidthMemory = 0.1;     // a frame
   static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is weighed
   static constexpr std::size_t kFewTargets = 64;

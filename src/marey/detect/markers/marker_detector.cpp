@@ -15,6 +15,7 @@
 #include "marey/detect/markers/marker_auto_mask.h"
 #include "marey/detect/markers/marker_fit.h"
 #include "marey/detect/markers/marker_levels.h"
+#include "marey/detect/markers/marker_local.h"
 #include "marey/detect/markers/marker_neighbours.h"
 #include "marey/detect/markers/marker_split.h"
 
@@ -28,28 +29,23 @@ constexpr double kOfRoundness = 0.6;       // a blob this much less round is not
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
 constexpr double kColourDeviation = 0.5;   // px; where chroma lies within its four pixels is not known for certain
 constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a coloured marker
-constexpr double kUnlikeArea = 6;          // times the area of a typical disc
+constexpr double kUnlikeArea = 10;         // times the area of a typical disc
+constexpr double kOverRim = 0.5;           // of the contrast asked of markers: by so much even a half-hidden one passes its rim
+constexpr double kLeastRegion = 30;        // px²: less holds no marker beside what is around it
+constexpr double kLeastRoundRegion = 400;  // px²: one as round as a marker is looked into from here on, where no disc fits it
+constexpr double kRegionMisfit = 0.15;     // of the contrast: what leaves less is a shaded ball
+constexpr double kUnlikeDisc = 40;         // times the area of a typical disc: a lamp
+constexpr double kUnlikeGlow = 4;          // the same of one whose edge is softer than the others' by
+constexpr double kUnlikeBlur = 2;
+constexpr double kLeastTypical = 15;  // px²: from a few pixels nothing is told
+constexpr double kAsBright = 0.5;     // of the brightest disc's contrast, to tell what is typical
+constexpr int kFirstLooks = 3;        // at a first picture: each raises the threshold to what markers stand out by
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
   const double mean = (blob.var_x + blob.var_y) / 2;
   const double largest = mean + std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
   return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
-}
-
-/// The middle of the pixels along the border of `frame`; `otherwise` where all of it lies outside the picture.
-double rim_level(const cv::Mat& luma, const cv::Rect& frame, double otherwise) {
-  std::vector<int> rim;
-  const cv::Rect within({}, luma.size());
-  const auto look = [&](int x, int y) {
-    if (within.contains({x, y})) rim.push_back(luma.depth() == CV_8U ? luma.at<std::uint8_t>(y, x) : luma.at<std::uint16_t>(y, x));
-  };
-  for (int x = frame.x; x < frame.br().x; ++x) look(x, frame.y), look(x, frame.br().y - 1);
-  for (int y = frame.y; y < frame.br().y; ++y) look(frame.x, y), look(frame.br().x - 1, y);
-  if (rim.empty()) return otherwise;
-  const auto middle = rim.begin() + static_cast<std::ptrdiff_t>(rim.size() / 2);
-  std::nth_element(rim.begin(), middle, rim.end());
-  return *middle;
 }
 
 /// How far each pixel stands out from what is wider than a marker: the picture less its morphological opening (a dark one: its
@@ -85,13 +81,18 @@ class MarkerDetector::Impl {
  private:
   const cv::Mat& prepare(const Picture& picture);
   std::span<const MarkerBlob> find(const cv::Mat& searched);
+  std::span<const MarkerBlob> find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs);
+  bool is_region(const cv::Mat& luma, const MarkerBlob& blob);
+  bool stands_out(const cv::Mat& luma, const MarkerBlob& blob, bool is_disc) const;
   void mask_more(const MarkerMask& learned);
   void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
   void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
                std::vector<Detection>& found);
   Detection report(const MarkerShape& shape, const MarkerBlob& blob);
+  std::optional<double> typical_area() const;
   void drop_unlike(std::vector<Detection>& found);
+  void learn_blur();
   void learn_from(std::vector<double>& contrasts);
 
   MarkerOptions options_;
@@ -108,9 +109,17 @@ class MarkerDetector::Impl {
   std::vector<std::size_t> chosen_;
   MarkerNeighbours neighbours_;
   MarkerWindow window_;
+  InnerBlobFinder inner_;
+  std::vector<MarkerBlob> all_;  // those within others after the others
+  std::size_t outer_ = 0;        // of them
   std::vector<MarkerBlob> full_size_;
-  std::vector<double> contrasts_, blurs_, disc_areas_;
-  std::vector<char> is_disc_;  // for each detection of the frame
+  std::vector<double> contrasts_, blurs_;
+  /// What a detection was made of.
+  struct Kind {
+    double contrast = 0, area = 0, blur = 0;  // grey levels, px², px
+    bool disc = false;
+  };
+  std::vector<Kind> kinds_;  // of the frame's detections
   std::optional<double> blur_;
   std::optional<double> disc_area_;  // px², typical
   int split_pixels_left_ = 0;
@@ -160,10 +169,19 @@ const cv::Mat& MarkerDetector::Impl::prepare(const Picture& picture) {
 std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) {
   if (!options_.colour) {
     MarkerLevels& levels = looks_close_by() ? spot_levels_ : levels_;
-    const auto blobs = finder_.find(searched, levels.thresholds(), mask_);
-    if (!finder_.cut_at()) return blobs;
-    levels.learn(searched, true);  // the light may have changed at once
-    return finder_.find(searched, levels.thresholds(), mask_);
+    auto blobs = finder_.find(searched, levels.thresholds(), mask_);
+    if (finder_.cut_at()) {
+      levels.learn(searched, true);  // the light may have changed at once
+      blobs = finder_.find(searched, levels.thresholds(), mask_);
+    }
+    const bool begins = !levels.knows_contrast();
+    for (int look = 0; begins && look < kFirstLooks; ++look) {
+      const auto contrast = bright_contrast(searched, blobs, levels, options_.dark && !looks_close_by());
+      if (!contrast) break;
+      levels.begin_contrast(*contrast);
+      blobs = finder_.find(searched, levels.thresholds(), mask_);
+    }
+    return looks_close_by() || options_.threshold ? blobs : find_inner(searched, blobs);
   }
   full_size_.clear();
   for (MarkerBlob blob : finder_.find(searched, colour_thresholds_, mask_)) {
@@ -177,6 +195,34 @@ std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) 
     full_size_.push_back(blob);
   }
   return full_size_;
+}
+
+/// What passes the threshold and is too large, too long or too unlike a disc for a marker, but may have one before it.
+bool MarkerDetector::Impl::is_region(const cv::Mat& luma, const MarkerBlob& blob) {
+  const auto area = static_cast<double>(blob.area);
+  if (area < kLeastRegion) return false;
+  if (area > options_.max_area || roundness(blob) < kOfRoundness * options_.min_roundness) return true;
+  if (area < kLeastRoundRegion) return false;
+  const MarkerSurroundings around = surroundings(luma, blob);
+  collect_window(luma, blob, around, {}, window_);
+  const MarkerShape shape = fit_disc(window_, blob, around);
+  return !shape.fitted || shape.misfit > std::max(kRegionMisfit, 3 * around.noise / window_.scale);
+}
+
+std::span<const MarkerBlob> MarkerDetector::Impl::find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs) {
+  outer_ = blobs.size();
+  const auto region = [&](const MarkerBlob& blob) { return is_region(searched, blob); };
+  if (std::none_of(blobs.begin(), blobs.end(), region)) return blobs;
+  all_.assign(blobs.begin(), blobs.end());
+  inner_.find(searched, finder_, levels_.least(), options_.dark, all_, region);
+  return all_;
+}
+
+/// Whether a blob stands out from what lies right around it, and not only from its tile; a disc may have others close by.
+bool MarkerDetector::Impl::stands_out(const cv::Mat& luma, const MarkerBlob& blob, bool is_disc) const {
+  if (options_.colour || options_.threshold || looks_close_by()) return true;
+  const double least = levels_.least(kOverRim);
+  return height_over_rim(luma, blob, options_.dark, is_disc) > least;
 }
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
@@ -197,11 +243,11 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   neighbours_.file(blobs, chosen_, luma.size());
   contrasts_.clear();
   blurs_.clear();
-  disc_areas_.clear();
-  is_disc_.clear();
+  kinds_.clear();
   split_pixels_left_ = kMostSplitPixels;
   result.detections.reserve(chosen_.size());
   for (const std::size_t index : chosen_) measure(luma, blobs, index, expected, result.detections);
+  learn_blur();
   drop_unlike(result.detections);
   counts_.markers += static_cast<std::int64_t>(result.detections.size());
   learn_from(contrasts_);
@@ -221,6 +267,7 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<c
   chosen_.clear();
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     const auto area = static_cast<double>(blobs[i].area);
+    if (area == 0) continue;  // a region: what lies within it follows
     if (area < options_.min_area) {
       ++counts_.too_small;
     } else if (area > options_.max_area) {
@@ -255,12 +302,13 @@ MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const
   around.white = levels_.white();
   around.dark = options_.dark;
   around.blur = blur_;
-  if (!options_.colour && !options_.threshold && !looks_close_by()) return around;
+  const bool within = outer_ < all_.size() && &blob >= all_.data() + outer_ && &blob < all_.data() + all_.size();
+  if (!options_.colour && !options_.threshold && !looks_close_by() && !within) return around;
   // A coloured marker may be brighter or darker than what is around it, and beside a fixed threshold a tile may be mostly of
   // something else than what lies round the marker.
-  const cv::Rect within({}, luma.size());
-  around.background = rim_level(luma, {blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6}, around.background);
-  if (options_.colour) around.dark = cv::mean(luma(blob.box & within))[0] < around.background;
+  const auto rim = rim_levels(luma, {blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6}, options_.dark);
+  if (rim) around.background = rim->middle;
+  if (options_.colour) around.dark = cv::mean(luma(blob.box & cv::Rect({}, luma.size())))[0] < around.background;
   return around;
 }
 
@@ -277,6 +325,11 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     lone.covariance = Matrix<2>::Identity() * (kColourDeviation * kColourDeviation);
   }
   const double grain = 3 * around.noise / window_.scale;
+  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
+  if (!stands_out(luma, blob, is_disc)) {
+    ++counts_.too_dim;
+    return;
+  }
   if (lone.misfit > std::max(kShapeMisfit, grain) && blob.area >= 8 && window_.count <= split_pixels_left_) {
     split_pixels_left_ -= window_.count;
     const auto several = static_cast<std::size_t>(std::count_if(expected.begin(), expected.end(), [&](const Expected& e) {
@@ -288,7 +341,7 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
       ++counts_.split;
       for (const MarkerShape& part : parts) {
         found.push_back(report(part, blob));
-        is_disc_.push_back(1);
+        kinds_.push_back({part.contrast, std::numbers::pi * part.radius * part.radius, part.blur, true});
       }
       return;
     }
@@ -298,16 +351,14 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     return;
   }
   if (!lone.fitted) ++counts_.not_fitted;
-  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
   if (is_disc) {
     blurs_.push_back(lone.blur);
-    disc_areas_.push_back(static_cast<double>(blob.area));
   }
   contrasts_.push_back(window_.scale);
   Detection detection = report(lone, blob);
   detection.box = {static_cast<double>(blob.box.x), static_cast<double>(blob.box.y), static_cast<double>(blob.box.width),
                    static_cast<double>(blob.box.height)};
-  is_disc_.push_back(is_disc ? 1 : 0);
+  kinds_.push_back({lone.fitted ? lone.contrast : window_.scale, static_cast<double>(blob.area), lone.blur, is_disc});
   found.push_back(std::move(detection));
 }
 
@@ -324,18 +375,34 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   return detection;
 }
 
-/// Markers of one recording are of one kind. What no disc fits and is many times as large as the discs is something else that is
-/// bright: the edge of a barrier, a window. Where no disc is seen at all, nothing is dropped.
-void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
-  if (!disc_areas_.empty()) {
-    const auto middle = disc_areas_.begin() + static_cast<std::ptrdiff_t>(disc_areas_.size() / 2);
-    std::nth_element(disc_areas_.begin(), middle, disc_areas_.end());
-    disc_area_ = disc_area_ ? *disc_area_ + (*middle - *disc_area_) / 8 : *middle;
+/// The middle area of what is bright in the frame, the lower one of two: specks are dim, and lamps are few.
+std::optional<double> MarkerDetector::Impl::typical_area() const {
+  double brightest = 0;
+  for (const Kind& kind : kinds_) brightest = std::max(brightest, kind.contrast);
+  std::vector<double> areas;
+  bool any_disc = false;
+  for (const Kind& kind : kinds_) {
+    if (kind.contrast < kAsBright * brightest) continue;
+    areas.push_back(kind.area);
+    any_disc = any_disc || kind.disc;
   }
+  if (!any_disc) return std::nullopt;
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>((areas.size() - 1) / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return std::max(kLeastTypical, *middle);
+}
+
+/// Markers of one recording are of one kind. What no disc fits and is many times as large as the discs is something else that is
+/// bright: the edge of a barrier, a window. Bright and large discs say how large a disc is, specks do not: what is saturated,
+/// blurred, drawn out or touches another is not much larger than those. Where no disc is seen at all, nothing is dropped.
+void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
+  if (const auto typical = typical_area()) disc_area_ = disc_area_ ? *disc_area_ + (*typical - *disc_area_) / 8 : *typical;
   if (!disc_area_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!is_disc_[i] && found[i].box.area() > kUnlikeArea * *disc_area_) {
+    const Kind& kind = kinds_[i];
+    const bool soft = kind.disc && kind.area > kUnlikeGlow * *disc_area_ && blur_ && kind.blur > kUnlikeBlur * *blur_;
+    if (soft || found[i].box.area() > (kind.disc ? kUnlikeDisc : kUnlikeArea) * *disc_area_) {
       ++counts_.unlike;
       continue;
     }
@@ -343,6 +410,14 @@ void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
     ++kept;
   }
   found.resize(kept);
+}
+
+/// The lower one of two in the middle: a lamp's edge is the softer one.
+void MarkerDetector::Impl::learn_blur() {
+  if (blurs_.empty()) return;
+  const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>((blurs_.size() - 1) / 2);
+  std::nth_element(blurs_.begin(), middle, blurs_.end());
+  blur_ = blur_ ? *blur_ + (*middle - *blur_) / 8 : *middle;
 }
 
 void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
@@ -354,10 +429,6 @@ void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
   for (MarkerLevels* levels : {&levels_, &spot_levels_}) {
     levels->learn_contrast(squares > 0 ? std::optional(cubes / squares) : std::nullopt);
   }
-  if (blurs_.empty()) return;
-  const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>(blurs_.size() / 2);
-  std::nth_element(blurs_.begin(), middle, blurs_.end());
-  blur_ = blur_ ? *blur_ + (*middle - *blur_) / 8 : *middle;
 }
 
 MarkerDetector::MarkerDetector(MarkerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
@@ -373,7 +444,7 @@ Detections MarkerDetector::detect(const Frame& frame, std::span<const Expected> 
 
 DetectionCounts MarkerDetector::detection_counts() const {
   const MarkerCounts& all = counts();
-  return {all.too_small, all.too_large + all.not_round + all.unlike};
+  return {all.too_small + all.too_dim, all.too_large + all.not_round + all.unlike};
 }
 
 const MarkerCounts& MarkerDetector::counts() const {
@@ -395,6 +466,12 @@ std::vector<std::string> warnings(const MarkerCounts& counts) {
         fmt::format("{} blobs beyond the most markers allowed a frame were left out: is there glare? A mask or a higher "
                     "threshold helps",
                     counts.over_limit));
+  }
+  if (counts.unlike > 0) {
+    result.push_back(
+        fmt::format("{} bright things that are no discs and more than {:g} times as large as the markers were left out; --widest "
+                    "finds markers before them",
+                    counts.unlike, kUnlikeArea));
   }
   if (counts.frames_cut > 0) {
     result.push_back(

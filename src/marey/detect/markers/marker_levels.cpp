@@ -15,12 +15,13 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
-constexpr int kGrid = 8;             // samples a tile, each way
-constexpr int kShare = 32;           // frames in which every tile is looked at once
-constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kLeast = 0.03;      // of white; of what was compressed or rounded to 8 bits
-constexpr double kLeastRaw = 0.01;   // of a picture of more bits
-constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
+constexpr int kGrid = 8;                 // samples a tile, each way
+constexpr int kShare = 32;               // frames in which every tile is looked at once
+constexpr double kSigmas = 6;            // a million pixels of pure noise: one false pixel in a thousand frames
+constexpr double kLeast = 0.03;          // of white; of what was compressed or rounded to 8 bits
+constexpr double kLeastRaw = 0.01;       // of a picture of more bits
+constexpr double kOfContrast = 0.3;      // of the bright ones': a dim edge of something else is no marker
+constexpr double kMostOfContrast = 0.5;  // that the texture of a tile asks for; what lies close by decides the rest
 constexpr int kMostChange = 1023;
 
 double value_at(const cv::Mat& image, int x, int y) {
@@ -109,9 +110,13 @@ double MarkerLevels::smooth_median(int tile) const {
   return around[(n - 1) / 2];
 }
 
+double MarkerLevels::least(double share) const {
+  return std::max({kSigmas * noise_, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, share * kOfContrast * contrast_});
+}
+
 double MarkerLevels::needed(int tile) const {
-  const double sigma = std::max<double>(noise_, raw_[tile].spread);
-  return std::max({kSigmas * sigma, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, kOfContrast * contrast_});
+  const double spread = kSigmas * static_cast<double>(raw_[tile].spread);  // of two backgrounds too, where an edge runs through
+  return std::max(least(), contrast_ > 0 ? std::min(spread, kMostOfContrast * contrast_) : spread);
 }
 
 void MarkerLevels::set_threshold(int tile) {
@@ -125,7 +130,13 @@ void MarkerLevels::set_threshold(int tile) {
 
 void MarkerLevels::learn_contrast(std::optional<double> contrast) {
   if (!contrast) return;
+  if (contrast_ < 2 * kSigmas * noise_) contrast_ = 0;  // it was that of noise
   contrast_ = contrast_ > 0 ? contrast_ + (*contrast - contrast_) / kShare : *contrast;
+}
+
+void MarkerLevels::begin_contrast(double contrast) {
+  contrast_ = contrast;
+  for (int tile = 0; tile < tiles_.area(); ++tile) set_threshold(tile);
 }
 
 double MarkerLevels::background(int x, int y) const {

@@ -156,6 +156,44 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
               size.width, size.height);
 }
 
+struct BarMotion {
+  std::vector<Path> paths;
+  Box bar;
+  double level;
+};
+
+/// Markers that pass behind one upright bar, every second one from the other side, each hidden for 12 to 32 frames around the
+/// middle of the video, so that the times overlap.
+BarMotion behind_bar(int markers, int frames, const cv::Size& size, Random& random) {
+  constexpr Range kBar{60, 210};        // px across, of 640
+  constexpr Range kGrey{14, 110};       // level
+  constexpr Range kHidden{12, 32};      // frames
+  constexpr Range kSlope{-0.12, 0.12};  // rad
+  constexpr Range kBend{-0.08, 0.08};   // rad over the whole path
+  constexpr Range kLane{-15, 15};       // px beside the common lane
+  constexpr Range kDelay{-4, 4};        // frames
+  for (int draw = most_draws(frames); draw > 0; --draw) {
+    const double width = kBar.draw(random) * size.width / 640;
+    BarMotion motion{{}, Box::from_centre(middle(size), width, 2.0 * size.height), kGrey.draw(random)};
+    const double lane = random.uniform(-0.3, 0.3) * size.height;
+    bool fits = true;
+    for (int i = 0; i < markers; ++i) {
+      const double speed = width / kHidden.draw(random);
+      const double course = (i % 2 == 0 ? 0 : kPi) + kSlope.draw(random);
+      const Vector<2> late = kDelay.draw(random) * speed * direction(course);
+      const Vector<2> centre = middle(size) + Vector<2>(0, lane + kLane.draw(random)) - late;
+      motion.paths.push_back(through(centre, course, speed, kBend.draw(random), frames, frames));
+      const double clear = width / 2 + kMargin;  // the whole disc shows at both ends
+      const Path& path = motion.paths.back();
+      fits = fits && stays_inside(path, size) && std::abs(path.front().x() - middle(size).x()) > clear &&
+             std::abs(path.back().x() - middle(size).x()) > clear;
+    }
+    if (fits) return motion;
+  }
+  throw Error("no path of {} frames past a bar stays within {} x {} px; ask for fewer frames or a larger picture", frames,
+              size.width, size.height);
+}
+
 std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& size, Random& random) {
   constexpr Range kSpeed{2, 6};       // px a frame, drawn for each marker
   constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
@@ -202,6 +240,8 @@ int paper_length(MarkerSituation situation) {
       return 55;  // 54 predictions: 594 / 11
     case MarkerSituation::occlusion:
     case MarkerSituation::crossing:
+    case MarkerSituation::bar:
+    case MarkerSituation::opposite:
       return 80;  // "about 80 frames"
     case MarkerSituation::plain:
       return 200;  // §IV-B
@@ -221,11 +261,13 @@ bool hidden(const Vector<2>& place, const std::vector<Box>& barriers) {
 }  // namespace
 
 std::span<const NamedSituation> marker_situations() {
-  static constexpr std::array<NamedSituation, 6> kSituations{{{"slow", MarkerSituation::slow_zigzag},
+  static constexpr std::array<NamedSituation, 8> kSituations{{{"slow", MarkerSituation::slow_zigzag},
                                                               {"rapid", MarkerSituation::rapid_zigzag},
                                                               {"acceleration", MarkerSituation::acceleration},
                                                               {"occlusion", MarkerSituation::occlusion},
                                                               {"crossing", MarkerSituation::crossing},
+                                                              {"bar", MarkerSituation::bar},
+                                                              {"opposite", MarkerSituation::opposite},
                                                               {"plain", MarkerSituation::plain}}};
   return kSituations;
 }
@@ -258,6 +300,14 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
     case MarkerSituation::crossing:
       for (Path& path : crossing_pair(frames, options.radius_px, options.size, random)) paths.push_back(std::move(path));
       break;
+    case MarkerSituation::bar:
+    case MarkerSituation::opposite: {
+      BarMotion motion = behind_bar(situation == MarkerSituation::bar ? 1 : 2, frames, options.size, random);
+      for (Path& path : motion.paths) paths.push_back(std::move(path));
+      scene.barriers.push_back(motion.bar);
+      scene.barrier_level = motion.level;
+      break;
+    }
     case MarkerSituation::plain:
       paths.push_back(plain(frames, options.size, random));
       break;
@@ -281,7 +331,7 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
 }
 
 cv::Mat render_frame(const MarkerScene& scene, int index) {
-  constexpr double kGround = 12, kBarrier = 34, kMarker = 202;
+  constexpr double kGround = 12, kMarker = 202;
   const MarkerSceneOptions& options = scene.options;
   std::vector<Disc> discs;
   for (const MarkerTruth& marker : scene.frames[index])
@@ -289,7 +339,7 @@ cv::Mat render_frame(const MarkerScene& scene, int index) {
   for (const Vector<2>& light : scene.clutter[index]) discs.push_back({light, options.radius_px, kMarker, options.blur_px});
   cv::Mat image(options.size, CV_32FC1, cv::Scalar(kGround));
   draw_discs(image, discs);
-  for (const Box& barrier : scene.barriers) draw_barrier(image, barrier, kBarrier);
+  for (const Box& barrier : scene.barriers) draw_barrier(image, barrier, scene.barrier_level);
   return expose(image, options.noise, scene.seed * 100'003 + static_cast<std::uint64_t>(index));
 }
 

@@ -21,6 +21,8 @@ enum class MarkerSituation {
   acceleration,
   occlusion,  ///< one marker passes behind a barrier, on a straight or a bent path
   crossing,   ///< the paper's marker swapping: two markers meet and part
+  bar,        ///< one marker, nearly straight, 12 to 32 frames behind a bar of any grey that crosses the picture
+  opposite,   ///< the same with two, from opposite sides, hidden at the same time in one lane
   plain,      ///< smooth curves that do not fail anyone: for timing
 };
 
@@ -57,6 +59,7 @@ struct MarkerScene {
   std::vector<std::vector<MarkerTruth>> frames;
   std::vector<std::vector<Vector<2>>> clutter;  ///< px, by frame
   std::vector<Box> barriers;                    ///< px; they hide what is behind them
+  double barrier_level = 34;                    ///< grey level
 };
 
 /// Draws one video of a situation from `seed`: the same one on every machine.
