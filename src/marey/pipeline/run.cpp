@@ -101,7 +101,7 @@ void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& coun
   const bool stopped_before = summary.stopped;  // then a film shows all that was tracked until then
   std::int64_t done = 0;
   while (auto instant = rest.next()) {
-    if (pictures && !pictures->attach_to(*instant)) pictures.reset();
+    if (pictures && instant->frames.empty() && !pictures->attach_to(*instant)) pictures.reset();
     counter.add(*instant);
     if (!sinks.write(std::move(*instant))) break;
     if (!sinks.want_pictures()) continue;
@@ -123,7 +123,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   while (const std::optional<FrameSet> frames = clock.next()) {
     for (const Instant& known : stage.step(*frames)) {
       Instant instant = known;
-      if (instant.index == frames->index) attach(instant.frames, *frames);
+      if (instant.index == frames->index && instant.frames.empty()) attach(instant.frames, *frames);
       counter.add(instant);
       if (!sinks.write(std::move(instant))) summary.stopped = true;
     }
