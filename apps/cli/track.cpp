@@ -36,6 +36,8 @@ struct TrackCommand {
   MarkerFlags markers;
   GroundFlags ground;
   bool live = false;
+  std::optional<double> delay;
+  bool seen_only = false;
   bool quiet = false;
   bool json = false;
 };
@@ -98,7 +100,17 @@ void run_on_ground(const TrackCommand& command) {
   track_on_ground(ground_command(command), command.ground, command.people);
 }
 
+void check_live(const TrackCommand& command) {
+  if (command.delay && !command.live)
+    throw WrongUsage("--delay {}: only --live has one; without it everything is looked at before anything is written",
+                     *command.delay);
+  const bool in_picture = command.targets == Targets::people && !command.ground.ground;
+  if (command.delay && !in_picture) throw WrongUsage("{}", "--delay is for people in one picture; leave it out");
+  if (command.seen_only && !in_picture) throw WrongUsage("{}", "--seen-only is for people in one picture; leave it out");
+}
+
 void run(const TrackCommand& command) {
+  check_live(command);
   if (command.ground.ground) return run_on_ground(command);
   if (command.input.source.ends_with(".toml"))
     throw WrongUsage("{} is a rig: add --ground to follow people on the ground that its cameras look at", command.input.source);
@@ -113,7 +125,9 @@ void run(const TrackCommand& command) {
     const pipeline::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
   } else {
-    const pipeline::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
+    pipeline::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
+    options.delay = command.delay.value_or(0);
+    options.seen_only = command.seen_only;
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
   }
 }
@@ -168,6 +182,9 @@ void add_track(Command& program) {
       .check(filter::filter_named);
   command.choice("--targets", options->targets, kTargets, "what is followed");
   command.flag("--live", options->live, "write each frame's tracks as they come; nothing is improved by what came later");
+  command.number("--delay", options->delay, "s", closed(0, 60),
+                 "with --live: look so far ahead before each frame's tracks are written (default: 0)");
+  command.flag("--seen-only", options->seen_only, "leave out the rows of people whom nobody saw in that frame");
   command.reports(options->json, options->quiet);
   add_people_options(command, options->people);
   add_marker_options(command, options->markers);

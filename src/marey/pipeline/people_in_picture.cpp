@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
+#include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
 #include "marey/track/tracklet_log.h"
@@ -37,17 +38,21 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
 
 /// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
 track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOptions& options) {
-  track::TrackerOptions tracker = options.tracker;
+  track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
   tracker.steady_camera = feed.has_pictures();
   tracker.reidentify = tracker.steady_camera && options.live;
   return tracker;
 }
 
+void leave_out_unseen(Instant& instant) {
+  std::erase_if(instant.samples, [](const Sample& sample) { return !sample.measured(); });
+}
+
 /// What the second pass made of the recording, frame by frame.
 class JoinedRows final : public InstantSource {
  public:
-  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineLog* outlines)
-      : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines) {}
+  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineLog* outlines, bool seen_only)
+      : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines), seen_only_(seen_only) {}
 
   std::optional<Instant> next() override {
     if (next_ == moments_.size()) return std::nullopt;
@@ -56,6 +61,7 @@ class JoinedRows final : public InstantSource {
     instant.time = moments_[next_].time;
     for (const Track<2>& track : by_number_.at(static_cast<std::int64_t>(next_++))) instant.samples.push_back(sample_of(track));
     for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
+    if (seen_only_) leave_out_unseen(instant);
     return instant;
   }
 
@@ -63,7 +69,24 @@ class JoinedRows final : public InstantSource {
   std::vector<track::TrackRow> rows_;
   std::vector<Recording::Moment> moments_;  // frames may be missing between them: rows count these
   track::RowsByFrame by_number_;
+  bool seen_only_;
   std::size_t next_ = 0;
+};
+
+/// What a live run still waited with when the recording ended.
+class LiveRest final : public InstantSource {
+ public:
+  LiveRest(track::LiveTracks& live, bool seen_only) : live_(live), seen_only_(seen_only) {}
+
+  std::optional<Instant> next() override {
+    std::optional<Instant> instant = live_.next(true);
+    if (instant && seen_only_) leave_out_unseen(*instant);
+    return instant;
+  }
+
+ private:
+  track::LiveTracks& live_;
+  bool seen_only_;
 };
 
 class PeopleInPicture final : public Stage {
@@ -81,6 +104,7 @@ class PeopleInPicture final : public Stage {
       detector_ = detect::make_detector(options.detector);
       if (!options.live) detector_->prime(feed.sample_beginning());
     }
+    if (options.live) live_.emplace(options.delay);
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
     follower_.emplace(*options.outlines);
@@ -95,7 +119,7 @@ class PeopleInPicture final : public Stage {
     const auto tracks = follow(given.frame, seen);
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += std::ssize(seen.detections);
-    if (options_.live) return told(given.frame, tracks);
+    if (live_) return told(given.frame, tracks);
     const auto number = std::ssize(moments_);
     recording_.add(number, given.frame.time, tracks);
     moments_.push_back({given.frame.index, given.frame.time});
@@ -104,9 +128,9 @@ class PeopleInPicture final : public Stage {
   }
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
-    if (options_.live) return nullptr;
+    if (live_) return std::make_unique<LiveRest>(*live_, options_.seen_only);
     return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_),
-                                        outlines_ ? &*outlines_ : nullptr);
+                                        outlines_ ? &*outlines_ : nullptr, options_.seen_only);
   }
 
   void report(Summary& summary) const override {
@@ -135,14 +159,16 @@ class PeopleInPicture final : public Stage {
     return follower_->attach(tracker_->step(frame.time, observations), seen.detections);
   }
 
+  /// What is due by now. Who waits keeps the pictures too: they are gone from the feed by then.
   std::span<const Instant> told(const Frame& frame, std::span<const Track<2>> tracks) {
-    live_.index = frame.index;
-    live_.time = frame.time;
-    live_.samples.clear();
-    for (const Track<2>& track : tracks) {
-      if (track.confirmed) live_.samples.push_back(sample_of(track));
+    const bool keep = options_.delay > 0 && !frame.picture.empty();
+    live_->add(frame.index, frame.time, tracks, keep ? std::vector{frame} : std::vector<Frame>{});
+    due_.clear();
+    while (auto instant = live_->next()) {
+      if (options_.seen_only) leave_out_unseen(*instant);
+      due_.push_back(std::move(*instant));
     }
-    return {&live_, 1};
+    return due_;
   }
 
   PeopleInPictureOptions options_;
@@ -153,7 +179,8 @@ class PeopleInPicture final : public Stage {
   std::optional<track::OutlineLog> outlines_;
   track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
-  Instant live_;
+  std::optional<track::LiveTracks> live_;
+  std::vector<Instant> due_;
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;
 };

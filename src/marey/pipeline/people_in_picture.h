@@ -22,6 +22,8 @@ struct PeopleInPictureOptions {
   std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it
   /// Every frame's tracks are told as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
+  double delay = 0;         ///< s that a live run looks ahead before it tells a moment
+  bool seen_only = false;   ///< rows of those whom nobody saw at that moment are left out
   std::string beside;       ///< outlines that wait for the second pass lie in a nameless file beside this path
   bool with_lines = false;  ///< keep their measurement lines too, for an overlay
 };

@@ -105,7 +105,7 @@ void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& coun
   if (sinks.want_pictures()) pictures.emplace(clock);
   std::int64_t done = 0;
   while (auto instant = rest.next()) {
-    if (pictures && !pictures->attach_to(*instant)) pictures.reset();
+    if (pictures && instant->frames.empty() && !pictures->attach_to(*instant)) pictures.reset();
     counter.add(*instant);
     if (!sinks.write(std::move(*instant))) break;
     if (!sinks.want_pictures() || hooks.report({"drawing", ++done, summary.frames}) == Continue::yes) continue;
@@ -133,7 +133,7 @@ void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, cons
   while (const std::optional<FrameSet> frames = next_of(clock, hooks, summary)) {
     for (const Instant& known : stage.step(*frames)) {
       Instant instant = known;
-      if (instant.index == frames->index) attach(instant.frames, *frames);
+      if (instant.index == frames->index && instant.frames.empty()) attach(instant.frames, *frames);
       counter.add(instant);
       if (!sinks.write(std::move(instant))) summary.stopped = true;
     }

@@ -18,7 +18,6 @@ constexpr double kReferenceSigma = 0.08;  // sizes: innovations of a well follow
 constexpr double kClutterRoom = 6;        // twice the log-likelihood ratio of a perfect fit against clutter
 constexpr double kSizeRoom = 3;           // the same for its size
 constexpr double kRecently = 0.35;        // s; a target seen since shows the camera's motion
-constexpr double kFading = 0.6;           // s unseen after which a target is e times less likely to be there
 constexpr double kCrowdedSizeLimit = 9;   // a box whose size is not believed costs no more than this
 constexpr double kMissesASecond = 5;      // of evidence: neighbouring frames miss a target for the same reason
 constexpr double kExpectedBack = 3;       // the same where a target that vanished is expected back
@@ -140,7 +139,7 @@ double FilterTracker::gain(const Target& target, const Observation<2>& observati
     return (3 * gate_ - distance - against_noise) / 2;
   }
   double cost = distance + spread - 2 * 2 * std::log(target.unit * kReferenceSigma);
-  double room = kClutterRoom - 2 * seconds(*now_ - target.last_seen) / kFading;
+  double room = kClutterRoom - 2 * seconds(*now_ - target.last_seen) / options_.fading;
   if (!observation.shared) {
     const double distance_of_size = target.size->distance(*observation.box, size_options_);
     cost += target.crowded ? std::min(distance_of_size, kCrowdedSizeLimit) : distance_of_size;

@@ -1,5 +1,7 @@
 #include "marey/track/tracker.h"
 
+#include <variant>
+
 #include "marey/core/error.h"
 #include "marey/track/filter_tracker.h"
 
@@ -16,11 +18,24 @@ void check(const TrackerOptions& o) {
   check(o.place_noise > 0, "place_noise", o.place_noise, "positive");
   check(o.size_noise > 0, "size_noise", o.size_noise, "positive");
   check(o.size_drift >= 0, "size_drift", o.size_drift, "0 or more");
+  check(o.fading > 0, "fading", o.fading, "positive");
   check(o.patience >= 0, "patience", o.patience, "0 or more");
   check(o.hidden_patience >= 0, "hidden_patience", o.hidden_patience, "0 or more");
 }
 
 }  // namespace
+
+TrackerOptions box_tracker_options(TrackerOptions options) {
+  const TrackerOptions usual;
+  const auto* usual_filter = std::get_if<filter::KalmanOptions>(&usual.filter);
+  auto* kalman = std::get_if<filter::KalmanOptions>(&options.filter);
+  if (kalman != nullptr && usual_filter != nullptr && kalman->acceleration_noise == usual_filter->acceleration_noise)
+    kalman->acceleration_noise = 0.15;
+  if (options.place_noise == usual.place_noise) options.place_noise = 0.05;
+  if (options.size_noise == usual.size_noise) options.size_noise = 0.2;
+  if (options.fading == usual.fading) options.fading = 2.5;
+  return options;
+}
 
 TrackerOptions point_tracker_options() {
   TrackerOptions options;

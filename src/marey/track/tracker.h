@@ -85,8 +85,13 @@ struct TrackerOptions {
   /// A newcomer is taken for a target of its size that vanished near there. For a camera that stands still, where tracks are not
   /// joined afterwards with both sides known.
   bool reidentify = false;
+  double fading = 0.6;         ///< s unseen after which a target is e times less likely to be there
   double hidden_patience = 3;  ///< a target hidden behind another, or in a shared region, is given up after this, s
 };
+
+/// The same for boxes of another program's detector, which errs more, and misses a target for longer, than silhouettes do; what
+/// was set to other than its default stays. Sweep: docs/tuning.md.
+TrackerOptions box_tracker_options(TrackerOptions options = {});
 
 /// What fits points without an extent, such as markers: lengths in px.
 TrackerOptions point_tracker_options();

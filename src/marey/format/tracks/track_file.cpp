@@ -31,7 +31,8 @@ void append_mot(std::string& lines, const Instant& instant, const Sample& sample
   if (!sample.box) return;
   const Box& box = *sample.box;
   fmt::format_to(std::back_inserter(lines), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4g},-1,-1,-1\n", instant.index + 1,
-                 number(sample.track), box.left + 1, box.top + 1, box.width, box.height, sample.score.value_or(1));
+                 number(sample.track), box.left + 1, box.top + 1, box.width, box.height,
+                 sample.measured() ? sample.score.value_or(1) : 0.0);
 }
 
 void append_csv(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
