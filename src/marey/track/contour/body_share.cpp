@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kGroundReach = 0.15, kBodyReach = 0.07;  // heights: neighbourhoods that ground and body are read from
 constexpr double kAway = 0.025;                           // heights: the ground is read this far from everything
-constexpr double kRim = 0.09;                             // heights: how deep a silhouette's rim may be ground
+constexpr double kRim = 0.07;                             // heights: how deep a silhouette's rim may be ground
 constexpr float kLeastContrast = 16;                      // levels between body and ground, from which on colour tells
-constexpr float kPlainGround = 0.22F;                     // share below which a cell deep inside is ground
+constexpr float kPlainGround = 12;                        // levels from the ground below which a cell deep inside is ground
 constexpr float kHalo = 0.25F;                            // square of a halo's strength, of the step from ground to body
 constexpr double kSmooth = 0.6;                           // cells
 
@@ -86,7 +86,7 @@ cv::Mat body_share(const ColourPatch& patch, const cv::Mat& own, double height) 
   own.convertTo(inside, CV_8U, 255);
   cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
   const cv::Mat near = dilated(own, 1);
-  const auto rim = static_cast<float>(std::clamp(kRim * height, 3.0, 9.0) / patch.step);
+  const auto rim = static_cast<float>(std::clamp(kRim * height, 3.0, 8.0) / patch.step);
   for (int y = 0; y < share.rows; ++y) {
     for (int x = 0; x < share.cols; ++x) {
       float& value = share.at<float>(y, x);
@@ -100,7 +100,7 @@ cv::Mat body_share(const ColourPatch& patch, const cv::Mat& own, double height) 
       const bool deep = depth.at<float>(y, x) > rim;
       // What is unlike both (dark hair over a white shirt) is body too; a halo is not as far from the ground as that.
       if (covered < 0.5F && away.dot(away) > kHalo * contrast) continue;
-      if (!deep || covered < kPlainGround) value = covered;
+      if (!deep || away.dot(away) < kPlainGround * kPlainGround) value = covered;
     }
   }
   cv::GaussianBlur(share, share, {}, kSmooth);
