@@ -102,15 +102,19 @@ class TrackedMethod final : public OutlineMethod {
     if (track.outline) {
       ++targets_;
       const Outline& outline = *track.outline;
-      return FollowedShape{name, outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon()};
+      FollowedShape shape{name, outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
+      for (const TrackId id : outline.behind) shape.behind.push_back(std::to_string(number(id)));
+      shape.is_curve = true;
+      if (track.box) shape.box_width = track.box->width, shape.box_height = track.box->height;
+      return shape;
     }
     const bool detected = track.observation && *track.observation < std::ssize(detections_);
     if (detected && !detections_[static_cast<std::size_t>(*track.observation)].outline.empty()) {
       const auto& polygon = detections_[static_cast<std::size_t>(*track.observation)].outline;
-      return FollowedShape{name, geometry::polygon_centroid(polygon).value_or(track.position), polygon};
+      return FollowedShape{name, geometry::polygon_centroid(polygon).value_or(track.position), polygon, {}};
     }
     if (!track.box) return std::nullopt;
-    return FollowedShape{name, track.box->centre(), corners(*track.box)};
+    return FollowedShape{name, track.box->centre(), corners(*track.box), {}};
   }
 
   detect::people::PeopleDetector detector_;
@@ -190,7 +194,7 @@ class PublishedMethod final : public LoneFilters<track::contour::PublishedOutlin
   }
   FollowedShape shape_of(const track::contour::PublishedOutline& filter) const override {
     const Outline& outline = filter.outline();
-    return {"", outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon()};
+    return {"", outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
   }
 
   track::contour::PublishedOptions options_;
@@ -218,7 +222,7 @@ class BoxMethod final : public LoneFilters<track::contour::BoxFilter> {
     return {{}, now.box, now.centre};
   }
   FollowedShape shape_of(const track::contour::BoxFilter& filter) const override {
-    return {"", filter.centre(), corners(filter.box())};
+    return {"", filter.centre(), corners(filter.box()), {}};
   }
 };
 

@@ -19,6 +19,9 @@ struct FollowedShape {
   std::string name;
   Vector<2> centre = Vector<2>::Zero();  ///< px
   std::vector<Vector<2>> polygon;        ///< px
+  std::vector<std::string> behind;       ///< names of those that hide a part of it, as far as the method tells
+  bool is_curve = false;                 ///< a followed outline, not a silhouette or a box
+  double box_width = 0, box_height = 0;  ///< px; of its target, where the method knows
 };
 
 /// One way of following outlines, for `marey experiment outlines`.

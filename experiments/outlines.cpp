@@ -35,6 +35,9 @@ struct Tally {
   double error = 0, bend = 0;
   double seconds = 0;
   std::int64_t targets = 0;
+  std::array<double, 3> visible{};  ///< sums of IoU: alone, front, behind
+  std::array<std::int64_t, 3> visibles{};
+  std::int64_t curves = 0, wild = 0;
 
   void add(const Tally& other) {
     people += other.people;
@@ -48,10 +51,25 @@ struct Tally {
     bend += other.bend;
     seconds += other.seconds;
     targets += other.targets;
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+      visible[i] += other.visible[i];
+      visibles[i] += other.visibles[i];
+    }
+    curves += other.curves;
+    wild += other.wild;
   }
 
   OutlineScore score() const {
-    OutlineScore result{people, lost, frames, 0, 0, {}, {}, {}};
+    OutlineScore result;
+    result.people = people;
+    result.lost = lost;
+    result.frames = frames;
+    const std::array<std::optional<double>*, 3> means{&result.alone, &result.front, &result.behind};
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      if (visibles[i] > 0) *means[i] = visible[i] / static_cast<double>(visibles[i]);
+    }
+    result.curves = curves;
+    result.wild = wild;
     if (frames > 0) {
       result.followed = static_cast<double>(followed) / static_cast<double>(frames);
       result.iou = iou / static_cast<double>(frames);
@@ -81,6 +99,30 @@ class Bends {
   std::array<Vector<2>, 2> path_{Vector<2>::Zero(), Vector<2>::Zero()};
 };
 
+/// Crosses itself, or is more than twice as wide or 1.6 times as high as its target.
+bool is_wild(const FollowedShape& shape) {
+  Vector<2> least = shape.polygon[0], most = shape.polygon[0];
+  for (const Vector<2>& corner : shape.polygon) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  const Vector<2> size = most - least;
+  if (shape.box_width > 0 && (size.x() > 2 * shape.box_width || size.y() > 1.6 * shape.box_height)) return true;
+  const auto side = [](const Vector<2>& a, const Vector<2>& b, const Vector<2>& p) {
+    return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+  };
+  const std::size_t count = shape.polygon.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector<2>&a = shape.polygon[i], &b = shape.polygon[(i + 1) % count];
+    for (std::size_t j = i + 2; j < count; ++j) {
+      const Vector<2>&c = shape.polygon[j], &d = shape.polygon[(j + 1) % count];
+      if ((j + 1) % count == i) continue;
+      if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
+    }
+  }
+  return false;
+}
+
 bool lies_within(const simulate::people::Silhouette& silhouette, cv::Size picture) {
   return (silhouette.pixels() & cv::Rect({0, 0}, picture)) == silhouette.pixels();
 }
@@ -93,7 +135,12 @@ class Judge {
   void see(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes) {
     auto& true_places = truth_.emplace_back();
     auto& places = named_.emplace_back();
-    for (const FollowedShape& shape : shapes) places.push_back({shape.name, shape.centre});
+    for (const FollowedShape& shape : shapes) {
+      places.push_back({shape.name, shape.centre});
+      if (!shape.is_curve) continue;
+      ++tally_.curves;
+      tally_.wild += is_wild(shape) ? 1 : 0;
+    }
     for (const simulate::people::TrueFigure& person : truth) {
       if (person.visible_share < kSeen) continue;
       ++seen_[person.id];
@@ -101,6 +148,7 @@ class Judge {
       Target& target = targets_[person.id];
       if (target.name.empty()) target.name = name_on(centre, shapes);
       if (target.name.empty()) continue;
+      score_visible(person, truth, target, shapes);
       true_places.push_back({std::to_string(person.id), centre});
       score(frame, person, centre, target, shapes);
     }
@@ -136,6 +184,41 @@ class Judge {
     return name;
   }
 
+  /// How much of the smaller of two silhouettes the other shares, hidden parts included.
+  static double shared_part(const simulate::people::Silhouette& a, const simulate::people::Silhouette& b) {
+    const cv::Rect both = a.lattice & b.lattice;
+    if (both.empty()) return 0;
+    cv::Mat shared;
+    cv::bitwise_and(a.mask(both - a.lattice.tl()) != 0, b.mask(both - b.lattice.tl()) != 0, shared);
+    return cv::countNonZero(shared) / (std::min(a.area(), b.area()) * a.samples * a.samples);
+  }
+
+  void score_visible(const simulate::people::TrueFigure& person, std::span<const simulate::people::TrueFigure> truth,
+                     const Target& target, std::span<const FollowedShape> shapes) {
+    if (!lies_within(person.whole, picture_)) return;
+    double most = 0;
+    bool nearer = false;
+    for (const simulate::people::TrueFigure& other : truth) {
+      if (other.id == person.id) continue;
+      const double part = shared_part(person.whole, other.whole);
+      if (part <= most) continue;
+      most = part;
+      nearer = person.foot.y() > other.foot.y();
+    }
+    if (most > 0 && (most < 0.2 || most > 0.7)) return;
+    const std::size_t kind = most <= 0 ? 0 : nearer ? 1 : 2;
+    if (kind == 0 && person.visible_share < 1) return;
+    ++tally_.visibles[kind];
+    const auto own = std::find_if(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == target.name; });
+    if (own == shapes.end()) return;
+    std::vector<std::vector<Vector<2>>> hiding;
+    for (const FollowedShape& shape : shapes) {
+      if (std::find(own->behind.begin(), own->behind.end(), shape.name) != own->behind.end()) hiding.push_back(shape.polygon);
+    }
+    const evaluate::SilhouetteMask mask{person.visible.mask, person.visible.lattice.tl(), person.visible.samples};
+    tally_.visible[kind] += evaluate::visible_overlap(own->polygon, hiding, mask, picture_).iou();
+  }
+
   void score(int frame, const simulate::people::TrueFigure& person, const Vector<2>& centre, Target& target,
              std::span<const FollowedShape> shapes) {
     ++tally_.frames;
@@ -161,19 +244,37 @@ class Judge {
 };
 
 std::vector<OutlineCase> cases(int videos) {
-  const int few = std::max(1, videos / 10);
+  const int few = std::max(1, videos / 10), half = std::max(1, videos * 2 / 5);
   using S = simulate::people::PeopleSituation;
   const auto steady = simulate::people::LightChange::steady;
-  return {{"apart, 25 px", S::apart, 25, steady, few, 0, {}},
-          {"apart, 60 px", S::apart, 60, steady, few, 0, {}},
-          {"partly hidden, 25 px", S::crossing, 25, steady, videos, 0, {}},
-          {"partly hidden, 60 px", S::crossing, 60, steady, videos, 0, {}},
-          {"behind a board, 25 px", S::post, 25, steady, videos, 0, {}},
-          {"behind a board, 60 px", S::post, 60, steady, videos, 0, {}},
-          {"abrupt changes, 60 px", S::abrupt, 60, steady, few, 0, {}},
-          {"border, 60 px", S::border, 60, steady, few, 0, {}},
-          {"gradual light, 60 px", S::apart, 60, simulate::people::LightChange::gradual, few, 0, {}},
-          {"sudden light, 60 px", S::apart, 60, simulate::people::LightChange::sudden, few, 0, {}}};
+  return {{.name = "apart, 25 px", .situation = S::apart, .height_px = 25, .light = steady, .videos = few},
+          {.name = "apart, 60 px", .situation = S::apart, .height_px = 60, .light = steady, .videos = few},
+          {.name = "partly hidden, 25 px", .situation = S::crossing, .height_px = 25, .light = steady, .videos = videos},
+          {.name = "partly hidden, 60 px", .situation = S::crossing, .height_px = 60, .light = steady, .videos = videos},
+          {.name = "behind a board, 25 px", .situation = S::post, .height_px = 25, .light = steady, .videos = videos},
+          {.name = "behind a board, 60 px", .situation = S::post, .height_px = 60, .light = steady, .videos = videos},
+          {.name = "abrupt changes, 60 px", .situation = S::abrupt, .height_px = 60, .light = steady, .videos = few},
+          {.name = "border, 60 px", .situation = S::border, .height_px = 60, .light = steady, .videos = few},
+          {.name = "gradual light, 60 px",
+           .situation = S::apart,
+           .height_px = 60,
+           .light = simulate::people::LightChange::gradual,
+           .videos = few},
+          {.name = "sudden light, 60 px",
+           .situation = S::apart,
+           .height_px = 60,
+           .light = simulate::people::LightChange::sudden,
+           .videos = few},
+          {.name = "filmed, apart, 60 px", .situation = S::apart, .height_px = 60, .filmed = true, .videos = few},
+          {.name = "filmed, apart, 150 px", .situation = S::apart, .height_px = 150, .filmed = true, .videos = few},
+          {.name = "filmed, overlapping, 60 px", .situation = S::overlap, .height_px = 60, .filmed = true, .videos = half},
+          {.name = "filmed, overlapping, same shirts, 60 px",
+           .situation = S::overlap,
+           .height_px = 60,
+           .filmed = true,
+           .same_shirts = true,
+           .videos = half},
+          {.name = "filmed, overlapping, 150 px", .situation = S::overlap, .height_px = 150, .filmed = true, .videos = few}};
 }
 
 Frame frame_of(const simulate::people::PeopleFilm& film, int index, const Picture& picture) {
@@ -194,6 +295,8 @@ FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExpe
   simulate::people::PeopleFilmOptions scene;
   scene.height_px = what.height_px;
   scene.light = what.light;
+  scene.same_shirts = what.same_shirts;
+  if (what.filmed) scene.look = simulate::people::CameraLook::filmed();
   const simulate::people::PeopleFilm film(what.situation, seed, scene);
   std::array<std::unique_ptr<OutlineMethod>, kMethods.size()> methods{
       silhouette_method(), box_method(), published_method(options.published), marey_method(options.outlines)};
@@ -265,12 +368,13 @@ std::string to_text(const OutlineExperiment& experiment) {
     const OutlineCase& what = experiment.cases[c];
     fmt::format_to(std::back_inserter(text), "{}{}: {} {}, {} people; the true centres' jitter is {} px\n", c > 0 ? "\n" : "",
                    what.name, what.videos, what.videos == 1 ? "film" : "films", what.people, number(what.true_jitter, 2));
-    fmt::format_to(std::back_inserter(text), "{:<28}{:>8}{:>12}{:>8}{:>12}{:>10}{:>12}\n", "", "IoU", "centre, px", "lost",
-                   "followed", "jitter", "us a target");
+    fmt::format_to(std::back_inserter(text), "{:<28}{:>8}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>10}{:>8}{:>12}\n", "", "IoU", "alone",
+                   "front", "behind", "centre, px", "lost", "followed", "jitter", "wild", "us a target");
     for (const auto& row : experiment.rows) {
       const OutlineScore& score = row.scores[c];
-      fmt::format_to(std::back_inserter(text), "{:<28}{:>8.3f}{:>12}{:>8}{:>11.1f}%{:>10}{:>12}\n", row.method, score.iou,
-                     number(score.centre_error, 2), score.lost, 100 * score.followed, number(score.jitter, 2),
+      fmt::format_to(std::back_inserter(text), "{:<28}{:>8.3f}{:>8}{:>8}{:>8}{:>12}{:>8}{:>11.1f}%{:>10}{:>8}{:>12}\n", row.method,
+                     score.iou, number(score.alone, 3), number(score.front, 3), number(score.behind, 3),
+                     number(score.centre_error, 2), score.lost, 100 * score.followed, number(score.jitter, 2), score.wild,
                      number(score.target_us, 1));
     }
   }

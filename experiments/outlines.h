@@ -22,7 +22,10 @@ struct OutlineScore {
   double iou = 0;                      ///< mean, with the true silhouette, hidden parts included, within the picture
   std::optional<double> centre_error;  ///< px, mean distance to the true silhouette's centre, where the outline is on the person
   std::optional<double> jitter;        ///< px, RMS of the second difference of the centre from frame to frame
-  std::optional<double> target_us;     ///< µs a person and frame, of the following alone
+  /// Mean IoU of what is visible: of people alone; of the nearer and the farther of two who overlap by 20 to 70 %.
+  std::optional<double> alone, front, behind;
+  std::int64_t curves = 0, wild = 0;  ///< followed outlines; those that cross themselves or are beyond their target's size
+  std::optional<double> target_us;    ///< µs a person and frame, of the following alone
 };
 
 /// Clips of one kind.
@@ -30,10 +33,12 @@ struct OutlineCase {
   std::string name;
   simulate::people::PeopleSituation situation{};
   double height_px = 60;
+  bool filmed = false;       ///< as a camera with sharpening and a codec gives it
+  bool same_shirts = false;  ///
   simulate::people::LightChange light = simulate::people::LightChange::steady;
   int videos = 1;
   int people = 0;
-  std::optional<double> true_jitter;  ///< px, as in OutlineScore, of the true silhouettes' centres
+  std::optional<double> true_jitter = {};  ///< px, as in OutlineScore, of the true silhouettes' centres
 };
 
 struct OutlineExperiment {

@@ -47,8 +47,7 @@ void run(ConvertCommand& command) {
     command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
   const pipeline::ConvertSummary done = [&] {
     ProgressBar bar(command.quiet);
-    const Hooks hooks{.progress = [&](const Progress& now) { bar.show(now.step, now.done, now.total); },
-                                .stop = interrupted};
+    const Hooks hooks{.progress = [&](const Progress& now) { bar.show(now.step, now.done, now.total); }, .stop = interrupted};
     catch_interrupts();
     return pipeline::convert(command.from, command.to, command.options, hooks);
   }();

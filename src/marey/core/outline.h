@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/core/ids.h"
 
 namespace marey {
 
@@ -45,6 +46,8 @@ struct Outline {
   std::optional<Vector<2>> silhouette;               ///< px; centre of the area that the detector saw of it alone, in this frame
   std::vector<MeasurementLine> lines;                ///< of this frame; empty in a target's first
   State state = State::seen;
+  std::vector<TrackId> behind;  ///< targets that hide a part of it in this frame, ascending
+  std::vector<int> hidden;      ///< control points that they hide, ascending: there the shape is as it was before
 };
 
 }  // namespace marey

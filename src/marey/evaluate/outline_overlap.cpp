@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -27,6 +28,46 @@ void find_crossings(std::span<const Vector<2>> polygon, double y, int samples, s
 double OutlineOverlap::iou() const {
   const double all = outline + silhouette - shared;
   return all > 0 ? shared / all : 0;
+}
+
+OutlineOverlap visible_overlap(std::span<const Vector<2>> polygon, std::span<const std::vector<Vector<2>>> nearer,
+                               const SilhouetteMask& truth, const cv::Size& picture) {
+  // What nearer ones cover is cut from both the curve and, where it is counted, the silhouette's share inside it.
+  const double unit = 1.0 / (static_cast<double>(truth.samples) * truth.samples);
+  const cv::Rect counted(0, 0, picture.width * truth.samples, picture.height * truth.samples);
+  const cv::Rect lattice(truth.corner, truth.mask.size());
+  OutlineOverlap result;
+  const cv::Rect kept = lattice & counted;
+  if (!kept.empty()) result.silhouette = unit * cv::countNonZero(truth.mask(kept - lattice.tl()));
+  std::vector<double> crossings;
+  for (int row = 0; row < counted.height && polygon.size() > 2; ++row) {
+    const double y = (row + 0.5) / truth.samples - 0.5;
+    find_crossings(polygon, y, truth.samples, crossings);
+    if (crossings.empty()) continue;
+    const int first = std::max(0, static_cast<int>(std::ceil(crossings.front())));
+    const int last = std::min(counted.width, static_cast<int>(std::ceil(crossings.back())));
+    if (last <= first) continue;
+    std::vector<std::uint8_t> inside(static_cast<std::size_t>(last - first), 0);
+    const auto mark = [&](std::uint8_t value) {
+      for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+        const int begin = std::max(first, static_cast<int>(std::ceil(crossings[i])));
+        const int end = std::min(last, static_cast<int>(std::ceil(crossings[i + 1])));
+        for (int x = begin; x < end; ++x) inside[static_cast<std::size_t>(x - first)] = value;
+      }
+    };
+    mark(1);
+    for (const std::vector<Vector<2>>& one : nearer) {
+      find_crossings(one, y, truth.samples, crossings);
+      mark(0);
+    }
+    for (int x = first; x < last; ++x) {
+      if (inside[static_cast<std::size_t>(x - first)] == 0) continue;
+      result.outline += unit;
+      const cv::Point at(x, row);
+      if (lattice.contains(at) && truth.mask.at<std::uint8_t>(at - lattice.tl()) != 0) result.shared += unit;
+    }
+  }
+  return result;
 }
 
 OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* picture) {

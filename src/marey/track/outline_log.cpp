@@ -27,6 +27,8 @@ struct OutlineHead {
   std::int32_t control_points;
   std::int32_t lines;
   std::int32_t has_silhouette;
+  std::int32_t behind;
+  std::int32_t hidden;
 };
 
 constexpr std::size_t kMotion = 12, kPoint = 4, kLine = 8;  // numbers each
@@ -56,6 +58,8 @@ void put_all(std::vector<float>& numbers, const Outline& outline, bool with_line
     put(numbers, outline.control_points[i]);
     put(numbers, outline.deviations[i]);
   }
+  for (const TrackId id : outline.behind) numbers.push_back(static_cast<float>(number(id)));
+  for (const int point : outline.hidden) numbers.push_back(static_cast<float>(point));
   if (!with_lines) return;
   for (const MeasurementLine& line : outline.lines) {
     put(numbers, line.foot);
@@ -86,6 +90,8 @@ std::shared_ptr<const Outline> outline_from(const OutlineHead& head, const float
     outline->control_points.push_back(pair());
     outline->deviations.push_back(pair());
   }
+  for (int i = 0; i < head.behind; ++i) outline->behind.push_back(TrackId{static_cast<int>(next())});
+  for (int i = 0; i < head.hidden; ++i) outline->hidden.push_back(static_cast<int>(next()));
   for (int i = 0; i < head.lines; ++i) {
     MeasurementLine line;
     line.foot = pair();
@@ -140,7 +146,9 @@ void OutlineLog::add(std::int64_t frame, std::span<const Track<2>> tracks) {
                           static_cast<std::int32_t>(outline.state),
                           static_cast<std::int32_t>(outline.control_points.size()),
                           with_lines_ ? static_cast<std::int32_t>(outline.lines.size()) : 0,
-                          outline.silhouette ? 1 : 0};
+                          outline.silhouette ? 1 : 0,
+                          static_cast<std::int32_t>(outline.behind.size()),
+                          static_cast<std::int32_t>(outline.hidden.size())};
     append(&one, sizeof one);
     numbers_.clear();
     put_all(numbers_, outline, with_lines_);
@@ -172,7 +180,8 @@ void OutlineLog::read_frame() {
   for (std::int64_t i = 0; i < head.outlines; ++i) {
     OutlineHead one{};
     take(&one, sizeof one);
-    numbers_.resize(kMotion + kPoint * static_cast<std::size_t>(one.control_points) + kLine * static_cast<std::size_t>(one.lines));
+    numbers_.resize(kMotion + kPoint * static_cast<std::size_t>(one.control_points) + kLine * static_cast<std::size_t>(one.lines) +
+                    static_cast<std::size_t>(one.behind + one.hidden));
     take(numbers_.data(), numbers_.size() * sizeof(float));
     frame_.emplace(one.id, outline_from(one, numbers_.data()));
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kHeadBytes = 8;
 constexpr std::size_t kPlainNumbers = 10;  // centre, velocity, scale rate, and their deviations
 constexpr std::size_t kMostPoints = 65535;
-enum Flags : std::uint8_t { has_silhouette = 1, has_deviations = 2 };
+enum Flags : std::uint8_t { has_silhouette = 1, has_deviations = 2, is_behind = 4 };
 
 template <typename Value>
 void append(Bytes& blob, Value value) {
@@ -32,8 +32,12 @@ void append_outline(Bytes& blob, const Outline& outline) {
   append(blob, static_cast<std::uint8_t>(outline.state));
   append(blob, static_cast<std::uint8_t>(outline.order));
   append(blob, static_cast<std::uint16_t>(points));
-  append(blob, static_cast<std::uint8_t>((outline.silhouette ? has_silhouette : 0) | (deviations ? has_deviations : 0)));
-  blob.resize(blob.size() + 3);
+  append(blob, static_cast<std::uint8_t>((outline.silhouette ? has_silhouette : 0) | (deviations ? has_deviations : 0) |
+                                         (outline.behind.empty() ? 0 : is_behind)));
+  const auto behind = static_cast<std::uint8_t>(std::min<std::size_t>(outline.behind.size(), 255));
+  const auto hidden = static_cast<std::uint16_t>(behind > 0 ? std::min(outline.hidden.size(), points) : 0);
+  append(blob, behind);
+  append(blob, hidden);
   for (std::size_t i = 0; i < points; ++i) append_pair(blob, outline.control_points[i]);
   for (std::size_t i = 0; deviations && i < points; ++i) append_pair(blob, outline.deviations[i]);
   append_pair(blob, outline.centre);
@@ -43,6 +47,8 @@ void append_outline(Bytes& blob, const Outline& outline) {
   append_pair(blob, outline.velocity_deviation);
   append(blob, static_cast<float>(outline.scale_rate_deviation));
   if (outline.silhouette) append_pair(blob, *outline.silhouette);
+  for (std::size_t i = 0; i < behind; ++i) append(blob, static_cast<float>(number(outline.behind[i])));
+  for (std::size_t i = 0; i < hidden; ++i) append(blob, static_cast<float>(outline.hidden[i]));
 }
 
 /// The numbers of one record, one after the other.
@@ -73,7 +79,9 @@ std::shared_ptr<const Outline> outline_of(std::span<const std::byte> record, con
   const auto byte = [&](std::size_t i) { return std::to_integer<std::uint8_t>(record[i]); };
   const std::size_t points = byte(2) | static_cast<std::size_t>(byte(3)) << 8;
   const bool silhouette = (byte(4) & has_silhouette) != 0, deviations = (byte(4) & has_deviations) != 0;
-  const std::size_t numbers = points * (deviations ? 4 : 2) + kPlainNumbers + (silhouette ? 2 : 0);
+  const bool is_hidden = (byte(4) & is_behind) != 0;  // earlier takes have nothing in the bytes that count them
+  const std::size_t behind = is_hidden ? byte(5) : 0, hidden = is_hidden ? byte(6) | static_cast<std::size_t>(byte(7)) << 8 : 0;
+  const std::size_t numbers = points * (deviations ? 4 : 2) + kPlainNumbers + (silhouette ? 2 : 0) + behind + hidden;
   if (byte(0) > 2 || record.size() != kHeadBytes + 4 * numbers) decoder.fail("an outline has another length than its points");
   auto outline = std::make_shared<Outline>();
   outline->state = static_cast<Outline::State>(byte(0));
@@ -90,6 +98,12 @@ std::shared_ptr<const Outline> outline_of(std::span<const std::byte> record, con
   outline->velocity_deviation = in.pair();
   outline->scale_rate_deviation = in.number();
   if (silhouette) outline->silhouette = in.pair();
+  for (std::size_t i = 0; i < behind; ++i) outline->behind.push_back(TrackId{static_cast<int>(in.number())});
+  for (std::size_t i = 0; i < hidden; ++i) {
+    const int point = static_cast<int>(in.number());
+    if (point < 0 || static_cast<std::size_t>(point) >= points) decoder.fail("an outline hides a control point that it has not");
+    outline->hidden.push_back(point);
+  }
   if (!in.finite()) decoder.fail("an outline is nowhere");
   return outline;
 }

@@ -40,6 +40,12 @@ void append_json(std::string& text, const Outline& outline) {
   fmt::format_to(out, R"({{"state":"{}","order":{},)", name_of(outline.state), outline.order);
   append_pairs(text, "control_points", outline.control_points);
   append_pairs(text, "deviations", outline.deviations);
+  if (!outline.behind.empty()) {
+    fmt::format_to(out, R"("behind":[)");
+    for (std::size_t i = 0; i < outline.behind.size(); ++i)
+      fmt::format_to(out, "{}{}", i == 0 ? "" : ",", number(outline.behind[i]));
+    fmt::format_to(out, R"(],"hidden":[{}],)", fmt::join(outline.hidden, ","));
+  }
   append_pair(text, "centre", outline.centre);
   append_pair(text, "velocity", outline.velocity);
   fmt::format_to(out, R"("scale_rate":{:.5f},)", outline.scale_rate);

@@ -14,11 +14,12 @@
 namespace marey::simulate::people {
 namespace {
 
-constexpr std::array<NamedPeopleSituation, 6> kSituations{{{"apart", PeopleSituation::apart},
+constexpr std::array<NamedPeopleSituation, 7> kSituations{{{"apart", PeopleSituation::apart},
                                                            {"crossing", PeopleSituation::crossing},
                                                            {"post", PeopleSituation::post},
                                                            {"abrupt", PeopleSituation::abrupt},
                                                            {"border", PeopleSituation::border},
+                                                           {"overlap", PeopleSituation::overlap},
                                                            {"crowd", PeopleSituation::crowd}}};
 
 constexpr double kStature = 1.78;  // m
@@ -107,7 +108,8 @@ std::span<const NamedPeopleSituation> people_situations() {
 PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const PeopleFilmOptions& options)
     : situation_(situation), options_(options) {
   check(options_);
-  const bool few = situation == PeopleSituation::crossing || situation == PeopleSituation::post;
+  const bool few =
+      situation == PeopleSituation::crossing || situation == PeopleSituation::post || situation == PeopleSituation::overlap;
   if (!options_.frames) options_.frames = situation == PeopleSituation::crossing ? 100 : 200;
   if (!options_.people) options_.people = few ? 2 : 6;
   camera_ = camera_for(options_);
@@ -135,6 +137,7 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   render.samples = options_.samples;
   render.shadows = options_.shadows;
   render.noise = options_.noise;
+  render.look = options_.look;
   const Picture ground = options_.ground.empty() ? draw_lawn(camera_, 1) : scaled(options_.ground, options_.size);
   renderer_ = std::make_unique<PeopleRenderer>(ground, camera_, std::move(motion.posts), render);
 }

@@ -24,6 +24,7 @@ enum class PeopleSituation {
   post,      ///< each passes behind a board of its own, which hides it wholly for a while
   abrupt,    ///< apart, but they stop, start, turn round, squat and throw up their arms as abruptly as people can
   border,    ///< each walks out of the picture and in again at its sides, in a lane of its own
+  overlap,   ///< two players, one in part behind the other for two seconds, by 15 to 75 %; half of them turn back
   crowd,     ///< each goes anywhere: every kind of occlusion, entering and leaving
 };
 
@@ -47,10 +48,12 @@ struct PeopleFilmOptions {
   double shake_px = 0;        ///< standard deviation of the picture's movement, each axis
   LightChange light = LightChange::steady;
   bool shadows = true;
-  double hidden_s = 2;      ///< post: the longest time that a person is hidden; the shortest is a fifth of it
-  int overlap_frames = 20;  ///< crossing: about how long the two overlap
-  Picture ground;           ///< the empty scene, scaled to `size`; empty for a lawn
-  int samples = 4;          ///< lattice points per pixel and axis, for edges and silhouettes
+  CameraLook look;           ///< what lens, sharpening and codec make of the picture
+  bool same_shirts = false;  ///< overlap: both of one team; else of either
+  double hidden_s = 2;       ///< post: the longest time that a person is hidden; the shortest is a fifth of it
+  int overlap_frames = 20;   ///< crossing: about how long the two overlap
+  Picture ground;            ///< the empty scene, scaled to `size`; empty for a lawn
+  int samples = 4;           ///< lattice points per pixel and axis, for edges and silhouettes
 };
 
 /// A film of people whose truth is known: the same for the same seed.

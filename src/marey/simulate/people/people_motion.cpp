@@ -4,6 +4,7 @@
 #include "marey/simulate/people/people_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -62,6 +63,7 @@ class Director {
 
   void in_lanes(bool abrupt, bool over_border);
   void crossing();
+  void overlap();
   void behind_posts();
   void crowd();
   PeopleMotion take() { return std::move(motion_); }
@@ -209,6 +211,45 @@ void Director::crossing() {
   walk_straight(near, near_at, middle, common - Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
 }
 
+/// One comes up to the other from the side, stays in part before or behind it, and goes on or turns back.
+void Director::overlap() {
+  const int team = random_.integer(0, 1);
+  const std::array<int, 2> ids{new_figure(team), new_figure(options_.same_shirts ? team : 1 - team)};
+  const double row = camera_.size.height * random_.uniform(0.5, 0.7);
+  const double height = height_at(row);
+  const double column = camera_.size.width * random_.uniform(0.4, 0.6);
+  const Vector<2> far_at = ground(column, row), near_at = ground(column, row + random_.uniform(0.04, 0.45) * height);
+  const double width = kWide * height / camera_(Vector<3>(far_at.x(), far_at.y(), 0))->scale;  // m
+  const double side = random_.chance(0.5) ? 1 : -1, offset = random_.uniform(0.1, 0.75) * width;
+  const double pace = options_.pace * random_.uniform(0.8, 2.5);
+  const double after = random_.chance(0.5) ? side * pace : -side * pace;  // back again, or on past the other
+  const Vector<2> common = options_.pace * Vector<2>(random_.uniform(-1.2, 1.2), random_.uniform(-0.5, 0.5));
+  const double length = static_cast<double>(motion_.frames.size()) * dt_;
+  const double begin = 0.35 * length, end = begin + std::min(2.0, 0.3 * length);
+  const int comes = random_.integer(0, 1);  // the farther or the nearer one
+  std::array<Walker, 2> walkers;
+  for (int who = 0; who < 2; ++who) {
+    walkers[who].id = ids[who];
+    walkers[who].stance.phase = random_.uniform(0, 2 * std::numbers::pi);
+  }
+  for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
+    const double now = static_cast<double>(frame) * dt_;
+    const double apart = side * offset + (now < begin ? side * pace * (begin - now) : now > end ? after * (now - end) : 0);
+    const double relative = now < begin ? -side * pace : now > end ? after : 0;
+    for (int who = 0; who < 2; ++who) {
+      Stance& stance = walkers[who].stance;
+      const Vector<2> velocity = common + Vector<2>(who == comes ? relative : 0, 0);
+      stance.place = (who == 0 ? far_at : near_at) + (now - (begin + end) / 2) * common + Vector<2>(who == comes ? apart : 0, 0);
+      stance.speed += std::clamp(velocity.norm() - stance.speed, -kAbruptGain * dt_, kAbruptGain * dt_);
+      const double turn = wrapped(std::atan2(velocity.y(), velocity.x()) - stance.heading);
+      stance.heading += frame == 0 ? turn : std::clamp(turn, -kAbruptTurn * dt_, kAbruptTurn * dt_);
+      stance.phase =
+          wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt_ / stride_length(stance.speed, stature(ids[who])));
+      motion_.frames[frame].push_back({ids[who], stance});
+    }
+  }
+}
+
 void Director::behind_posts() {
   int team = 0;
   for (const Lane& lane : lanes(*options_.people)) {
@@ -282,6 +323,9 @@ PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, c
       break;
     case PeopleSituation::crossing:
       director.crossing();
+      break;
+    case PeopleSituation::overlap:
+      director.overlap();
       break;
     case PeopleSituation::post:
       director.behind_posts();

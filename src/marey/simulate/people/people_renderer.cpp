@@ -380,6 +380,7 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     cv::LUT(planes.cr, chroma_gain, planes.cr);
   }
   add_noise(planes, conditions.seed);
+  apply(options_.look, planes.luma, planes.cb, planes.cr);
   frame.picture = Picture(planes.luma, planes.cb, planes.cr, Picture::Range::limited);
   return frame;
 }

@@ -8,6 +8,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/picture.h"
+#include "marey/simulate/people/camera_look.h"
 #include "marey/simulate/people/figure.h"
 #include "marey/simulate/people/silhouette_raster.h"
 
@@ -43,6 +44,7 @@ struct RenderOptions {
   Vector<3> sun = Vector<3>(0.5, 0.35, 1.0);  ///< towards the sun; z above 0
   double shadow_level = 0.55;                 ///< what a shadow leaves of the ground's brightness
   double noise = 2;                           ///< standard deviation of luma, grey levels; chroma has half of it
+  CameraLook look;                            ///< lens, sharpening and codec
 };
 
 /// What changes from frame to frame besides the people.

@@ -18,9 +18,11 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
+#include "marey/track/contour/body_share.h"
+#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/followed_target.h"
 #include "marey/track/contour/line_search.h"
-#include "marey/track/contour/motion_filter.h"
-#include "marey/track/contour/shape_filter.h"
+#include "marey/track/contour/shared_outlines.h"
 #include "marey/track/contour/silhouette_spline.h"
 
 namespace marey::track::contour {
@@ -31,49 +33,33 @@ using Finding = MeasurementLine::Finding;
 // Noise, in heights of the target (px where it says so); each √second where it is a motion.
 constexpr double kBend = 0.12, kTogether = 0.3, kStiff = 0.1;  // the last: of both, while a part may be hidden
 constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
-constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
-constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
-                 kHiddenCentre = 4;                            // how the centre swings with the steps; the last: factor
 constexpr double kGrowthNoise = 2;                             // 1/s, of the growth read off two outlines
 constexpr double kGate = 3.5;                                  // standard deviations
 constexpr double kLeastReachPx = 4, kMostReachHeights = 0.25;  // of a line: px; heights
 constexpr double kSeen = 0.6, kPartly = 0.25;                  // shares of the lines found
 constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
 constexpr double kShareMemory = 0.05;
-constexpr double kMostUnlike = 1.35;  // factor of a silhouette's size over the usual, from which on it is not believed
-constexpr double kLeft = 0.5;         // heights from where the centre is predicted: the motion begins anew
-constexpr int kRounds = 3;            // of the fit, in every frame
-constexpr double kExplained = 0.3;    // IoU of a detection that explains an outline
-constexpr double kHintScore = 0.3;    // continues a track, begins none
-constexpr double kGrowthDoubt = 0.5;  // 1/s
+constexpr double kMostUnlike = 1.35;        // factor of a silhouette's size over the usual, from which on it is not believed
+constexpr double kLeft = 0.5;               // heights from where the centre is predicted: the motion begins anew
+constexpr int kRounds = 3;                  // of the fit, in every frame
+constexpr double kExplained = 0.3;          // IoU of a detection that explains an outline
+constexpr double kHintScore = 0.3;          // continues a track, begins none
+constexpr double kGrowthDoubt = 0.5;        // 1/s
+constexpr double kBeside = 0.2;             // heights about a silhouette that are looked at
+constexpr double kLeastOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot tell
+constexpr int kHeldTooLong = 5;             // frames after which a shape that was held says little
+constexpr double kMeets = 0.03;             // share of its box from which on another's box meets it
+constexpr double kLearn = 0.1;              // what a frame alone counts in how a target looks
+constexpr int kLearnEvery = 3;              // frames: its colours change little
 
-struct Silhouette {
-  geometry::ClosedSpline spline;
-  Timestamp time;
-};
-
-/// px, standard deviation axis by axis.
-struct MeasuredCentre {
-  Vector<2> centre, deviation;
-};
-
-struct FollowedTarget {
-  TrackId id;
-  ShapeFilter shape;
-  MotionFilter motion;
-  double height;           // px
-  double usual_area;       // px²
-  double usual_share = 1;  // of the pixels within the outline that are foreground
-  double share = 1;
-  Box box = {};
-  Outline::State state = Outline::State::seen;
-  Footprint footprint = {};
-  std::vector<MeasurementLine> lines = {};
-  std::array<std::shared_ptr<Outline>, 3> slots = {};  // a reader may still hold one
-  bool crowded = false;                                // its box meets another's
-  bool knotted = false;                                // what the lines made of it was no outline
-  std::optional<MeasuredCentre> measured = {};         // in this frame, for the motion filter
-};
+Box bounds(std::span<const Vector<2>> polygon) {
+  Vector<2> least = polygon[0], most = polygon[0];
+  for (const Vector<2>& corner : polygon) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  return {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
+}
 
 }  // namespace
 
@@ -84,7 +70,8 @@ class OutlineFollower::Implementation {
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
     const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;
     now_ = frame.time;
-    luma_ = frame.picture.luma();
+    picture_ = frame.picture;
+    mask_ = foreground.mask;
     hints_.clear();
     for (FollowedTarget& target : targets_) {
       predict(target, dt);
@@ -104,26 +91,64 @@ class OutlineFollower::Implementation {
     });
     std::erase_if(first_seen_, [&](const auto& one) { return one.second.time != before_; });
     tracks_.assign(tracks.begin(), tracks.end());
+    shared_.clear();
+    for (const Track<2>& track : tracks_) {
+      const Detection* raw = detection_of(track, detections);
+      const Detection* seen = raw != nullptr && !raw->group && raw->box.height >= options_.least_height ? raw : nullptr;
+      FollowedTarget* target = target_of(track.id);
+      if (target == nullptr && seen != nullptr) begin(track.id, *seen);
+      // Where another's box meets its own, a silhouette may hold pixels of both.
+      const bool alone = target == nullptr || target->learned == 0 || !meets_another(track);
+      if (target != nullptr && seen != nullptr && alone && take_silhouette(*target, *seen, track)) continue;
+      if (track.box && has_colours()) shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
+    }
+    divide_shared();
     for (Track<2>& track : tracks_) {
-      const auto own = track.observation ? static_cast<std::size_t>(*track.observation) : detections.size();
-      const Detection* seen = own < detections.size() ? &detections[own] : nullptr;
-      if (seen != nullptr && (seen->group || seen->box.height < options_.least_height)) seen = nullptr;
-      const auto target =
-          std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == track.id; });
-      if (target != targets_.end()) {
-        if (seen != nullptr) take_silhouette(*target, *seen);
-        if (track.box) bring_back(*target, track);
-        if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
-        track.outline = report(*target, seen);
-      } else if (seen != nullptr) {
-        track.outline = begin(track.id, *seen);
-      }
+      FollowedTarget* target = target_of(track.id);
+      if (target == nullptr) continue;
+      const Detection* raw = detection_of(track, detections);
+      if (track.box) bring_back(*target, track);
+      if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
+      target->held = target->state == Outline::State::held ? target->held + 1 : 0;
+      track.outline = report(*target, raw != nullptr && !raw->group ? raw : nullptr, track);
     }
     before_ = now_.value_or(Timestamp{});
     return tracks_;
   }
 
  private:
+  struct Silhouette {
+    geometry::ClosedSpline spline;
+    Timestamp time;
+  };
+
+  /// A track that no silhouette of its own was seen of in this frame.
+  struct Shared {
+    TrackId id;
+    Box box;
+    bool observed = false, in_group = false;
+  };
+
+  static const Detection* detection_of(const Track<2>& track, std::span<const Detection> detections) {
+    if (!track.observation || *track.observation >= std::ssize(detections)) return nullptr;
+    return &detections[static_cast<std::size_t>(*track.observation)];
+  }
+
+  bool meets_another(const Track<2>& track) const {
+    if (!track.box || !has_colours()) return false;
+    return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track<2>& other) {
+      return other.id != track.id && other.box &&
+             geometry::intersection(*track.box, *other.box).area() > kMeets * track.box->area();
+    });
+  }
+
+  FollowedTarget* target_of(TrackId id) {
+    const auto target = std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == id; });
+    return target != targets_.end() ? &*target : nullptr;
+  }
+
+  bool has_colours() const { return picture_.luma().type() == CV_8UC1 && picture_.size() == mask_.size() && !mask_.empty(); }
+
   void predict(FollowedTarget& target, double dt) {
     const bool held = target.state == Outline::State::held;
     const double stiff = target.state == Outline::State::seen && !target.crowded ? 1 : kStiff;
@@ -134,6 +159,9 @@ class OutlineFollower::Implementation {
                            .shift = dt * target.motion.velocity_deviation().mean(),
                            .growth = held ? 0 : dt * target.motion.growth_deviation()};
     target.shape.predict(dt * target.motion.velocity(), growth, target.shape.spline().centroid(), noise);
+    target.predicted = target.shape.spline();
+    target.behind.clear();
+    target.hidden.clear();
     target.motion.predict(dt, {.acceleration = kAcceleration * target.height, .growth = kGrowthDrift});
     target.box = target.shape.spline().box();
     polygon_ = target.shape.spline().polygon(4);
@@ -274,14 +302,33 @@ class OutlineFollower::Implementation {
                       .box = box});
   }
 
+  /// The outline of a silhouette that nobody shares: where its body ends, by its colours; without them, its edge of light.
+  std::optional<geometry::ClosedSpline> fitted(const Detection& seen, const geometry::SplineFitOptions& options) {
+    share_.release();
+    if (!has_colours() || seen.outline.size() < 4) return fit_silhouette(seen, picture_.luma(), options);
+    const double height = seen.box.height;
+    patch_ = cut_patch(picture_, mask_, grown(bounds(seen.outline), 2 + kBeside * height), cell_step(height));
+    if (patch_.colour.empty()) return fit_silhouette(seen, picture_.luma(), options);
+    share_ = body_share(patch_, cells_within(seen.outline, patch_), height);
+    const std::vector<Vector<2>> edge = half_level_curve(share_, patch_);
+    if (geometry::polygon_area(edge) < kLeastOfSilhouette * geometry::polygon_area(seen.outline)) {
+      share_.release();
+      return fit_silhouette(seen, picture_.luma(), options);
+    }
+    auto spline = fit_curve(edge, options);
+    if (!spline || geometry::intersection(spline->box(), seen.box).area() < 0.5 * seen.box.area()) return std::nullopt;
+    return spline;
+  }
+
   /// The tracker says that `seen`, which nobody shares, is this target: its whole edge tells more than the lines, which a leg that
   /// swings leaves behind. A silhouette unlike the target (cut, or grown by something else) is left to the lines.
-  void take_silhouette(FollowedTarget& target, const Detection& seen) {
+  bool take_silhouette(FollowedTarget& target, const Detection& seen, const Track<2>& track) {
     const int count = target.shape.spline().count();
-    const auto spline = fit_silhouette(seen, luma_, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
-    if (!spline || spline->count() != count) return;
+    const auto spline = fitted(seen, {.order = options_.order, .least = count, .most = count, .rounds = kRounds});
+    if (!spline || spline->count() != count) return false;
     const double growth = std::sqrt(spline->area() / target.usual_area);
-    if (target.state == Outline::State::seen && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return;
+    const bool known = target.state == Outline::State::seen || target.learned > 0;
+    if (known && target.held < kHeldTooLong && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return false;
     const Vector<2> centre = spline->centroid();
     if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
       target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
@@ -291,17 +338,62 @@ class OutlineFollower::Implementation {
     target.knotted = false;
     target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
     target.usual_area += kShareMemory * (spline->area() - target.usual_area);
+    learn(target, centre, track);
+    return true;
+  }
+
+  /// How the target looks, from what was just seen of it alone.
+  void learn(FollowedTarget& target, const Vector<2>& centre, const Track<2>& track) {
+    if (track.box) {
+      const Vector<2> off = (centre - track.box->centre()) / target.height;
+      target.centre_in_box += (target.learned == 0 ? 1 : kLearn) * (off - target.centre_in_box);
+    }
+    if (share_.empty()) return;
+    const double rate = std::max(kLearn, 1.0 / (target.learned + 1));
+    if (target.learned % kLearnEvery == 0) target.body.learn_colours(patch_, share_, centre, target.height, rate);
+    target.body.learn_coverage(patch_, share_, centre, target.height, rate);
+    ++target.learned;
+  }
+
+  /// Targets that nobody saw alone, region by region: those whose boxes meet, and those that the detector says share theirs.
+  void divide_shared() {
+    for (const Shared& one : shared_) {
+      if (one.in_group && target_of(one.id) == nullptr && one.box.height >= options_.least_height) begin_shared(one);
+    }
+    std::erase_if(shared_, [&](const Shared& one) { return target_of(one.id) == nullptr; });
+    std::vector<bool> done(shared_.size(), false);
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
+      if (done[i]) continue;
+      done[i] = true;
+      std::vector<std::size_t> members{i};
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        for (std::size_t j = 0; j < shared_.size(); ++j) {
+          if (done[j] || geometry::intersection(shared_[members[k]].box, shared_[j].box).area() <= 0) continue;
+          done[j] = true;
+          members.push_back(j);
+        }
+      }
+      if (members.size() == 1 && !shared_[i].in_group) continue;  // hidden by the scene, or missed: the lines tell
+      std::sort(members.begin(), members.end());
+      std::vector<SharedTarget> targets;
+      for (const std::size_t k : members) targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed});
+      outline_shared_region(picture_, mask_, targets);
+    }
   }
 
   /// The tracker holds that the target is somewhere else: the outline is moved there with its shape held.
+  static geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vector<2>& centre) {
+    std::vector<Vector<2>> points = spline.control_points();
+    const Vector<2> shift = centre - spline.centroid();
+    for (Vector<2>& point : points) point += shift;
+    return {spline.order(), std::move(points)};
+  }
+
   static void bring_back(FollowedTarget& target, const Track<2>& track) {
     const Vector<2> centre = target.motion.centre();
     const Box& box = *track.box;
     if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
-    std::vector<Vector<2>> points = target.shape.spline().control_points();
-    const Vector<2> shift = box.centre() - target.shape.spline().centroid();
-    for (Vector<2>& point : points) point += shift;
-    target.shape = ShapeFilter(geometry::ClosedSpline(target.shape.spline().order(), std::move(points)), kBend * target.height);
+    target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);
     target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthDoubt);
     target.state = Outline::State::held;
     target.measured.reset();
@@ -310,13 +402,13 @@ class OutlineFollower::Implementation {
 
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
   /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
-  std::shared_ptr<const Outline> begin(TrackId id, const Detection& seen) {
-    auto spline = fit_silhouette(seen, luma_, fit_options(options_));
-    if (!spline) return nullptr;
+  void begin(TrackId id, const Detection& seen) {
+    auto spline = fitted(seen, fit_options(options_));
+    if (!spline) return;
     const auto first = first_seen_.find(id);
     if (first == first_seen_.end()) {
       first_seen_.emplace(id, Silhouette{std::move(*spline), *now_});
-      return nullptr;
+      return;
     }
     const double dt = seconds(*now_ - first->second.time);
     const geometry::ClosedSpline& before = first->second.spline;
@@ -326,17 +418,47 @@ class OutlineFollower::Implementation {
     const double noise = std::sqrt(2) * (kSilhouetteNoise + kGaitAcross * height) / dt;
     MotionFilter motion(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthDoubt);
     motion.correct_growth(growth, kGrowthNoise);
-    const double area = spline->area();
-    targets_.push_back({.id = id,
-                        .shape = ShapeFilter(std::move(*spline), kSilhouetteNoise),
-                        .motion = motion,
-                        .height = height,
-                        .usual_area = area});
+    add(id, std::move(*spline), motion, height);
     first_seen_.erase(first);
-    return report(targets_.back(), &seen);
   }
 
-  std::shared_ptr<const Outline> report(FollowedTarget& target, const Detection* seen) const {
+  /// Of one that was never seen alone: a body that stands, as large as the tracker's box, shaped by the region's colours at once.
+  void begin_shared(const Shared& shared) {
+    geometry::SplineFitOptions options = fit_options(options_);
+    if (!options_.control_points) options.least = options.most;  // its shape is not known yet
+    const auto spline = standing_body(shared.box, options);
+    if (!spline) return;
+    const double height = shared.box.height;
+    add(shared.id, *spline, MotionFilter(spline->centroid(), Vector<2>::Zero(), 0, kBend * height, height, kGrowthDoubt), height);
+    targets_.back().held = kHeldTooLong;
+    targets_.back().state = Outline::State::held;
+    targets_.back().centre_in_box = (spline->centroid() - shared.box.centre()) / height;
+  }
+
+  void add(TrackId id, geometry::ClosedSpline spline, const MotionFilter& motion, double height) {
+    const double area = spline.area();
+    geometry::ClosedSpline predicted = spline;
+    targets_.push_back({.id = id,
+                        .shape = ShapeFilter(std::move(spline), kSilhouetteNoise),
+                        .motion = motion,
+                        .height = height,
+                        .usual_area = area,
+                        .predicted = std::move(predicted)});
+    FollowedTarget& target = targets_.back();
+    target.box = target.shape.spline().box();
+    target.footprint.fill(target.shape.spline().polygon(4));
+  }
+
+  /// Nothing where what is known is no outline of a target of this size.
+  std::shared_ptr<const Outline> report(FollowedTarget& target, const Detection* seen, const Track<2>& track) {
+    const cv::Size picture = mask_.size();
+    const Box own = track.box.value_or(target.box);
+    if (!is_outline_of(target.shape.spline(), own, mask_.empty() ? nullptr : &picture)) {
+      target.shape = ShapeFilter(moved_to(target.predicted, target.motion.centre()), kBend * target.height);
+      target.state = Outline::State::held;
+      target.lines.clear();
+      if (!is_outline_of(target.shape.spline(), own, mask_.empty() ? nullptr : &picture)) return nullptr;
+    }
     auto slot = std::find_if(target.slots.begin(), target.slots.end(),
                              [](const std::shared_ptr<Outline>& one) { return one && one.use_count() == 1; });
     if (slot == target.slots.end()) {
@@ -359,12 +481,18 @@ class OutlineFollower::Implementation {
     outline.silhouette = seen != nullptr ? std::optional(seen->centre) : std::nullopt;
     outline.lines = target.lines;
     outline.state = target.state;
+    outline.behind = target.behind;
+    outline.hidden = target.hidden;
     return *slot;
   }
 
   OutlineOptions options_;
   std::optional<Timestamp> now_;
-  cv::Mat luma_;        // of the frame last observed
+  Picture picture_;  // of the frame last observed
+  cv::Mat mask_;     // its foreground
+  std::vector<Shared> shared_;
+  ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty where colours were not used
+  cv::Mat share_;
   Timestamp before_{};  // of the last frame attached
   std::vector<FollowedTarget> targets_;
   std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame

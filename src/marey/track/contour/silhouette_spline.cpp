@@ -4,6 +4,7 @@
 #include "marey/track/contour/silhouette_spline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -57,16 +58,73 @@ bool is_knotted(const geometry::ClosedSpline& spline) {
   return std::abs(turned - 2 * std::numbers::pi) > 1;
 }
 
-std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
-                                                     geometry::SplineFitOptions options) {
-  const std::vector<Vector<2>> edge = moved_to_intensity_edges(seen.outline, luma);
+bool is_simple(const geometry::ClosedSpline& spline) {
+  const std::vector<Vector<2>> points = spline.polygon(8);
+  const std::size_t count = points.size();
+  struct Segment {
+    double left, right, top, bottom;
+    std::size_t begin;
+  };
+  std::vector<Segment> segments(count);
+  const auto end_of = [&](std::size_t i) -> const Vector<2>& { return points[i + 1 < count ? i + 1 : 0]; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector<2>&a = points[i], &b = end_of(i);
+    segments[i] = {std::min(a.x(), b.x()), std::max(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.y(), b.y()), i};
+  }
+  std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.left < b.left; });
+  const auto side = [](const Vector<2>& a, const Vector<2>& b, const Vector<2>& p) {
+    return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count && segments[j].left <= segments[i].right; ++j) {
+      if (segments[j].top > segments[i].bottom || segments[j].bottom < segments[i].top) continue;
+      const std::size_t one = segments[i].begin, other = segments[j].begin, apart = one > other ? one - other : other - one;
+      if (apart <= 1 || apart == count - 1) continue;
+      const Vector<2>&a = points[one], &b = end_of(one), &c = points[other], &d = end_of(other);
+      if (side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0) return false;
+    }
+  }
+  return true;
+}
+
+bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* picture) {
+  constexpr double kMostWide = 2, kMostHigh = 1.6;
+  Box own = spline.box();
+  if (picture != nullptr) {
+    const Box seen{0, 0, static_cast<double>(picture->width), static_cast<double>(picture->height)};
+    own = geometry::intersection(own, seen);
+  }
+  return own.width <= kMostWide * box.width && own.height <= kMostHigh * box.height && is_simple(spline);
+}
+
+std::optional<geometry::ClosedSpline> fit_curve(std::span<const Vector<2>> edge, geometry::SplineFitOptions options) {
   for (const int rounds : {options.rounds, 0}) {
     options.rounds = rounds;
     auto spline = geometry::fit_spline(edge, options);
-    if (!spline || !(spline->area() > kLeastArea) || geometry::iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
-    if (!is_knotted(*spline)) return spline;
+    if (!spline || !(spline->area() > kLeastArea)) return std::nullopt;
+    if (!is_knotted(*spline) && is_simple(*spline)) return spline;
   }
   return std::nullopt;
+}
+
+std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geometry::SplineFitOptions& options) {
+  // Half of it, in heights from the middle of the top: head, shoulder, hand, hip, foot.
+  constexpr std::array<std::array<double, 2>, 9> kHalf{
+      {{0.03, 0}, {0.06, 0.05}, {0.05, 0.13}, {0.12, 0.18}, {0.14, 0.42}, {0.1, 0.52}, {0.1, 0.75}, {0.09, 1}, {0.03, 1}}};
+  std::vector<Vector<2>> polygon;
+  const Vector<2> top(box.left + box.width / 2 - 0.5, box.top - 0.5);
+  for (const auto& [x, y] : kHalf) polygon.emplace_back(top + box.height * Vector<2>(x, y));
+  for (auto half = kHalf.rbegin(); half != kHalf.rend(); ++half) {
+    polygon.emplace_back(top + box.height * Vector<2>(-(*half)[0], (*half)[1]));
+  }
+  return fit_curve(polygon, options);
+}
+
+std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
+                                                     geometry::SplineFitOptions options) {
+  auto spline = fit_curve(moved_to_intensity_edges(seen.outline, luma), options);
+  if (!spline || geometry::iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
+  return spline;
 }
 
 }  // namespace marey::track::contour

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
+
+#include <opencv2/core.hpp>
 
 #include "marey/core/detection.h"
 #include "marey/geometry/bspline.h"
@@ -21,5 +24,18 @@ bool is_knotted(const geometry::ClosedSpline& spline);
 /// not about as large as the detection.
 std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
                                                      geometry::SplineFitOptions options);
+
+/// The spline of a closed curve (px, clockwise), where it is a simple curve and has an area.
+std::optional<geometry::ClosedSpline> fit_curve(std::span<const Vector<2>> edge, geometry::SplineFitOptions options);
+
+/// A person who stands in a box, px: what is taken of one who was never seen alone.
+std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geometry::SplineFitOptions& options);
+
+/// Whether the curve does not cross itself.
+bool is_simple(const geometry::ClosedSpline& spline);
+
+/// Whether what is written of a target in `box` (px) may be this curve: simple, and at most twice as wide and 1.6 times as high.
+/// With `picture`, what lies outside a picture of that size does not count.
+bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* picture = nullptr);
 
 }  // namespace marey::track::contour

@@ -1,0 +1,130 @@
+// Colours are histograms of luma and chroma, one for each of six bands from head to foot: a shirt, its number, arms and shorts are
+// several colours at once, which one Gaussian cannot tell. A sample is shared among the bins about it.
+#include "marey/track/contour/body_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marey::track::contour {
+namespace {
+
+constexpr double kLumaBin = 20, kChromaBin = 9;         // levels
+constexpr double kTopOfBands = -0.5, kBottom = 0.5;     // heights
+constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;  // heights that the coverage spans to either side
+constexpr double kFloor = 2e-8;                         // per level³: any colour may come
+
+/// Where a value lies among bins: the first of two neighbours, and the second one's share.
+struct BinPlace {
+  int first = 0;
+  float part = 0;
+};
+BinPlace bin_place(double at, int count) {
+  const double clamped = std::clamp(at, 0.0, count - 1.0);
+  const int first = std::min(static_cast<int>(clamped), count - 2);
+  return {first, static_cast<float>(clamped - first)};
+}
+
+template <int Luma, int Chroma, typename Visit>
+void for_bins(const cv::Vec3f& colour, const Visit& visit) {
+  const BinPlace y = bin_place(colour[0] / kLumaBin - 0.5, Luma);
+  const BinPlace cb = bin_place((colour[1] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
+  const BinPlace cr = bin_place((colour[2] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
+  for (int i = 0; i < 8; ++i) {
+    const int a = i & 1, b = (i >> 1) & 1, c = i >> 2;
+    const float weight = (a != 0 ? y.part : 1 - y.part) * (b != 0 ? cb.part : 1 - cb.part) * (c != 0 ? cr.part : 1 - cr.part);
+    visit(((y.first + a) * Chroma + cb.first + b) * Chroma + cr.first + c, weight);
+  }
+}
+
+int band_of(double down, int bands) {
+  const double part = (down - kTopOfBands) / (kBottom - kTopOfBands);
+  return std::clamp(static_cast<int>(std::floor(part * bands)), 0, bands - 1);
+}
+
+/// A person who stands: head, trunk, legs.
+double standing(const Vector<2>& place) {
+  const auto within = [&](double x, double y, double half_width, double half_height) {
+    return std::pow((place.x() - x) / half_width, 2) + std::pow((place.y() - y) / half_height, 2) < 1;
+  };
+  const bool body = within(0, -0.38, 0.07, 0.09) || within(0, -0.12, 0.14, 0.22) || within(0, 0.25, 0.13, 0.27);
+  return body ? 0.8 : 0.06;
+}
+
+}  // namespace
+
+BodyModel::BodyModel() {
+  for (int row = 0; row < kDown; ++row) {
+    for (int column = 0; column < kAcross; ++column) {
+      const Vector<2> place(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
+      coverage_[row * kAcross + column] = static_cast<float>(standing(place));
+    }
+  }
+}
+
+void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height, double rate) {
+  std::vector<Histogram> now(kBands);
+  std::array<double, kBands> weight{};
+  for (Histogram& one : now) one.fill(0);
+  for (int y = 0; y < share.rows; ++y) {
+    const int band = band_of((patch.pixel({0, y}).y() - centre.y()) / height, kBands);
+    for (int x = 0; x < share.cols; ++x) {
+      const float covered = share.at<float>(y, x);
+      if (covered < 0.7F) continue;
+      for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), [&](int bin, float part) { now[band][bin] += part; });
+      weight[band] += 1;
+    }
+  }
+  if (colours_.empty()) {
+    colours_.resize(kBands);
+    for (Histogram& one : colours_) one.fill(0);
+  }
+  for (int band = 0; band < kBands; ++band) {
+    if (weight[band] < 4) continue;
+    const auto old = static_cast<float>(known_ ? 1 - rate : 0), fresh = static_cast<float>((known_ ? rate : 1) / weight[band]);
+    for (std::size_t bin = 0; bin < now[band].size(); ++bin)
+      colours_[band][bin] = old * colours_[band][bin] + fresh * now[band][bin];
+  }
+  known_ = true;
+}
+
+void BodyModel::learn_coverage(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height,
+                               double rate) {
+  for (int row = 0; row < kDown; ++row) {
+    for (int column = 0; column < kAcross; ++column) {
+      const Vector<2> place(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
+      const Vector<2> cell = patch.cell(centre + height * place);
+      const int x = static_cast<int>(std::lround(cell.x())), y = static_cast<int>(std::lround(cell.y()));
+      if (x < 0 || y < 0 || x >= share.cols || y >= share.rows) continue;
+      float& known = coverage_[row * kAcross + column];
+      known += static_cast<float>(rate) * (share.at<float>(y, x) - known);
+    }
+  }
+}
+
+double BodyModel::density(double down, const cv::Vec3f& colour) const {
+  if (!known_) return kFloor;
+  // Two bands are mixed, so that a seam between shirt and shorts may lie a little higher or lower.
+  const double band = std::clamp((down - kTopOfBands) / (kBottom - kTopOfBands) * kBands - 0.5, 0.0, kBands - 1.0);
+  const int upper = std::min(static_cast<int>(band), kBands - 2);
+  const auto part = static_cast<float>(band - upper);
+  // Samples were shared among neighbouring bins as they were learned: here the nearest bin says it all.
+  const auto nearest = [](float at, int count) { return std::clamp(static_cast<int>(at + 0.5F), 0, count - 1); };
+  const int y = nearest(colour[0] / static_cast<float>(kLumaBin) - 0.5F, kLuma);
+  const int cb = nearest((colour[1] - 128) / static_cast<float>(kChromaBin) + (kChroma - 1) / 2.0F, kChroma);
+  const int cr = nearest((colour[2] - 128) / static_cast<float>(kChromaBin) + (kChroma - 1) / 2.0F, kChroma);
+  const std::size_t bin = static_cast<std::size_t>((y * kChroma + cb) * kChroma + cr);
+  const float sum = (1 - part) * colours_[upper][bin] + part * colours_[upper + 1][bin];
+  return sum / (kLumaBin * kChromaBin * kChromaBin) + kFloor;
+}
+
+double BodyModel::coverage(const Vector<2>& place) const {
+  const double x = ((place.x() / kHalfAcross + 1) / 2) * kAcross - 0.5, y = ((place.y() / kHalfDown + 1) / 2) * kDown - 0.5;
+  if (x < -1 || y < -1 || x > kAcross || y > kDown) return 0.01;
+  const BinPlace across = bin_place(x, kAcross), down = bin_place(y, kDown);
+  const float* at = &coverage_[down.first * kAcross + across.first];
+  const float above = at[0] + across.part * (at[1] - at[0]);
+  const float below = at[kAcross] + across.part * (at[kAcross + 1] - at[kAcross]);
+  return above + down.part * (below - above);
+}
+
+}  // namespace marey::track::contour

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "marey/core/geometry.h"
+#include "marey/core/ids.h"
+#include "marey/core/outline.h"
+#include "marey/core/time.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/body_model.h"
+#include "marey/track/contour/line_search.h"
+#include "marey/track/contour/motion_filter.h"
+#include "marey/track/contour/shape_filter.h"
+
+namespace marey::track::contour {
+
+// Noise, in heights of the target (px where it says so).
+inline constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from a silhouette
+inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
+                        kHiddenCentre = 4;  // how the centre swings with the steps; the last: factor where a part is hidden
+
+/// px, standard deviation axis by axis.
+struct MeasuredCentre {
+  Vector<2> centre, deviation;
+};
+
+/// One target whose outline is followed.
+struct FollowedTarget {
+  TrackId id;
+  ShapeFilter shape;
+  MotionFilter motion;
+  double height;                     ///< px
+  double usual_area;                 ///< px²
+  geometry::ClosedSpline predicted;  ///< of this frame, before anything was seen of it
+  BodyModel body = {};               ///
+  int learned = 0;                   ///< frames that `body` was learned from
+  int held = 0;                      ///< frames since it was seen, or a part of it
+  Vector<2> centre_in_box = {0, 0};  ///< heights, from the middle of the tracker's box to the outline's centre
+  double usual_share = 1;            ///< of the pixels within the outline that are foreground
+  double share = 1;
+  Box box = {};
+  Outline::State state = Outline::State::seen;
+  Footprint footprint = {};
+  std::vector<MeasurementLine> lines = {};
+  std::array<std::shared_ptr<Outline>, 3> slots = {};  ///< a reader may still hold one
+  std::vector<TrackId> behind = {};                    ///< targets that hide a part of it in this frame
+  std::vector<int> hidden = {};                        ///< control points that they hide
+  bool crowded = false;                                ///< its box meets another's
+  bool knotted = false;                                ///< what the lines made of it was no outline
+  std::optional<MeasuredCentre> measured = {};         ///< in this frame, for the motion filter
+};
+
+}  // namespace marey::track::contour

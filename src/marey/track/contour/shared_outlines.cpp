@@ -1,0 +1,154 @@
+// The targets of one region are divided (shared_region.h); then each takes the outline of what is its own and of what is hidden of
+// it, fitted anew. What is hidden keeps the predicted shape, moved to where the seen part says that the body is.
+#include "marey/track/contour/shared_outlines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "marey/track/contour/body_share.h"
+#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/shared_region.h"
+#include "marey/track/contour/silhouette_spline.h"
+
+namespace marey::track::contour {
+namespace {
+
+constexpr double kMargin = 0.15;                            // heights about all members
+constexpr double kLeastVisible = 0.18;                      // share of a body, below which its shape is held
+constexpr double kWhollyVisible = 0.92;                     // from which on it is seen as if alone
+constexpr double kLeastOfUsual = 0.55, kMostOfUsual = 1.6;  // area of an outline, of the usual, that is believed
+constexpr double kFar = 0.5;                       // heights between tracker and motion filter, from which on the tracker is right
+constexpr double kUsual = 0.35, kUsualHeld = 0.6;  // weight of the usual coverage: as a rule; where the shape is old or unknown
+constexpr float kUnlikeGround = 22;                // levels from the ground, of a body whose colours are not known yet
+constexpr double kLearnInRegion = 0.15;            // what a frame counts in a body that was never seen alone
+constexpr double kFine = 80;                       // px of height, up to which cells are pixels
+constexpr int kLongHeld = 5;                       // frames
+
+Box grown(const Box& box, double by) {
+  return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
+}
+
+ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, std::span<const SharedTarget> targets) {
+  Box all;
+  double height = 0;
+  for (const SharedTarget& one : targets) {
+    const Box own = geometry::hull(one.box, one.target->predicted.box());
+    all = all.empty() ? own : geometry::hull(all, own);
+    height = std::max(height, one.target->height);
+  }
+  return cut_patch(picture, mask, grown(all, kMargin * height), height <= kFine ? 1 : cell_step(std::max(height, 120.0)));
+}
+
+RegionMember member_of(const SharedTarget& shared) {
+  const FollowedTarget& target = *shared.target;
+  RegionMember member;
+  member.body = &target.body;
+  member.polygon = target.predicted.polygon(4);
+  member.centre = target.predicted.centroid();
+  member.height = target.height;
+  member.foot = shared.box.bottom();
+  const Vector<2> tracked = shared.box.centre() + target.height * target.centre_in_box - member.centre;
+  const bool old = target.held >= kLongHeld;
+  const Vector<2> none = Vector<2>::Zero();
+  if (tracked.norm() > kFar * target.height) {
+    member.shifts = {tracked};
+  } else if (old && shared.observed) {
+    member.shifts = {tracked, none};
+  } else {
+    member.shifts = {none, tracked};
+  }
+  member.usual = old || target.learned == 0 ? kUsualHeld : kUsual;
+  return member;
+}
+
+/// Colours of a target that was never alone: what is seen where it is expected and no other is.
+void guess_colours(const ColourPatch& patch, std::span<const RegionMember> members, std::size_t own, BodyModel& body) {
+  cv::Mat alone = cells_within(members[own].polygon, patch).mul(patch.mask);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    if (k != own) alone = alone.mul(1 - cells_within(members[k].polygon, patch));
+  }
+  const cv::Mat ground = ground_beside(patch, patch.mask, members[own].height);
+  for (int y = 0; y < alone.rows; ++y) {
+    for (int x = 0; x < alone.cols; ++x) {
+      const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
+      if (away.dot(away) < kUnlikeGround * kUnlikeGround) alone.at<float>(y, x) = 0;
+    }
+  }
+  if (cv::sum(alone)[0] < 12) return;
+  body.learn_colours(patch, alone, members[own].centre + members[own].shifts.front(), members[own].height, 1);
+}
+
+void hold(FollowedTarget& target, const Vector<2>& shift) {
+  std::vector<Vector<2>> points(std::as_const(target.predicted).control_points());
+  for (Vector<2>& point : points) point += shift;
+  target.shape = ShapeFilter(geometry::ClosedSpline(target.predicted.order(), std::move(points)), 0.05 * target.height);
+  target.state = Outline::State::held;
+}
+
+void note_hidden(const ColourPatch& patch, std::span<const RegionMember> members, const RegionMember& own,
+                 std::span<const SharedTarget> targets) {
+  FollowedTarget& target = *targets[static_cast<std::size_t>(&own - members.data())].target;
+  for (const int j : own.behind) target.behind.push_back(targets[static_cast<std::size_t>(j)].target->id);
+  std::sort(target.behind.begin(), target.behind.end());
+  const auto points = target.shape.spline().control_points();
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const Vector<2> cell = patch.cell(points[static_cast<std::size_t>(i)]);
+    const int x = static_cast<int>(std::lround(cell.x())), y = static_cast<int>(std::lround(cell.y()));
+    if (x < 0 || y < 0 || x >= patch.size().width || y >= patch.size().height) continue;
+    const bool hidden = std::any_of(own.behind.begin(), own.behind.end(),
+                                    [&](int j) { return members[static_cast<std::size_t>(j)].seen.at<float>(y, x) > 0.5F; });
+    if (hidden) target.hidden.push_back(i);
+  }
+}
+
+void take_part(FollowedTarget& target, const RegionMember& member, const ColourPatch& patch) {
+  const Vector<2> doubt = target.height * Vector<2>(kGaitAcross, kGaitDown);
+  hold(target, member.shift);
+  target.measured.reset();
+  if (member.visible < kLeastVisible) return;
+  const int count = target.predicted.count();
+  const auto curve = half_level_curve(member.whole, patch);
+  const auto spline = fit_curve(curve, {.order = target.predicted.order(), .least = count, .most = count});
+  const double part = spline ? spline->area() / target.usual_area : 0;
+  const double doubt_of_area = target.learned == 0 ? 0.6 : 1;  // its usual area is a guess then
+  const double hidden_factor = 1 + (kHiddenCentre - 1) * std::min(1.0, 2 * (1 - member.visible));
+  if (!spline || spline->count() != count || part < kLeastOfUsual * doubt_of_area || part > kMostOfUsual / doubt_of_area) {
+    // No outline comes of it, but a place does.
+    target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * doubt + Vector<2>::Constant(1)};
+    return;
+  }
+  target.shape = ShapeFilter(*spline, kSilhouetteNoise);
+  target.state = member.visible > kWhollyVisible ? Outline::State::seen : Outline::State::partly;
+  target.measured = {spline->centroid(), hidden_factor * doubt + Vector<2>::Constant(kSilhouetteNoise)};
+  target.knotted = false;
+}
+
+}  // namespace
+
+int cell_step(double height) {
+  return height <= 100 ? 1 : height <= 220 ? 2 : 4;
+}
+
+void outline_shared_region(const Picture& picture, const cv::Mat& mask, std::span<SharedTarget> targets) {
+  const ColourPatch patch = patch_about(picture, mask, targets);
+  if (patch.colour.empty()) return;
+  std::vector<RegionMember> members;
+  for (const SharedTarget& one : targets) members.push_back(member_of(one));
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);
+  }
+  divide_region(patch, members);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    FollowedTarget& target = *targets[k].target;
+    target.lines.clear();
+    take_part(target, members[k], patch);
+    if (target.learned == 0 && target.state != Outline::State::held && members[k].visible > 0.5) {
+      const Vector<2> centre = members[k].centre + members[k].shift;
+      target.body.learn_colours(patch, members[k].seen, centre, target.height, kLearnInRegion);
+      target.usual_area += kLearnInRegion * (target.shape.spline().area() - target.usual_area);
+    }
+    note_hidden(patch, members, members[k], targets);
+  }
+}
+
+}  // namespace marey::track::contour

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "marey/core/picture.h"
+#include "marey/track/contour/followed_target.h"
+
+namespace marey::track::contour {
+
+/// A target that shares its pixels with others, and where the tracker has it.
+struct SharedTarget {
+  FollowedTarget* target = nullptr;
+  Box box;                ///< px
+  bool observed = false;  ///< the tracker saw something of it in this frame
+};
+
+/// Divides the region that `targets` share among them by their colours and predicted shapes, and gives each the outline of its own
+/// part, the rest of it shaped as it was; of one of whom too little is seen the whole shape is held. `mask` is CV_8UC1.
+void outline_shared_region(const Picture& picture, const cv::Mat& mask, std::span<SharedTarget> targets);
+
+/// The size of a patch's cells for a target, px.
+int cell_step(double height);
+
+}  // namespace marey::track::contour

@@ -1,0 +1,275 @@
+// Each pixel shows the nearest member that covers it, or the ground. The prior that it shows member k is p_k ∏ (1 − p_j) over all
+// nearer j, with p the chance that k covers it: a sigmoid of the distance to its predicted outline, mixed with how often it covers
+// the place. The likelihood of the pixel's colour comes from each member's own histograms by height on its body, and for the ground
+// from what is seen beside the region; the foreground mask counts as weak evidence, for it runs on halos. Places are found first,
+// by trying shifts of one member after the other for the largest likelihood of the whole patch, and with them the order of two
+// whose feet are about equally low. The division is then made smooth by mean field in a Potts model (Blake, Kohli & Rother, "Markov
+// Random Fields for Vision and Image Processing", 2011, ch. 5), where each pixel's neighbours vote. Cost: cells × members × (tries
+// / 4 + rounds).
+#include "marey/track/contour/shared_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/track/contour/body_share.h"
+
+namespace marey::track::contour {
+namespace {
+
+constexpr double kEdgeSoftness = 0.03;                      // heights, of a predicted outline
+constexpr float kLeastChance = 0.004F;                      // that a member covers a pixel, or does not
+constexpr double kGroundLuma = 11, kGroundChroma = 4;       // levels, standard deviation of the ground beside people
+constexpr double kGroundFloor = 2e-7;                       // per level³
+constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;  // chance of foreground
+constexpr double kTempered = 0.5;                           // exponent of likelihoods: neighbouring pixels err alike
+constexpr float kVote = 5;                                  // of all neighbours together, in log-odds
+constexpr int kVotingRounds = 5;
+constexpr double kLargeStep = 0.1, kMiddleStep = 0.05, kSmallStep = 0.02;  // heights, of the search for a place
+constexpr int kSteps = 3;                                                  // of each size, at most
+constexpr double kShiftDoubt = 0.12;                                       // heights, standard deviation of a predicted place
+constexpr double kFootDoubt = 0.03;                                        // heights by which feet are misjudged
+constexpr double kUndecided = 0.1;                                         // heights between feet, below which colours have a say
+
+class RegionDivision {
+ public:
+  RegionDivision(const ColourPatch& patch, std::span<RegionMember> members) : patch_(patch), members_(members) {
+    ground_likelihood();
+    chances_.resize(members.size());
+    likelihoods_.resize(members.size());
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      members[k].shift = members[k].shifts.front();
+      prepare(k);
+    }
+    order_by_feet();
+  }
+
+  void find_places() {
+    for (const double step : {kLargeStep, kMiddleStep, kSmallStep}) {
+      for (int round = 0; round < kSteps; ++round) {
+        bool moved = false;
+        for (const int k : order_) moved = try_about(k, step, step == kLargeStep && round == 0) || moved;
+        if (!moved) break;
+      }
+    }
+    for (std::size_t k = 0; k < members_.size(); ++k) prepare(k);  // colours where each body was found to be
+    decide_order();
+  }
+
+  void divide() {
+    const auto labels = members_.size() + 1;
+    std::vector<cv::Mat> odds(labels), votes(labels), shares(labels);
+    for (cv::Mat& one : odds) one.create(patch_.size(), CV_32FC1);
+    for (int y = 0; y < patch_.size().height; ++y) {
+      for (int x = 0; x < patch_.size().width; ++x) {
+        float left = 1;
+        for (const int k : order_) {
+          const float chance = chances_[k].at<float>(y, x);
+          odds[k].at<float>(y, x) = std::log(left * chance) + log_likelihood(likelihoods_[k].at<float>(y, x));
+          left *= 1 - chance;
+        }
+        odds.back().at<float>(y, x) = std::log(left) + log_likelihood(ground_.at<float>(y, x));
+      }
+    }
+    for (int round = 0; round <= kVotingRounds; ++round) {
+      cv::Mat sum = cv::Mat::zeros(patch_.size(), CV_32FC1), most = odds[0].clone();
+      for (std::size_t l = 0; l < labels; ++l) {
+        shares[l] = round == 0 ? odds[l].clone() : cv::Mat(odds[l] + kVote * votes[l]);
+        cv::max(most, shares[l], most);
+      }
+      for (cv::Mat& share : shares) {
+        share -= most;
+        cv::exp(share, share);
+        sum += share;
+      }
+      for (std::size_t l = 0; l < labels; ++l) {
+        shares[l] /= sum;
+        if (round < kVotingRounds) cv::blur(shares[l], votes[l], {3, 3});
+      }
+    }
+    hand_out(shares);
+  }
+
+ private:
+  static float log_likelihood(float value) { return static_cast<float>(kTempered) * std::log(value); }
+
+  void ground_likelihood() {
+    cv::Mat taken = patch_.mask.clone();
+    double height = 0;
+    for (const RegionMember& member : members_) {
+      cv::max(taken, cells_within(member.polygon, patch_), taken);
+      height = std::max(height, member.height);
+    }
+    const cv::Mat ground = ground_beside(patch_, taken, height);
+    ground_.create(patch_.size(), CV_32FC1);
+    const double scale = std::pow(2 * std::numbers::pi, -1.5) / (kGroundLuma * kGroundChroma * kGroundChroma);
+    for (int y = 0; y < ground.rows; ++y) {
+      for (int x = 0; x < ground.cols; ++x) {
+        const cv::Vec3f off = patch_.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
+        const double square =
+            std::pow(off[0] / kGroundLuma, 2) + (off[1] * off[1] + off[2] * off[2]) / (kGroundChroma * kGroundChroma);
+        const float mask = patch_.mask.at<float>(y, x);
+        ground_.at<float>(y, x) = static_cast<float>((scale * std::exp(-0.5 * square) + kGroundFloor) *
+                                                     (mask * kMaskOnGround + (1 - mask) * (1 - kMaskOnGround)));
+      }
+    }
+  }
+
+  /// The chance that member k covers each cell, where it is now; and the likelihood of each cell's colour if so.
+  void prepare(std::size_t k) {
+    const RegionMember& member = members_[k];
+    shifted_ = member.polygon;
+    for (Vector<2>& corner : shifted_) corner += member.shift;
+    const cv::Mat within = cells_within(shifted_, patch_);
+    cv::Mat inside, outside, depth, distance;
+    within.convertTo(inside, CV_8U, 255);
+    outside = 255 - inside;
+    cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
+    cv::distanceTransform(outside, distance, cv::DIST_L2, 3);
+    const double softness = std::max(0.7, kEdgeSoftness * member.height / patch_.step);
+    const Vector<2> centre = member.centre + member.shift;
+    cv::Mat& chance = chances_[k];
+    cv::Mat& likelihood = likelihoods_[k];
+    chance.create(patch_.size(), CV_32FC1);
+    likelihood.create(patch_.size(), CV_32FC1);
+    for (int y = 0; y < chance.rows; ++y) {
+      for (int x = 0; x < chance.cols; ++x) {
+        const Vector<2> place = (patch_.pixel(Vector<2>(x, y)) - centre) / member.height;
+        const double signed_depth = depth.at<float>(y, x) - distance.at<float>(y, x);
+        const double shape = 1 / (1 + std::exp(static_cast<float>(-signed_depth / softness)));
+        const double usual = member.body->coverage(place);
+        chance.at<float>(y, x) =
+            std::clamp(static_cast<float>((1 - member.usual) * shape + member.usual * usual), kLeastChance, 1 - kLeastChance);
+        const float mask = patch_.mask.at<float>(y, x);
+        likelihood.at<float>(y, x) = static_cast<float>(member.body->density(place.y(), patch_.colour.at<cv::Vec3f>(y, x))) *
+                                     (mask * kMaskOnBody + (1 - mask) * (1 - kMaskOnBody));
+      }
+    }
+  }
+
+  void order_by_feet() {
+    order_.clear();
+    for (std::size_t k = 0; k < members_.size(); ++k) order_.push_back(static_cast<int>(k));
+    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return members_[a].foot > members_[b].foot; });
+  }
+
+  /// Of the whole patch, every second cell each way, in nats.
+  double log_likelihood() const {
+    double sum = 0;
+    for (int y = 0; y < patch_.size().height; y += 2) {
+      const float* ground = ground_.ptr<float>(y);
+      for (int x = 0; x < patch_.size().width; x += 2) {
+        float left = 1, all = 0;
+        for (const int k : order_) {
+          const float chance = chances_[k].at<float>(y, x);
+          all += left * chance * likelihoods_[k].at<float>(y, x);
+          left *= 1 - chance;
+        }
+        sum += std::log(all + left * ground[x]);
+      }
+    }
+    double doubt = 0;
+    for (const RegionMember& member : members_) {
+      doubt += (member.shift - member.shifts.front()).squaredNorm() / std::pow(kShiftDoubt * member.height, 2);
+    }
+    return kTempered * sum - 0.5 * doubt;
+  }
+
+  /// One member at four places about where it is, and where else it may be; whether another place is better. Its colours are taken
+  /// to stay: they change slowly from head to foot.
+  bool try_about(int k, double step, bool elsewhere) {
+    RegionMember& member = members_[k];
+    const Vector<2> from = member.shift;
+    const double whole_cells = std::max(1.0, std::round(step * member.height / patch_.step)) * patch_.step;
+    std::vector<Vector<2>> shifts;
+    for (const Vector<2>& way : {Vector<2>(1, 0), Vector<2>(-1, 0), Vector<2>(0, 1), Vector<2>(0, -1)}) {
+      shifts.push_back(from + whole_cells * way);
+    }
+    if (elsewhere) shifts.insert(shifts.end(), member.shifts.begin() + 1, member.shifts.end());
+    const cv::Mat chance = chances_[k];
+    cv::Mat best_chance = chance;
+    double best = log_likelihood();
+    Vector<2> kept = from;
+    for (const Vector<2>& shift : shifts) {
+      member.shift = shift;
+      chances_[k] = moved(chance, (shift - from) / patch_.step, kLeastChance);
+      const double value = log_likelihood();
+      if (value <= best) continue;
+      best = value;
+      kept = shift;
+      best_chance = chances_[k];
+    }
+    member.shift = kept;
+    chances_[k] = best_chance;
+    return kept != from;
+  }
+
+  /// By whole cells; what comes in has this value.
+  static cv::Mat moved(const cv::Mat& values, const Vector<2>& by, float beyond) {
+    const cv::Point shift(static_cast<int>(std::lround(by.x())), static_cast<int>(std::lround(by.y())));
+    cv::Mat result(values.size(), CV_32FC1, cv::Scalar(beyond));
+    const cv::Rect all({0, 0}, values.size()), to = (all + shift) & all;
+    if (!to.empty()) values(to - shift).copyTo(result(to));
+    return result;
+  }
+
+  /// Two whose feet are about equally low are tried the other way round.
+  void decide_order() {
+    for (std::size_t i = 0; i + 1 < order_.size(); ++i) {
+      const RegionMember& front = members_[order_[i]];
+      const RegionMember& back = members_[order_[i + 1]];
+      const double apart = (front.foot - back.foot) / (0.5 * (front.height + back.height));
+      if (apart > kUndecided) continue;
+      const double as_it_is = log_likelihood() + apart / kFootDoubt;
+      std::swap(order_[i], order_[i + 1]);
+      if (log_likelihood() <= as_it_is) std::swap(order_[i], order_[i + 1]);
+    }
+  }
+
+  void hand_out(const std::vector<cv::Mat>& shares) {
+    cv::Mat nearer = cv::Mat::zeros(patch_.size(), CV_32FC1);
+    std::vector<int> before;
+    for (const int k : order_) {
+      RegionMember& member = members_[k];
+      member.seen = shares[k];
+      member.whole = shares[k].clone();
+      double hidden = 0, seen = 0;
+      for (int y = 0; y < nearer.rows; ++y) {
+        for (int x = 0; x < nearer.cols; ++x) {
+          const float part = chances_[k].at<float>(y, x) > 0.5F ? nearer.at<float>(y, x) : 0;
+          member.whole.at<float>(y, x) = std::min(1.0F, member.whole.at<float>(y, x) + part);
+          hidden += part;
+          seen += shares[k].at<float>(y, x);
+        }
+      }
+      member.visible = seen + hidden > 0 ? seen / (seen + hidden) : 0;
+      member.behind.clear();
+      for (const int j : before) {
+        const cv::Mat both = members_[j].seen.mul(chances_[k]);
+        if (cv::sum(both)[0] > 0.02 * (seen + hidden)) member.behind.push_back(j);
+      }
+      before.push_back(k);
+      nearer += shares[k];
+    }
+  }
+
+  const ColourPatch& patch_;
+  std::span<RegionMember> members_;
+  cv::Mat ground_;                              // likelihood of each cell's colour, if it is ground
+  std::vector<cv::Mat> chances_, likelihoods_;  // by member
+  std::vector<int> order_;                      // nearest first
+  std::vector<Vector<2>> shifted_;
+};
+
+}  // namespace
+
+void divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
+  if (members.empty() || patch.colour.empty()) return;
+  RegionDivision division(patch, members);
+  division.find_places();
+  division.divide();
+}
+
+}  // namespace marey::track::contour
