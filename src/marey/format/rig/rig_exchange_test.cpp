@@ -332,7 +332,7 @@ TEST(RigExchange, NoMessageShowsALibrarysInternals) {
       ADD_FAILURE() << text;
     } catch (const Error& error) {
       const std::string said = error.what();
-      EXPECT_TRUE(said.starts_with("file.yml: ")) << said;
+      EXPECT_TRUE(said.starts_with("file.yml:")) << said;
       for (const char* internal : {"nelems", "cv::", "OpenCV(", ".cpp", "persistence", "=="})
         EXPECT_EQ(said.find(internal), std::string::npos) << said;
     }
