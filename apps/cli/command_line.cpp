@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "file_checks.h"
+#include "process_options.h"
 #include "spelling.h"
 
 namespace marey::cli {
@@ -262,6 +263,7 @@ void Command::reports(bool& json, bool& quiet, const std::string& what) {
   declared_->group.clear();
   flag("--json", json, "print the " + what + " as JSON on standard output");
   flag("-q,--quiet", quiet, "no progress and no " + what + "; warnings and JSON stay");
+  add_process_options(*this);
   declared_->json = &json;
 }
 
@@ -352,6 +354,7 @@ std::map<std::string, std::string> Command::Declared::given() const {
   for (const auto& option : options) {
     if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
     const std::string longest = option->name.substr(option->name.find_last_of(',') + 1);
+    if (longest == "--threads") continue;  // has no part in what comes out
     texts[longest.substr(longest.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
   }
   return texts;

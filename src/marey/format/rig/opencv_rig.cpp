@@ -1,6 +1,7 @@
 // OpenCV has a way to keep matrices (cv::FileStorage) and no agreed names. Read are the names that its own samples and most
 // programs write: one camera (camera_matrix, distortion_coefficients), a stereo pair (M1 D1 M2 D2 with R T, in the same file or in
 // extrinsics.yml beside it), and a list `cameras` of the former, which is what is written.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -212,7 +213,9 @@ Rig read_opencv_rig(const std::string& path) {
   return parse_opencv_rig(read_file(path), path);
 }
 
-void write_opencv_rig(const Rig& rig, const std::string& path) {
+void write_opencv_rig(const Rig& rig, const std::string& path) try {
+  if (std::none_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.lens.has_value(); }))
+    throw Error("{}: OpenCV's format holds cameras with a lens, and the rig has none; calibrate one first", path);
   const bool json = path.ends_with(".json");
   cv::FileStorage file(json ? ".json" : ".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   if (rig.cameras.size() == 1) {
@@ -230,6 +233,8 @@ void write_opencv_rig(const Rig& rig, const std::string& path) {
   WholeFile whole(path);
   whole.write(file.releaseAndGetString());
   whole.finish();
+} catch (const cv::Exception&) {
+  throw Error("{}: OpenCV's format cannot hold this rig; are its cameras' names longer than 4,000 bytes?", path);
 }
 
 }  // namespace marey::format::rig

@@ -348,6 +348,27 @@ TEST(RigExchange, NumbersThatNoRigHoldsAreRefused) {
   }
 }
 
+TEST(RigExchange, WhatOpenCvsFormatCannotHoldIsRefusedAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  Rig rig = two_cameras();
+  rig.cameras[0].name = std::string(5000, 'a');
+  EXPECT_THROW(write_opencv_rig(rig, folder / "a.yml"), Error);
+  rig.cameras.resize(1);
+  rig.cameras[0].name = "a";
+  rig.cameras[0].lens.reset();
+  EXPECT_THROW(write_opencv_rig(rig, folder / "a.yml"), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(RigExchange, NamesInMessagesArePlain) {
+  try {
+    parse_qualisys_rig("<calibration><cameras><camera serial=\"a\x11z\"/></cameras></calibration>", "file");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string_view(error.what()).find('\x11'), std::string_view::npos) << error.what();
+  }
+}
+
 TEST(RigExchange, OpenCvFilesThatAreCutOffAnywhereEndInOneSentence) {
   const test::TemporaryFolder folder;
   const std::string xml =
