@@ -87,7 +87,7 @@ class Reader {
   void read_row(const std::vector<Column>& columns) {
     const int period = static_cast<int>(number(0, 1, 9));
     const auto frame = static_cast<std::int32_t>(number(1, 1, 1e9)) - 1;
-    number(2, -1e7, 1e7);
+    number(2, -1e11, 1e11);
     auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == period; });
     if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
     known->first_frame = std::min(known->first_frame, frame);
