@@ -6,6 +6,7 @@
 
 #include "declared.h"
 #include "file_checks.h"
+#include "process_options.h"
 #include "spelling.h"
 
 namespace marey::cli {
@@ -150,6 +151,7 @@ void Command::reports(bool& json, bool& quiet, const std::string& what) {
   declared_->group.clear();
   flag("--json", json, "print the " + what + " as JSON on standard output");
   flag("-q,--quiet", quiet, "no progress and no " + what + "; warnings and JSON stay");
+  add_process_options(*this);
   declared_->json = &json;
 }
 

@@ -117,6 +117,7 @@ std::map<std::string, std::string> Command::Declared::given() const {
   for (const auto& option : options) {
     if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
     const std::string longest = option->name.substr(option->name.find_last_of(',') + 1);
+    if (longest == "--threads") continue;  // has no part in what comes out
     texts[longest.substr(longest.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
   }
   return texts;

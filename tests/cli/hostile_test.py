@@ -155,6 +155,50 @@ class Hostile(unittest.TestCase):
         self.write("tracks.txt", "".join(f"1,{i},{i % 100},{i // 100},20,50,1\n" for i in range(8000)))
         self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=["pairs_a_frame"])
 
+    def test_more_blobs_than_anybody_has(self):
+        self.accepted("simulate", "room", "--motion", "ground", "--frames", "2", "--cameras", "8", "-o", "room")
+        seen = [row.split(",") for row in (self.folder / "room" / "blobs.csv").read_text().splitlines()]
+        head = seen[0]
+        names = sorted({row[head.index("camera")] for row in seen[1:]})
+        self.assertEqual(len(names), 8)
+
+        def crowd(each):
+            values = {"frame": "0", "time": "0"}
+            rows = [",".join(head)]
+            for camera in names:
+                for i in range(each):
+                    values.update(camera=camera, x=f"{i % 97 * 13.1:.1f}", y=f"{i // 97 * 11.3:.1f}")
+                    rows.append(",".join(values.get(column, "") for column in head))
+            return self.write("crowd.csv", "\n".join(rows) + "\n")
+
+        command = ("reconstruct", "room/rig.toml", "--observations", "crowd.csv", "-o", "out.marey")
+        crowd(6000)
+        self.refused(*command, words=["48000", "the limit observations"])
+        crowd(100)
+        self.refused(*command, "--limit", "observations=700", words=["800 blobs", "at most 700"])
+        self.accepted(*command, "--limit", "observations=800")
+
+    def test_two_million_people(self):
+        self.write("match.csv", "frame,time,id,x,y\n" + "".join(f"0,0,{i},1,2\n" for i in range(1, 2_000_001)))
+        self.refused("measure", "match.csv", "-o", "out.csv", words=["100000", "the limit tracks"])
+
+    def test_an_option_raises_each_limit(self):
+        take = self.take()
+        with sqlite3.connect(take) as database:
+            database.execute("UPDATE track SET label = ?", ("x" * 5000,))
+        self.refused("info", take, words=["5000 bytes", "label_bytes"])
+        self.accepted("info", take, "--limit", "label_bytes=5000")
+        self.refused("info", take, "--limit", "label_bytes=5000,tracks=1", words=["the limit tracks"])
+        self.write("tracks.txt", "".join(f"1,{i},{9 * i},50,20,50,1\n" for i in range(1, 11)))
+        both = ("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt")
+        self.refused(*both, "--limit", "pairs_a_frame=99", words=["pairs_a_frame"])
+        self.accepted(*both, "--limit", "pairs_a_frame=100")
+        for wrong in ("tracks", "tracks=", "tracks=0", "tracks=-1", "tracks=nan", "trakcs=5", "tracks=5,", "=5", ""):
+            with self.subTest(wrong=wrong):
+                self.refused("info", take, "--limit", wrong, words=["--limit"])
+        self.accepted("simulate", "markers", "plain", "--frames", "12", "-o", "plain")
+        self.refused("track", "plain/video.mp4", "-o", "out.txt", "--limit", "picture_px=1000", words=["picture_px"])
+
     def test_a_picture_beyond_reason(self):
         def chunk(kind, data):
             return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -47,14 +47,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view second = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
   try {
     const marey::format::match::GroundMatch match = parse(data[0], text.substr(0, end), second);
-    check(match.rate_hz > 0 && match.pitch.length > 0 && match.pitch.width > 0);
-    std::int32_t last = -1;
-    for (const auto& sample : match.recording.samples) {
-      check(sample.frame >= last && sample.place.allFinite());
-      check(sample.person >= 0 && static_cast<std::size_t>(sample.person) < match.recording.people.size());
-      last = sample.frame;
+    check(match.recording.header.rate_hz > 0 && match.pitch.length > 0 && match.pitch.width > 0);
+    for (const marey::TrackColumns& track : match.recording.tracks()) {
+      check(marey::number(track.id()) > 0);
+      for (std::size_t row = 0; row < track.size(); ++row) {
+        check(track.place(row).allFinite() && track.at()[row] >= 0);
+        check(row == 0 || track.at()[row] > track.at()[row - 1]);
+      }
     }
-    for (const auto& person : match.recording.people) check(person.id > 0);
   } catch (const marey::Error& error) {
     const std::string_view message = error.what();
     check(message.starts_with("file") && message.find('\n') == std::string_view::npos);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <span>
 
 namespace marey {
 
@@ -12,7 +12,21 @@ struct Limits {
   std::size_t tracks = 100'000;           ///< of one recording
   std::size_t pairs_a_frame = 4'000'000;  ///< true things × reported ones of one frame that are compared: 2,000 × 2,000
   std::size_t observations = 20'000;      ///< of all cameras at one instant, matched with each other
-  std::int64_t picture_px = 268'435'456;  ///< of one picture: 16,384 × 16,384
+  std::size_t picture_px = 268'435'456;   ///< of one picture: 16,384 × 16,384
+
+  /// What holds in this process where a caller says nothing else.
+  static const Limits& in_force();
+  /// To be called before anything is read: by a program for its whole run.
+  static void put_in_force(const Limits& limits);
 };
+
+struct NamedLimit {
+  const char* name;
+  const char* meaning;
+  std::size_t Limits::* value;
+};
+
+/// Every limit, in the order of the struct.
+std::span<const NamedLimit> all_limits();
 
 }  // namespace marey

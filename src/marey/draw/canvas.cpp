@@ -40,6 +40,19 @@ void blend(cv::Mat plane, const cv::Mat& stencil, double value) {
   }
 }
 
+struct TagShape {
+  double scale;
+  int thickness, pad;
+  cv::Size extent;
+};
+
+TagShape shape_of(const std::string& text, double text_height) {
+  TagShape shape{text_height / kCapitalHeight, std::max(1, cvRound(text_height / 8)), std::max(2, cvRound(text_height / 4)), {}};
+  int baseline = 0;
+  shape.extent = cv::getTextSize(text, kFont, shape.scale, shape.thickness, &baseline);
+  return shape;
+}
+
 }  // namespace
 
 Colour colour_of(int number) {
@@ -162,20 +175,22 @@ void Canvas::text(const std::string& text, cv::Point2f centre, const Colour& col
   lay(stencil, part.tl(), colour);
 }
 
-void Canvas::tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height) {
-  const double scale = text_height / kCapitalHeight;
-  const int thickness = std::max(1, cvRound(text_height / 8));
-  int baseline = 0;
-  const cv::Size extent = cv::getTextSize(text, kFont, scale, thickness, &baseline);
-  const int pad = std::max(2, cvRound(text_height / 4));
-  const cv::Size size(extent.width + 2 * pad, extent.height + 2 * pad);
+cv::Rect Canvas::tag_area(const std::string& text, cv::Point2f corner, double text_height) const {
+  const TagShape shape = shape_of(text, text_height);
+  const cv::Size size(shape.extent.width + 2 * shape.pad, shape.extent.height + 2 * shape.pad);
   const int left = std::clamp(cvRound(corner.x), 0, std::max(0, luma_.cols - size.width)) & ~1;
   const int top = std::clamp(cvRound(corner.y) - size.height, 0, std::max(0, luma_.rows - size.height)) & ~1;
-  const cv::Rect part = cv::Rect({left, top}, size) & cv::Rect({}, luma_.size());
+  return cv::Rect({left, top}, size) & cv::Rect({}, luma_.size());
+}
+
+void Canvas::tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height) {
+  const TagShape shape = shape_of(text, text_height);
+  const cv::Rect part = tag_area(text, corner, text_height);
   if (part.empty()) return;
   lay(cv::Mat(part.size(), CV_8UC1, cv::Scalar(225)), part.tl(), colour);
   cv::Mat stencil = cv::Mat::zeros(part.size(), CV_8UC1);
-  cv::putText(stencil, text, {pad, pad + extent.height}, kFont, scale, cv::Scalar(255), thickness, cv::LINE_AA);
+  cv::putText(stencil, text, {shape.pad, shape.pad + shape.extent.height}, kFont, shape.scale, cv::Scalar(255), shape.thickness,
+              cv::LINE_AA);
   const bool light = planes_of(colour)[0] > 120;
   lay(stencil, part.tl(), light ? Colour{0, 0, 0} : Colour{255, 255, 255});
 }

@@ -37,6 +37,8 @@ class Canvas {
   void fill(const cv::Rect2f& where, const Colour& colour);
   /// Text with its middle at `centre`.
   void text(const std::string& text, cv::Point2f centre, const Colour& colour, double text_height);
+  /// What `tag` would cover.
+  cv::Rect tag_area(const std::string& text, cv::Point2f corner, double text_height) const;
   /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the picture.
   void tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height);
 

@@ -34,6 +34,7 @@ struct CloseFormat {
 
 constexpr AVRational kTick{1, 90'000};
 constexpr int kSilent = AV_LOG_TRACE;        // the host program's log gets nothing of ours
+constexpr int kThreads = 4;                  // x264 writes other bytes for another number
 constexpr int kSecondsBetweenKeyFrames = 2;  // a player seeks to these
 
 std::string reason(int code) {
@@ -75,7 +76,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   codec->time_base = kTick;
   codec->framerate = av_d2q(rate, 1'000'000);
   codec->gop_size = std::max(1, static_cast<int>(std::lround(kSecondsBetweenKeyFrames * rate)));
-  codec->thread_count = 0;
+  codec->thread_count = kThreads;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   // Fast enough that the film is not what one waits for.
   av_opt_set(codec->priv_data, "preset", "superfast", 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "marey/core/geometry.h"
@@ -56,6 +57,33 @@ void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, do
   canvas.discs(points, 1.2 * unit, colour);
 }
 
+constexpr std::size_t kMostPlacedNames = 300;  // of a picture; the search for room grows with their square
+
+/// What a name is not to cover: a target's box, or what is round its point.
+cv::Rect2d body_of(const Sample& sample, double unit) {
+  if (sample.box) return {sample.box->left, sample.box->top, sample.box->width, sample.box->height};
+  const double radius = 4 * unit;
+  return {sample.position.x() - radius, sample.position.y() - radius, 2 * radius, 2 * radius};
+}
+
+/// The bottom left corners that a name of this size may have: above a box's left edge, or round a point, ever further away.
+std::vector<cv::Point2f> corners_of(const Sample& sample, const cv::Size& size, double unit) {
+  const cv::Rect2d body = body_of(sample, unit);
+  std::vector<cv::Point2f> corners;
+  for (const double gap : {1.0, 12.0, 26.0}) {
+    const double left = body.x - gap * unit - size.width, right = body.br().x + gap * unit;
+    const double above = body.y - gap * unit, below = body.br().y + gap * unit + size.height;
+    if (sample.box) corners.emplace_back(body.x - unit, above);
+    for (const double y : {above, below}) {
+      for (const double x : {right, left}) corners.emplace_back(x, y);
+    }
+    const double middle = body.x + (body.width - size.width) / 2;
+    corners.emplace_back(middle, above);
+    corners.emplace_back(middle, below);
+  }
+  return corners;
+}
+
 }  // namespace
 
 Colour colour_of(const TrackName& name, TrackId id) {
@@ -83,12 +111,36 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sam
     const bool seen = sample.measured();
     canvas.rectangle(edge_of(*sample.box), colour_of(names.of(sample.track), sample.track), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
   }
-  for (const Sample& sample : samples) {
-    const Vector<2> corner =
-        sample.box ? Vector<2>(sample.box->left - unit, sample.box->top - unit) : Vector<2>(sample.position.head<2>());
-    canvas.tag(names.shown(sample.track), to_point(corner), colour_of(names.of(sample.track), sample.track), 10 * unit);
-  }
+  write_names(canvas, samples, names, unit);
   return canvas.take();
+}
+
+void Overlay::write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit) {
+  const double height = 10 * unit;
+  std::vector<cv::Rect2d> taken;  // first by the targets, in their order, then by names
+  for (const Sample& sample : samples) taken.push_back(body_of(sample, unit));
+  std::map<TrackId, std::size_t> sides;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::string text = names.shown(samples[i].track);
+    const std::vector<cv::Point2f> corners = corners_of(samples[i], canvas.tag_area(text, {0, 0}, height).size(), unit);
+    const auto covered = [&](std::size_t side) {
+      const cv::Rect2d area = canvas.tag_area(text, corners[side], height);
+      double sum = 0;
+      for (std::size_t other = 0; other < taken.size(); ++other)
+        sum += other == i && samples[i].box ? 0 : (area & taken[other]).area();
+      return sum;
+    };
+    const auto before = sides_.find(samples[i].track);
+    std::size_t best = before != sides_.end() && before->second < corners.size() ? before->second : 0;
+    double least = covered(best);
+    for (std::size_t side = 0; side < corners.size() && least > 0 && samples.size() <= kMostPlacedNames; ++side) {
+      if (const double area = covered(side); area < least) best = side, least = area;
+    }
+    canvas.tag(text, corners[best], colour_of(names.of(samples[i].track), samples[i].track), height);
+    taken.emplace_back(canvas.tag_area(text, corners[best], height));
+    sides.emplace(samples[i].track, best);
+  }
+  sides_ = std::move(sides);
 }
 
 }  // namespace marey::draw

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <span>
 
 #include "marey/core/ids.h"
@@ -22,7 +24,8 @@ Colour colour_of(const TrackName& name, TrackId id);
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
-/// Colours are steady by number. Lines and numbers grow with the picture.
+/// Colours are steady by number. Lines and numbers grow with the picture. A name stands where it covers neither another target nor
+/// another name, as near its own as there is room, and stays on that side while it can.
 class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
@@ -31,8 +34,11 @@ class Overlay {
   Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
+  void write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
+
   OverlayOptions options_;
   FadingTrails trails_;
+  std::map<TrackId, std::size_t> sides_;  // where each name stood last
 };
 
 }  // namespace marey::draw

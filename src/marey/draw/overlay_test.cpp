@@ -54,6 +54,30 @@ TEST(Canvas, WhatLiesOutsideIsCutOffAtAnySize) {
   }
 }
 
+/// How many of the pixels round each point, which are grey in the picture, show a name's plate.
+int covered(const Picture& before, const Picture& after, std::span<const Sample> samples) {
+  int count = 0;
+  for (const Sample& sample : samples) {
+    const cv::Rect round(cvRound(sample.position.x()) - 3, cvRound(sample.position.y()) - 3, 7, 7);
+    count += changed(before, after, round);
+  }
+  return count;
+}
+
+TEST(Overlay, NamesOfMarkersCoverNoMarkers) {
+  std::vector<Sample> samples;
+  for (int i = 0; i < 12; ++i) {
+    Sample sample;
+    sample.track = TrackId{i + 1};
+    sample.position.head<2>() = Vector<2>(100 + 26 * (i % 4), 100 + 26 * (i / 4));
+    samples.push_back(sample);
+  }
+  const Picture picture = grey(320, 240);
+  const Picture empty = Overlay().draw(picture, Timestamp{}, {}, {}), drawn = Overlay().draw(picture, Timestamp{}, samples, {});
+  EXPECT_EQ(covered(empty, drawn, samples), 0);
+  EXPECT_GT(changed(empty, drawn, {0, 0, 320, 240}), 12 * 60) << "the names";
+}
+
 TEST(Canvas, NeighbouringNumbersLookDifferent) {
   for (int i = 1; i < 200; ++i) {
     for (int j = i + 1; j < i + 4; ++j) {

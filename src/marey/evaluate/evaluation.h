@@ -58,6 +58,6 @@ struct Evaluation {
 /// the pairs of ids that ever overlap, not with the frames. Cost: truth × tracks of each frame, and an assignment where boxes
 /// crowd. Throws Error where a frame is crowded beyond `limits`.
 Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap = 0.5,
-                    const Limits& limits = {});
+                    const Limits& limits = Limits::in_force());
 
 }  // namespace marey::evaluate

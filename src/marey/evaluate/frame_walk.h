@@ -72,7 +72,7 @@ template <Labelled Item, typename Close>
 class FrameWalk : public FramePairs {
  public:
   FrameWalk(std::span<const Item> truth, std::span<const Item> tracks, const IdNumbers& objects, const IdNumbers& track_numbers,
-            Close close, const Limits& limits = {})
+            Close close, const Limits& limits = Limits::in_force())
       : truth_(truth),
         tracks_(tracks),
         objects_numbers_(objects),

@@ -29,7 +29,7 @@ void judge_identities(const PairTable& pairs, Judged& judged);
 /// `most_distance` apart may match. `matched(walk, clear)` sees each frame once its matches are known.
 template <Labelled Item, typename Close, typename Matched>
 Judged judge(std::span<const Item> truth, std::span<const Item> tracks, double most_distance, Close close, Matched matched,
-             const Limits& limits = {}) {
+             const Limits& limits = Limits::in_force()) {
   const IdNumbers objects(truth);
   const IdNumbers track_numbers(tracks);
   Judged judged;

@@ -16,7 +16,6 @@ class Scanner {
 
   void toml();
   void json();
-  void yaml();
   void xml();
 
  private:
@@ -46,7 +45,6 @@ class Scanner {
   }
   void skip_toml_string();
   void xml_tag(int& depth);
-  int yaml_line(int depth);
 
   std::string_view text_;
   const std::string& name_;
@@ -116,44 +114,6 @@ void Scanner::json() {
   }
 }
 
-/// A line from its first character that is no blank; returns the brackets that are open behind it. Dashes and keys in a row ("- -
-/// a: b:") are levels until a comma or a bracket.
-int Scanner::yaml_line(int depth) {
-  int row = 0;
-  char before = ':';  // a string may begin at the line's beginning
-  while (more() && here() != '\n') {
-    const char c = here();
-    if ((c == '"' || c == '\'') && (before == ':' || before == ',' || before == '-' || is_open(before))) {
-      skip_string(c == '"', true);
-      before = c;
-      continue;
-    }
-    if (c == '#') {  // what opens there counts, what closes does not
-      for (; more() && here() != '\n'; ++at_) check(depth += is_open(here()) ? 1 : 0);
-      break;
-    }
-    if (is_open(c)) check(++depth);
-    if (is_close(c)) depth = std::max(0, depth - 1);
-    if (c == ',' || is_open(c) || is_close(c)) row = 0;
-    if (c == ':' || c == '-' || c == '?') check(depth + (row += (at_ + 1 == text_.size() || text_[at_ + 1] <= ' ') ? 1 : 0));
-    if (c > ' ') before = c;
-    ++at_;
-  }
-  return depth;
-}
-
-/// Indentation of a block is a level a column at most; within brackets it is for the eye.
-void Scanner::yaml() {
-  int depth = 0;
-  while (more()) {
-    int column = 0;
-    for (; more() && (here() == ' ' || here() == '\t' || here() == '\r'); ++at_) ++column;
-    if (depth == 0 && more() && here() != '\n') check(column);
-    depth = yaml_line(depth);
-    ++at_;
-  }
-}
-
 /// From the tag's "<" to behind its ">".
 void Scanner::xml_tag(int& depth) {
   if (begins("</")) {
@@ -203,8 +163,6 @@ void check_nesting(std::string_view text, Notation notation, const std::string& 
       return scanner.toml();
     case Notation::json:
       return scanner.json();
-    case Notation::yaml:
-      return scanner.yaml();
     case Notation::xml:
       return scanner.xml();
   }

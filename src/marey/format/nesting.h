@@ -9,7 +9,6 @@ namespace marey::format {
 enum class Notation {
   toml,  ///< brackets, and the parts of dotted keys
   json,  ///< brackets
-  yaml,  ///< brackets, indentation, and keys or dashes behind one another on a line
   xml,   ///< elements
 };
 

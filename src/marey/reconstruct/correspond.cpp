@@ -1,6 +1,7 @@
 #include "marey/reconstruct/correspond.h"
 
 #include "marey/core/error.h"
+#include "marey/core/limits.h"
 #include "marey/reconstruct/frame_rays.h"
 #include "marey/reconstruct/ray_groups.h"
 #include "marey/reconstruct/ray_intersections.h"
@@ -18,10 +19,11 @@ class Corresponder::Impl {
         intersections_(frame_.all_cameras(), options.sigmas, triangulator_) {}
 
   const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
-    if (seen.size() > options_.most_observations) {
+    const std::size_t most = options_.most_observations.value_or(Limits::in_force().observations);
+    if (seen.size() > most) {
       throw Error(
           "the cameras see {} blobs at one instant; at most {} are matched (the limit observations): is the threshold too low?",
-          seen.size(), options_.most_observations);
+          seen.size(), most);
     }
     frame_.build(seen, options_.noise_px);
     groups_.clear(frame_);

@@ -20,7 +20,6 @@
 #include <span>
 #include <vector>
 
-#include "marey/core/limits.h"
 #include "marey/core/observation.h"
 #include "marey/core/track.h"
 #include "marey/reconstruct/triangulate.h"
@@ -32,7 +31,7 @@ struct CorrespondOptions {
   double sigmas = 4;      ///< how far from each other, in standard deviations, rays may pass that are taken for partners
   int fewest_rays = 3;    ///< of a new point; 2: every pair of rays without another choice counts as one
   TriangulateOptions triangulate = {};
-  std::size_t most_observations = Limits{}.observations;  ///< of all cameras at one instant
+  std::optional<std::size_t> most_observations = {};  ///< of all cameras at one instant; nothing: the limit in force
 };
 
 /// A marker's place at one instant.

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <vector>
 
+#include <tbb/global_control.h>
+
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
 #include "marey/core/input_file.h"
@@ -109,10 +111,20 @@ FormatPtr open_format(const std::string& path, PipeBytes* pipe) {
   return FormatPtr(opened);
 }
 
+std::int64_t largest_picture() {
+  return static_cast<std::int64_t>(Limits::in_force().picture_px);
+}
+
+void check_size(const cv::Size& size, const std::string& path) {
+  if (std::int64_t{size.width} * size.height <= largest_picture()) return;
+  throw Error("{}: its pictures have {} x {} px, more than {} in all (the limit picture_px); make them smaller first", path,
+              size.width, size.height, largest_picture());
+}
+
 /// Which streams there are. It decodes their first pictures, within the limit.
 int find_streams(AVFormatContext& format) {
   std::vector<AVDictionary*> options(format.nb_streams, nullptr);
-  for (AVDictionary*& each : options) av_dict_set_int(&each, "max_pixels", Limits{}.picture_px, 0);
+  for (AVDictionary*& each : options) av_dict_set_int(&each, "max_pixels", largest_picture(), 0);
   const int code = avformat_find_stream_info(&format, options.data());
   for (AVDictionary*& each : options) av_dict_free(&each);
   return code;
@@ -152,24 +164,22 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   if (stream < 0 || codec == nullptr)
     throw Error("{}: holds no video that can be decoded; give a video file or a folder of pictures", path);
   p.stream = p.format->streams[stream];
+  check_size({p.stream->codecpar->width, p.stream->codecpar->height}, path);
   p.codec.reset(avcodec_alloc_context3(codec));
   avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
-  p.codec->thread_count = threads;
-  p.codec->max_pixels = Limits{}.picture_px;  // of pictures that change their size on the way too
+  const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  p.codec->thread_count = threads > 0 ? threads : static_cast<int>(allowed);
+  p.codec->max_pixels = largest_picture();  // of pictures that change their size on the way too
   if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
     throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));
   }
   p.coded_size = {p.codec->width, p.codec->height};
   if (p.coded_size.width <= 0 || p.coded_size.height <= 0) {
     throw Error("{}: cannot be read as a video (its pictures have no size, or more than {} px in all: the limit picture_px)", path,
-                Limits{}.picture_px);
+                largest_picture());
   }
-  const std::int64_t pixels = std::int64_t{p.coded_size.width} * p.coded_size.height;
-  if (pixels > Limits{}.picture_px) {
-    throw Error("{}: its pictures have {} x {} px, more than {} in all (the limit picture_px); make them smaller first", path,
-                p.coded_size.width, p.coded_size.height, Limits{}.picture_px);
-  }
+  check_size(p.coded_size, path);
   p.turn = turn_of(*p.stream);
   p.maker.turn_by(p.turn);
 }

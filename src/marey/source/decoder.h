@@ -18,7 +18,7 @@ namespace marey::source {
 /// What is damaged is passed over and counted; only a file that cannot be opened at all throws.
 class Decoder {
  public:
-  /// `threads` = 0 takes one a core; pictures are the same, and in order, for any number.
+  /// `threads` = 0 takes one a core, or as many as oneTBB is allowed; pictures are the same, and in order, for any number.
   /// Throws Error, one sentence that names `path`, where nothing can be decoded, and Stopped.
   explicit Decoder(const std::string& path, int threads = 0);
   ~Decoder();

@@ -25,8 +25,9 @@ Sample sample_of(const GroundBuilder::Row& row) {
 }
 
 void require_short(const std::string& label, const std::string& name) {
-  if (label.size() <= Limits{}.label_bytes) return;
-  throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", name, label.size(), Limits{}.label_bytes);
+  if (label.size() <= Limits::in_force().label_bytes) return;
+  throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", name, label.size(),
+              Limits::in_force().label_bytes);
 }
 
 /// Each frame once, in order.
@@ -62,7 +63,8 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
   if (is_new) {
     require_short(label, name_);
     require_short(team, name_);
-    if (people_.size() == Limits{}.tracks) throw Error("{}: names more than {} people (the limit tracks)", name_, Limits{}.tracks);
+    if (people_.size() == Limits::in_force().tracks)
+      throw Error("{}: names more than {} people (the limit tracks)", name_, Limits::in_force().tracks);
     people_.push_back({TrackColumns({TrackId{id}, {}, {}}, 2), {}});
   }
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].rows.name;

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/frame_numbers.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
@@ -45,7 +47,8 @@ class MetricaReader {
     std::vector<PersonColumn> columns;
     for (std::size_t at = kFirstPlayer; at + kBall < fields_.size(); at += 2) {
       const auto number = at < numbers.size() ? whole_number_of(numbers[at]) : std::nullopt;
-      if (!number || *number < 0 || *number > 100'000) throw Error("{}:2: column {} must hold a shirt's number", name_, at + 1);
+      if (!number || *number < 0 || *number > std::numeric_limits<int>::max())
+        throw Error("{}:2: column {} must hold a shirt's number", name_, at + 1);
       const int shirt = static_cast<int>(*number);
       columns.push_back(
           {at, builder_.person(fmt::format("{} {}", otherwise, shirt), 0, label_of(unquoted(fields_[at]), shirt), team)});
@@ -85,7 +88,7 @@ class MetricaReader {
   void read_row(const std::vector<PersonColumn>& columns) {
     const int period = static_cast<int>(number(0, 1, 9));
     const auto frame = static_cast<std::int32_t>(number(1, 1, 1e9)) - 1;
-    number(2, -1e7, 1e7);
+    number(2, -1e11, 1e11);
     auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == period; });
     if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
     known->first_frame = std::min(known->first_frame, frame);
@@ -99,17 +102,31 @@ class MetricaReader {
     }
   }
 
-  /// The head does not tell the rate; the last row's frame and time do, the most exactly.
+  /// The head does not tell the rate; frames and times of the rows do, the beginning at 0 among them. Rows that cannot be read are
+  /// left to who reads them.
   void learn_rate(std::string_view text) {
-    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
-    split_fields(text.substr(text.rfind('\n') + 1), ',', fields_);
-    const auto frame = fields_.size() > 2 ? number_of(fields_[1]) : std::nullopt;
-    const auto time = fields_.size() > 2 ? number_of(fields_[2]) : std::nullopt;
-    if (!frame || !time) return;  // the reading of that row tells what is wrong, or there is none
-    const double rate = std::round(1000 * *frame / *time) / 1000;
-    if (!(*time > 0 && rate >= 0.1 && rate <= 10'000))
-      throw Error("{}: its last frame is {:g} at {:g} s, which makes no rate; the match begins with frame 1", name_, *frame, *time);
+    FrameNumbers numbers;
+    numbers.add(0, 0.0);
+    TextLines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+      split_fields(line.substr(0, end_of_time(line)), ',', fields_);
+      const auto frame = fields_.size() == kFirstPlayer ? whole_number_of(fields_[1]) : std::nullopt;
+      const auto time = fields_.size() == kFirstPlayer ? number_of(fields_[2]) : std::nullopt;
+      if (frame && time && *frame > 0 && *frame <= 1'000'000'000) numbers.add(*frame, *time);
+    }
+    if (numbers.count() < 2) return;
+    const double rate = std::round(1000 * numbers.rate_hz().value_or(0)) / 1000;
+    if (!(rate >= 0.1 && rate <= 10'000))
+      throw Error("{}: its frames and times make no rate; the match begins with frame 1 at one frame's time", name_);
     match_.recording.header.rate_hz = rate;
+  }
+
+  /// Behind period, frame and time.
+  static std::size_t end_of_time(std::string_view line) {
+    std::size_t at = line.find(',');
+    for (int more = 1; more < 3 && at != std::string_view::npos; ++more) at = line.find(',', at + 1);
+    return std::min(at, line.size());
   }
 
   std::string name_;

@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
@@ -24,7 +25,7 @@ constexpr double kFarthestMetres = 100;
 class Table {
  public:
   Table(const toml::table& table, std::string path, std::string name)
-      : table_(table), path_(std::move(path)), name_(std::move(name)) {}
+      : table_(table), path_(std::move(path)), name_(plain_text(name)) {}
 
   bool has(std::string_view key) const {
     const toml::node* node = table_.get(key);

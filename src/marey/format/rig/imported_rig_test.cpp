@@ -335,7 +335,7 @@ TEST(RigExchange, NoMessageShowsALibrarysInternals) {
       ADD_FAILURE() << text;
     } catch (const Error& error) {
       const std::string said = error.what();
-      EXPECT_TRUE(said.starts_with("file.yml: ")) << said;
+      EXPECT_TRUE(said.starts_with("file.yml:")) << said;
       for (const char* internal : {"nelems", "cv::", "OpenCV(", ".cpp", "persistence", "=="})
         EXPECT_EQ(said.find(internal), std::string::npos) << said;
     }
@@ -348,6 +348,27 @@ TEST(RigExchange, NumbersThatNoRigHoldsAreRefused) {
         std::string("<?xml version=\"1.0\"?><opencv_storage><camera_matrix type_id=\"opencv-matrix\"><rows>3</rows>") +
         "<cols>3</cols><dt>d</dt><data>600. 0. " + number + " 0. 600. 240. 0. 0. 1.</data></camera_matrix></opencv_storage>";
     EXPECT_THROW(parse_opencv_rig(text, "file.xml"), Error) << number;
+  }
+}
+
+TEST(RigExchange, WhatOpenCvsFormatCannotHoldIsRefusedAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  Rig rig = two_cameras();
+  rig.cameras[0].name = std::string(5000, 'a');
+  EXPECT_THROW(write_opencv_rig(rig, folder / "a.yml"), Error);
+  rig.cameras.resize(1);
+  rig.cameras[0].name = "a";
+  rig.cameras[0].lens.reset();
+  EXPECT_THROW(write_opencv_rig(rig, folder / "a.yml"), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(RigExchange, NamesInMessagesArePlain) {
+  try {
+    parse_qualisys_rig("<calibration><cameras><camera serial=\"a\x11z\"/></cameras></calibration>", "file");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string_view(error.what()).find('\x11'), std::string_view::npos) << error.what();
   }
 }
 

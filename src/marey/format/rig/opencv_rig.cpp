@@ -1,9 +1,12 @@
 // OpenCV has a way to keep matrices (cv::FileStorage) and no agreed names. Read are the names that its own samples and most
 // programs write: one camera (camera_matrix, distortion_coefficients), a stereo pair (M1 D1 M2 D2 with R T, in the same file or in
 // extrinsics.yml beside it), and a list `cameras` of the former, which is what is written.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
@@ -11,39 +14,50 @@
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
-#include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
+#include "marey/format/rig/file_storage.h"
 #include "marey/format/rig/imported_rig.h"
-#include "marey/format/xml_text.h"
 
 namespace marey::format::rig {
 namespace {
 
+using Json = nlohmann::json;
 using Names = std::initializer_list<const char*>;
 
-/// The first of these that is there.
-cv::FileNode child(const cv::FileNode& node, Names names) {
+/// The first of these that is there and holds something, or null.
+const Json& child(const Json& node, Names names) {
+  static const Json kNothing;
+  if (!node.is_object()) return kNothing;
   for (const char* name : names) {
-    if (const cv::FileNode found = node[name]; !found.empty()) return found;
+    if (const auto found = node.find(name); found != node.end() && !found->is_null()) return *found;
   }
-  return {};
+  return kNothing;
+}
+
+/// A whole number that an int holds.
+std::optional<int> whole(const Json& node) {
+  if (!node.is_number()) return std::nullopt;
+  const double value = node.get<double>();
+  const bool fits = std::abs(value) <= std::numeric_limits<int>::max() && value == std::floor(value);
+  return fits ? std::optional(static_cast<int>(value)) : std::nullopt;
 }
 
 /// Numbers, whether a matrix or a list of numbers (of lists).
-std::optional<std::vector<double>> numbers(const cv::FileNode& node) {
+std::optional<std::vector<double>> numbers(const Json& node) {
   std::vector<double> values;
-  if (node.isMap()) {  // rows, cols, dt and data; OpenCV itself would make room for rows x cols before it looks how many there are
-    const cv::FileNode rows = node["rows"], cols = node["cols"], data = node["data"];
-    if (!rows.isInt() || !cols.isInt() || !data.isSeq()) return std::nullopt;
-    values = numbers(data).value_or(values);
-    const bool whole = std::ssize(values) == static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(cols);
-    return whole && !values.empty() ? std::optional(values) : std::nullopt;
+  if (node.is_object()) {  // rows, cols, dt and data
+    const std::optional<int> rows = whole(child(node, {"rows"})), cols = whole(child(node, {"cols"}));
+    const Json& data = child(node, {"data"});
+    if (!rows || !cols) return std::nullopt;
+    values = data.is_number() ? std::vector{data.get<double>()} : numbers(data).value_or(values);
+    const bool complete = std::ssize(values) == std::int64_t{*rows} * *cols;
+    return complete && !values.empty() ? std::optional(values) : std::nullopt;
   }
-  if (!node.isSeq()) return std::nullopt;
-  for (const cv::FileNode& each : node) {
-    if (each.isInt() || each.isReal()) {
-      values.push_back(each.real());
-    } else if (const auto row = each.isSeq() ? numbers(each) : std::nullopt) {
+  if (!node.is_array()) return std::nullopt;
+  for (const Json& each : node) {
+    if (each.is_number()) {
+      values.push_back(each.get<double>());
+    } else if (const auto row = each.is_array() ? numbers(each) : std::nullopt) {
       values.insert(values.end(), row->begin(), row->end());
     } else {
       return std::nullopt;
@@ -52,27 +66,27 @@ std::optional<std::vector<double>> numbers(const cv::FileNode& node) {
   return values;
 }
 
-std::vector<double> as_many(const cv::FileNode& node, std::size_t count, const std::string& path, const std::string& what) {
+std::vector<double> as_many(const Json& node, std::size_t count, const std::string& path, const std::string& what) {
   const auto values = numbers(node);
   if (!values || values->size() != count) throw Error("{}: {} must hold {} numbers", path, what, count);
   return *values;
 }
 
-Matrix<3> matrix_of(const cv::FileNode& node, const std::string& path, const std::string& what) {
+Matrix<3> matrix_of(const Json& node, const std::string& path, const std::string& what) {
   const auto values = as_many(node, 9, path, what);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
 }
 
 /// A rotation matrix or Rodrigues' vector.
-Matrix<3> rotation_at(const cv::FileNode& node, const std::string& path) {
+Matrix<3> rotation_at(const Json& node, const std::string& path) {
   const auto values = numbers(node);
   if (values && values->size() == 3) return geometry::rotation_from({(*values)[0], (*values)[1], (*values)[2]});
   return matrix_of(node, path, "the rotation");
 }
 
-geometry::Lens lens_at(const cv::FileNode& K_node, const cv::FileNode& D_node, bool fisheye, const std::string& path) {
+geometry::Lens lens_at(const Json& K_node, const Json& D_node, bool fisheye, const std::string& path) {
   const Matrix<3> K = matrix_of(K_node, path, "the camera matrix");
-  auto k = D_node.empty() ? std::vector<double>{} : numbers(D_node).value_or(std::vector<double>(99));
+  auto k = D_node.is_null() ? std::vector<double>{} : numbers(D_node).value_or(std::vector<double>(99));
   while (!k.empty() && k.back() == 0) k.pop_back();  // 12 and 14 coefficients, the last of which are mostly not used
   const auto filled = [&](auto lens) -> geometry::Lens {
     if (k.size() > lens.distortion.size()) {
@@ -87,59 +101,41 @@ geometry::Lens lens_at(const cv::FileNode& K_node, const cv::FileNode& D_node, b
   return fisheye ? filled(geometry::FisheyeLens{}) : filled(geometry::BrownLens{});
 }
 
-std::optional<cv::Size> size_at(const cv::FileNode& node) {
-  const cv::FileNode width = child(node, {"image_width", "imageWidth", "width"}),
-                     height = child(node, {"image_height", "imageHeight", "height"});
-  if (!width.empty() && !height.empty()) return cv::Size(static_cast<int>(width.real()), static_cast<int>(height.real()));
+std::optional<cv::Size> size_at(const Json& node) {
+  const Json &width = child(node, {"image_width", "imageWidth", "width"}),
+             &height = child(node, {"image_height", "imageHeight", "height"});
+  if (width.is_number() && height.is_number())
+    return cv::Size(cv::saturate_cast<int>(width.get<double>()), cv::saturate_cast<int>(height.get<double>()));
   const auto both = numbers(child(node, {"image_size", "imageSize", "size", "image_resolution"}));
   if (!both || both->size() != 2) return std::nullopt;
   return cv::Size(cv::saturate_cast<int>((*both)[0]), cv::saturate_cast<int>((*both)[1]));
 }
 
-RigCamera camera_at(const cv::FileNode& node, const std::string& path) {
+RigCamera camera_at(const Json& node, const std::string& path) {
   RigCamera camera;
-  if (const cv::FileNode name = child(node, {"name", "camera_name"}); name.isString()) camera.name = name.string();
+  if (const Json& name = child(node, {"name", "camera_name"}); name.is_string()) camera.name = name.get<std::string>();
   camera.size = size_at(node);
-  const std::string model = child(node, {"distortion_model", "model", "camera_model"}).isString()
-                                ? child(node, {"distortion_model", "model", "camera_model"}).string()
-                                : std::string();
-  const bool fisheye = model == "fisheye" || model == "equidistant" || !child(node, {"fisheye_model"}).empty();
-  const cv::FileNode K = child(node, {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "mtx", "intrinsic_matrix"});
-  if (!K.empty()) {
+  const Json& model = child(node, {"distortion_model", "model", "camera_model"});
+  const bool fisheye = model == "fisheye" || model == "equidistant" || !child(node, {"fisheye_model"}).is_null();
+  const Json& K = child(node, {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "mtx", "intrinsic_matrix"});
+  if (!K.is_null()) {
     camera.lens =
         lens_at(K, child(node, {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "dist"}),
                 fisheye, path);
   }
-  const cv::FileNode R = child(node, {"rotation", "R", "rvec"}), t = child(node, {"translation", "T", "t", "tvec"});
-  if (!R.empty() && !t.empty()) {
+  const Json &R = child(node, {"rotation", "R", "rvec"}), &t = child(node, {"translation", "T", "t", "tvec"});
+  if (!R.is_null() && !t.is_null()) {
     const auto at = as_many(t, 3, path, "the translation");
     camera.camera_from_world = Rigid3{rotation_at(R, path), {at[0], at[1], at[2]}};
   }
-  if (const cv::FileNode error = child(node, {"avg_reprojection_error", "rms", "reprojection_error"}); error.isReal())
-    camera.rms_px = error.real();
+  if (const Json& error = child(node, {"avg_reprojection_error", "rms", "reprojection_error"}); error.is_number())
+    camera.rms_px = error.get<double>();
   return camera;
 }
 
-[[noreturn]] void refuse(const std::string& name) {
-  throw Error("{}: OpenCV cannot read this file; it is no YAML, JSON or XML of OpenCV's, or is cut off", name);
-}
-
-cv::FileStorage opened(const std::string& text, const std::string& name) {
-  const std::size_t begin = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  const char first = begin == std::string::npos ? ' ' : text[begin];
-  check_nesting(text, first == '{' ? Notation::json : first == '<' ? Notation::xml : Notation::yaml, name);
-  // OpenCV 4.6 reads beyond the end of XML that is cut off within a tag.
-  if (first == '<') parse_xml(text, name);
-  if (first == '{' && text[text.find_last_not_of(" \t\r\n")] != '}') refuse(name);
-  cv::FileStorage file;
-  if (begin == std::string::npos || !file.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY)) refuse(name);
-  return file;
-}
-
-Rig stereo(const cv::FileStorage& file, const std::string& path) {
+Rig stereo(const Json& root, const std::string& path) {
   Rig rig;
   rig.cameras.resize(2);
-  const cv::FileNode root = file.root();
   const std::array<Names, 2> K{
       {{"M1", "K1", "cameraMatrix1", "camera_matrix_1"}, {"M2", "K2", "cameraMatrix2", "camera_matrix_2"}}};
   const std::array<Names, 2> D{{{"D1", "distCoeffs1", "dist_coeffs_1"}, {"D2", "distCoeffs2", "dist_coeffs_2"}}};
@@ -148,13 +144,13 @@ Rig stereo(const cv::FileStorage& file, const std::string& path) {
     rig.cameras[i].size = size_at(root);
     rig.cameras[i].lens = lens_at(child(root, K[i]), child(root, D[i]), false, path);
   }
-  std::optional<cv::FileStorage> beside;
-  cv::FileNode poses = root;
-  if (child(root, {"R"}).empty()) {
+  Json beside;
+  if (child(root, {"R"}).is_null()) {
     const auto name = std::filesystem::path(path).parent_path() / ("extrinsics" + std::filesystem::path(path).extension().string());
-    if (std::filesystem::exists(name)) poses = beside.emplace(opened(read_file(name.string()), name.string())).root();
+    if (std::filesystem::exists(name)) beside = parse_file_storage(read_file(name.string()), name.string());
   }
-  if (child(poses, {"R"}).empty() || child(poses, {"T"}).empty()) return rig;
+  const Json& poses = beside.is_null() ? root : beside;
+  if (child(poses, {"R"}).is_null() || child(poses, {"T"}).is_null()) return rig;
   const auto t = as_many(child(poses, {"T"}), 3, path, "T");
   rig.cameras[0].camera_from_world = Rigid3{};
   rig.cameras[1].camera_from_world = Rigid3{rotation_at(child(poses, {"R"}), path), {t[0], t[1], t[2]}};
@@ -198,31 +194,28 @@ void write_camera(cv::FileStorage& file, const RigCamera& camera) {
 
 }  // namespace
 
-Rig parse_opencv_rig(const std::string& text, const std::string& path) try {
-  const cv::FileStorage file = opened(text, path);
-  const cv::FileNode root = file.root();
+Rig parse_opencv_rig(const std::string& text, const std::string& path) {
+  const Json root = parse_file_storage(text, path);
   Rig rig;
-  if (const cv::FileNode cameras = child(root, {"cameras"}); cameras.isSeq()) {
-    for (const cv::FileNode& each : cameras) rig.cameras.push_back(camera_at(each, path));
-  } else if (!child(root, {"M1", "K1", "cameraMatrix1", "camera_matrix_1"}).empty()) {
-    rig = stereo(file, path);
+  if (const Json& cameras = child(root, {"cameras"}); cameras.is_array()) {
+    for (const Json& each : cameras) rig.cameras.push_back(camera_at(each, path));
+  } else if (!child(root, {"M1", "K1", "cameraMatrix1", "camera_matrix_1"}).is_null()) {
+    rig = stereo(root, path);
   } else {
     rig.cameras.push_back(camera_at(root, path));
     if (!rig.cameras.front().lens) throw Error("{}: there is no camera_matrix in it, nor M1 and M2, nor a list of cameras", path);
   }
   check_imported(rig, path);
   return rig;
-} catch (const Error&) {
-  throw;
-} catch (const std::exception&) {  // cv::Exception, and what OpenCV's parser lets through: std::length_error
-  refuse(path);
 }
 
 Rig read_opencv_rig(const std::string& path) {
   return parse_opencv_rig(read_file(path), path);
 }
 
-void write_opencv_rig(const Rig& rig, const std::string& path) {
+void write_opencv_rig(const Rig& rig, const std::string& path) try {
+  if (std::none_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.lens.has_value(); }))
+    throw Error("{}: OpenCV's format holds cameras with a lens, and the rig has none; calibrate one first", path);
   const bool json = path.ends_with(".json");
   cv::FileStorage file(json ? ".json" : ".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   if (rig.cameras.size() == 1) {
@@ -240,6 +233,8 @@ void write_opencv_rig(const Rig& rig, const std::string& path) {
   WholeFile whole(path);
   whole.write(file.releaseAndGetString());
   whole.finish();
+} catch (const cv::Exception&) {
+  throw Error("{}: OpenCV's format cannot hold this rig; are its cameras' names longer than 4,000 bytes?", path);
 }
 
 Format opencv_format() {

@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
@@ -44,7 +45,7 @@ const char* field_of_view(const pugi::xml_node& camera) {
 
 RigCamera camera_of(const pugi::xml_node& node, const std::string& path) {
   RigCamera camera;
-  camera.name = node.attribute("serial").as_string();
+  camera.name = plain_text(node.attribute("serial").as_string());
   const Node view = part(node, field_of_view(node), path, camera.name);
   const Vector<2> corner(view.number("left"), view.number("top"));
   camera.size = cv::Size(cv::saturate_cast<int>(view.number("right") - corner.x() + 1),

@@ -39,7 +39,7 @@ Rig parse_tsai_rig(std::string_view text, const std::string& path) {
   Rig rig;
   rig.calibration.emplace().method = "Tsai";
   RigCamera& camera = rig.cameras.emplace_back();
-  camera.name = root.attribute("name").as_string();
+  camera.name = plain_text(root.attribute("name").as_string());
   camera.size = cv::Size(cv::saturate_cast<int>(of(sensor, "width")), cv::saturate_cast<int>(of(sensor, "height")));
   const double focal = of(in, "focal");
   geometry::TsaiLens lens;
