@@ -20,8 +20,8 @@ struct Kind {
   const char* name;
   std::optional<simulate::Encounter> encounter;
 };
-constexpr std::array kinds{Kind{"cross", simulate::Encounter::cross}, Kind{"side by side", simulate::Encounter::alongside},
-                           Kind{"stop", simulate::Encounter::stop}, Kind{"any", std::nullopt}};
+constexpr std::array kKinds{Kind{"cross", simulate::Encounter::cross}, Kind{"side by side", simulate::Encounter::alongside},
+                            Kind{"stop", simulate::Encounter::stop}, Kind{"any", std::nullopt}};
 
 struct Association {
   const char* name;
@@ -95,14 +95,14 @@ Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate:
 
 HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options, const Hooks& hooks) {
   HypothesesExperiment experiment{.scenes = options.scenes, .seed = options.seed, .kinds = {}, .meetings = {}, .rows = {}};
-  for (const Kind& kind : kinds) {
+  for (const Kind& kind : kKinds) {
     experiment.kinds.emplace_back(kind.name);
     experiment.meetings.push_back(options.scenes * options.encounters.pairs * options.encounters.meetings);
   }
-  std::vector<std::vector<Followed>> sums(kAssociations.size(), std::vector<Followed>(kinds.size()));
+  std::vector<std::vector<Followed>> sums(kAssociations.size(), std::vector<Followed>(kKinds.size()));
   std::mutex mutex;
   int done = 0;
-  const int all = options.scenes * static_cast<int>(kinds.size());
+  const int all = options.scenes * static_cast<int>(kKinds.size());
   tbb::parallel_for(0, all, [&](int index) {
     const std::size_t kind = static_cast<std::size_t>(index) % kinds.size();
     simulate::EncounterOptions encounters = options.encounters;

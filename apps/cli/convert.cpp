@@ -45,13 +45,9 @@ void run(ConvertCommand& command) {
   command.options.read.pitch = parse_pitch_size(command.size);
   for (const std::string& period : command.periods)
     command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
-  const pipeline::ConvertSummary done = [&] {
-    ProgressBar bar(command.quiet);
-    const Hooks hooks{.progress = [&](const Progress& now) { bar.show(now.step, now.done, now.total); }, .stop = interrupted};
-    catch_interrupts();
-    return pipeline::convert(command.from, command.to, command.options, hooks);
-  }();
-  for (const std::string& sentence : done.warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  const pipeline::ConvertSummary done = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::convert(command.from, command.to, command.options, hooks); });
+  warn(done.warnings);
   if (done.stopped) {
     fmt::print(stderr, "marey: stopped; {} was not finished\n", command.to);
     throw EndWith{kInterrupted};

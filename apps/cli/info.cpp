@@ -35,7 +35,7 @@ void report_recording(const InfoOptions& options, const format::Format& format) 
   const RecordingSummary summary = reader->summary();
   print_warnings(reader->warnings());
   if (options.json) {
-    print(as_json(format, reader->info(), summary));
+    print(info_json(format, reader->info(), summary));
   } else if (!options.quiet) {
     print_recording(options.file, format, reader->info(), summary);
   }
@@ -45,7 +45,7 @@ void report_match(const InfoOptions& options, const format::Format& format) {
   const format::match::GroundMatch match = format::read_whole(options.file, format, {.metadata = options.metadata, .pitch = {}});
   print_warnings(match.warnings);
   if (options.json) {
-    print(as_json(format, match));
+    print(info_json(format, match));
   } else if (!options.quiet) {
     print_match(options.file, format, match);
   }
@@ -53,7 +53,7 @@ void report_match(const InfoOptions& options, const format::Format& format) {
 
 void report_rig(const InfoOptions& options, const format::Format& format) {
   const Rig rig = format.read_rig(options.file);
-  if (options.json) return print({{"format", "rig"}, {"cameras", as_json(rig)}});
+  if (options.json) return print({{"format", "rig"}, {"cameras", info_json(rig)}});
   if (options.quiet) return;
   fmt::print("{}: a rig of {} camera{}\n", options.file, rig.cameras.size(), rig.cameras.size() == 1 ? "" : "s");
   print_rig(rig);

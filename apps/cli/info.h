@@ -24,13 +24,13 @@ void print_warnings(const std::vector<std::string>& warnings);
 
 void print_recording(const std::string& path, const format::Format& format, const format::FileInfo& info,
                      const RecordingSummary& summary);
-Json as_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary);
+Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary);
 
 void print_match(const std::string& path, const format::Format& format, const format::match::GroundMatch& match);
-Json as_json(const format::Format& format, const format::match::GroundMatch& match);
+Json info_json(const format::Format& format, const format::match::GroundMatch& match);
 
 void print_rig(const Rig& rig);
 /// Its cameras.
-Json as_json(const Rig& rig);
+Json info_json(const Rig& rig);
 
 }  // namespace marey::cli

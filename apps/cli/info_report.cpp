@@ -169,7 +169,7 @@ void print_recording(const std::string& path, const format::Format& format, cons
   print_tracks(summary);
 }
 
-Json as_json(const Rig& rig) {
+Json info_json(const Rig& rig) {
   Json cameras = Json::array();
   for (const RigCamera& camera : rig.cameras) {
     Json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
@@ -183,7 +183,7 @@ Json as_json(const Rig& rig) {
   return cameras;
 }
 
-Json as_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary) {
+Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary) {
   Json tracks = Json::array();
   for (const auto& count : summary.tracks) {
     Json entry{{"id", number(count.name.id)},
@@ -210,14 +210,14 @@ Json as_json(const format::Format& format, const format::FileInfo& info, const R
   result["frame"] = to_string(info.header.frame);
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
-  if (info.header.rig) result["cameras"] = as_json(*info.header.rig);
+  if (info.header.rig) result["cameras"] = info_json(*info.header.rig);
   Json edits = Json::array();
   for (const Edit& edit : info.edits) edits.push_back({{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}});
   if (!edits.empty()) result["edits"] = std::move(edits);
   return result;
 }
 
-Json as_json(const format::Format& format, const format::match::GroundMatch& match) {
+Json info_json(const format::Format& format, const format::match::GroundMatch& match) {
   const Recording& recording = match.recording;
   Json people = Json::array(), periods = Json::array();
   for (const std::size_t i : format::match::listed_tracks(match)) {

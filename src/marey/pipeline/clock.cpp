@@ -10,9 +10,9 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
-constexpr double kFarthest = 60;  // px that a detection may move in a frame and still be found again
-constexpr int kDetectedAtOnce = 4;        // frames that a camera that detects is asked for
+constexpr double kInStep = 0.02;    // of a frame: what moves no marker by more than noise
+constexpr double kFarthest = 60;    // px that a detection may move in a frame and still be found again
+constexpr int kDetectedAtOnce = 4;  // frames that a camera that detects is asked for
 
 std::optional<std::size_t> closest(const Vector<2>& place, const std::vector<Detection>& among) {
   std::optional<std::size_t> best;

@@ -214,7 +214,8 @@ track::RosterTrackerOptions space_tracker_options() {
           .max_speed = 15,
           .marker_width = 0.02,
           .place_noise = 1e-4,
-          .rigid_neighbours = true};
+          .rigid_neighbours = true,
+          .picture = {}};
 }
 
 std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {

@@ -97,7 +97,8 @@ TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
 }
 
 TEST(Join, FirstFramesBeforeConfirmationAreReported) {
-  TrackletLog log = record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
+  TrackletLog log =
+      record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
   EXPECT_EQ(join(log).front().frame, 0);
 }
 

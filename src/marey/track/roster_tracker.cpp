@@ -427,8 +427,9 @@ class RosterTracker final : public ImmediateTracker<D> {
   static constexpr double kWidestGate = 5;     // standard deviations
   static constexpr double kCrowded = 1.4;      // marker widths between two that disturb each other's centres
   static constexpr double kCrowdNoise = 0.25;  // marker widths by which they do
-  static constexpr double kHardlyMissed = 14;  // the same of one that was just seen: a corner is likelier than that it is hidden now
-  static constexpr double kMissPenalty = 3;   // log of 1 over the chance that a marker is missed
+  static constexpr double kHardlyMissed =
+      14;                                    // the same of one that was just seen: a corner is likelier than that it is hidden now
+  static constexpr double kMissPenalty = 3;  // log of 1 over the chance that a marker is missed
   static constexpr double kWidthMemory = 0.1;     // a frame
   static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is weighed
   static constexpr std::size_t kFewTargets = 64;

@@ -80,7 +80,7 @@ MarkerSet read_marker_set(const std::string& path) {
 
 namespace {
 
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestLabel = 64;
 
 /// One name a line, or the header label,x,y,z. Asked last: what else may be such a text?
 bool is_labels(const Beginning& file) {
@@ -91,7 +91,7 @@ bool is_labels(const Beginning& file) {
   std::string_view line;
   while (lines.next(line)) {
     if (line.empty() || line.front() == '#') continue;
-    if (line.size() > kLongestName || line.find_first_of(",;=<>{}[]\"") != std::string_view::npos || number_of(line)) return false;
+    if (line.size() > kLongestLabel || line.find_first_of(",;=<>{}[]\"") != std::string_view::npos || number_of(line)) return false;
     ++names;
   }
   return names > 1;

@@ -49,7 +49,7 @@ class TakeWriter : public Sink {
 };
 
 struct TakeReaderOptions {
-  bool seen = true;    ///< false: instants come without what the cameras saw, and several times sooner
+  bool seen = true;                    ///< false: instants come without what the cameras saw, and several times sooner
   Limits limits = Limits::in_force();  ///< `label_bytes` and `tracks` count
 };
 

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> column_names{"frame", "id", "left", "top", "width", "height", "score"};
 constexpr std::size_t required_columns = 6;
-constexpr double largest = 1e9;
+constexpr double kLargestNumber = 1e9;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
@@ -60,7 +60,8 @@ class Fields {
     if (*at_ == '+') ++at_;
     const auto [stop, failed] = std::from_chars(at_, end_, value);
     const bool whole_field = stop == end_ || is_blank(*stop) || *stop == ',';
-    if (failed == std::errc::result_out_of_range || (failed == std::errc() && whole_field && !(std::abs(value) <= largest))) {
+    if (failed == std::errc::result_out_of_range ||
+        (failed == std::errc() && whole_field && !(std::abs(value) <= kLargestNumber))) {
       throw LineError{fmt::format("{} is \"{}\"; it must be a finite number below 1e9", column, shown(field_from(begin)))};
     }
     if (failed != std::errc() || !whole_field) {
