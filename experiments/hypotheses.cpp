@@ -104,11 +104,11 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
   int done = 0;
   const int all = options.scenes * static_cast<int>(kKinds.size());
   tbb::parallel_for(0, all, [&](int index) {
-    const std::size_t kind = static_cast<std::size_t>(index) % kinds.size();
+    const std::size_t kind = static_cast<std::size_t>(index) % kKinds.size();
     simulate::EncounterOptions encounters = options.encounters;
-    encounters.kind = kinds[kind].encounter;
+    encounters.kind = kKinds[kind].encounter;
     const simulate::EncounterScene scene =
-        simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kinds.size(), encounters);
+        simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kKinds.size(), encounters);
     const std::vector<evaluate::PersonPlace> truth = truth_of(scene);
     for (std::size_t m = 0; m < kAssociations.size(); ++m) {
       const Followed outcome = follow(scene, truth, kAssociations[m], options.tracker);

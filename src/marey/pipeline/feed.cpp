@@ -110,6 +110,7 @@ class ObservationDeal {
   std::optional<format::SeenFrame> next(std::size_t camera) {
     const std::lock_guard lock(dealing_);
     while (waiting_[camera].empty()) {
+      if (stop_.stop_requested()) throw Stopped();
       const auto frame = reader_.next();
       if (!frame) return std::nullopt;
       for (std::size_t c = 0; c < waiting_.size(); ++c) {
@@ -123,6 +124,7 @@ class ObservationDeal {
   }
 
  private:
+  std::stop_token stop_ = StopScope::current();
   std::mutex dealing_;
   format::ObservationReader reader_;
   std::vector<std::deque<format::SeenFrame>> waiting_;

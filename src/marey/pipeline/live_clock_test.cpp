@@ -130,8 +130,9 @@ TEST_F(LiveClockTest, ACameraThatStallsCostsOnlyItselfAndComesBack) {
     EXPECT_TRUE(set->cameras[0]);
     EXPECT_EQ(set->cameras[1].has_value(), set->index < 50 || set->index >= 250) << set->index;
     EXPECT_EQ(set->states[0] == FeedState::live || set->index >= 398, true);
-    if (set->states[1] == FeedState::stalled || set->states[1] == FeedState::lost)
+    if (set->states[1] == FeedState::stalled || set->states[1] == FeedState::lost) {
       EXPECT_LT(now() - seconds(set->time), 0.01) << "nobody waits for it";
+    }
     if (changes.empty() || changes.back().second != set->states[1]) changes.emplace_back(seconds(set->time), set->states[1]);
   }
   EXPECT_EQ(last, 399);
@@ -154,7 +155,9 @@ TEST_F(LiveClockTest, WhoIsTooSlowGetsTheNewestWholeMoment) {
   while (const auto set = clock.next()) {
     EXPECT_TRUE(set->complete()) << "a newer moment that is not whole does not overtake one that is";
     EXPECT_GT(set->index, last);
-    if (now() < 249 / kRate) EXPECT_LT(now() - seconds(set->time), 0.03 + 1.1 / kRate) << "an older one was given";
+    if (now() < 249 / kRate) {
+      EXPECT_LT(now() - seconds(set->time), 0.03 + 1.1 / kRate) << "an older one was given";
+    }
     skipped += set->index - last - 1;
     last = set->index;
     ++sets;
@@ -187,7 +190,9 @@ TEST_F(LiveClockTest, ACameraThatNeverComesIsConnectingThenLost) {
   for (int i = 0; i < 190; ++i) {
     const auto set = clock.next();
     ASSERT_TRUE(set);
-    if (now() < 4.9) EXPECT_EQ(set->index, i);
+    if (now() < 4.9) {
+      EXPECT_EQ(set->index, i);
+    }
     EXPECT_EQ(set->states[1], now() < 5 ? FeedState::connecting : FeedState::lost) << now();
     EXPECT_LT(now() - seconds(set->time), now() < 5.1 ? 0.103 : 0.01);
   }

@@ -217,15 +217,15 @@ TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
 TEST(GroundExchange, OneWildTimeChangesNoRateOfMetrica) {
   const TemporaryFolder folder;
   const GroundMatch match = made_up(2);
-  write_ground_as(match, folder / "m_home.csv", GroundFormat::metrica);
-  const double rate = read_ground_any(folder / "m_home.csv").recording.header.rate_hz;
+  write_whole(folder / "m_home.csv", of_ground("metrica"), match);
+  const double rate = read_match(folder / "m_home.csv").recording.header.rate_hz;
   for (const char* name : {"m_home.csv", "m_away.csv"}) {
     std::string text = read_file(folder / name);
     const std::size_t row = text.rfind('\n', text.size() - 2) + 1, time = text.find(',', text.find(',', row) + 1) + 1;
     text.replace(time, text.find(',', time) - time, "9999");
     write_file(folder / name, text);
   }
-  EXPECT_EQ(read_ground_any(folder / "m_home.csv").recording.header.rate_hz, rate);
+  EXPECT_EQ(read_match(folder / "m_home.csv").recording.header.rate_hz, rate);
 }
 
 /// Ends in a recording or in one Error of one line.
