@@ -32,14 +32,7 @@ constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a colour
 constexpr double kUnlikeArea = 10;         // times the area of a typical disc
 constexpr double kOverRim = 0.5;           // of the contrast asked of markers: by so much even a half-hidden one passes its rim
 constexpr double kLeastRegion = 30;        // px²: less holds no marker beside what is around it
-constexpr double kLeastRoundRegion = 400;  // px²: one as round as a marker is looked into from here on, where no disc fits it
-constexpr double kRegionMisfit = 0.15;     // of the contrast: what leaves less is a shaded ball
-constexpr double kUnlikeDisc = 40;         // times the area of a typical disc: a lamp
-constexpr double kUnlikeGlow = 4;          // the same of one whose edge is softer than the others' by
-constexpr double kUnlikeBlur = 2;
-constexpr double kLeastTypical = 15;  // px²: from a few pixels nothing is told
-constexpr double kAsBright = 0.5;     // of the brightest disc's contrast, to tell what is typical
-constexpr int kFirstLooks = 3;        // at a first picture: each raises the threshold to what markers stand out by
+constexpr int kFirstLooks = 3;             // at a first picture: each raises the threshold to what markers stand out by
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
@@ -53,6 +46,10 @@ double roundness(const MarkerBlob& blob) {
 void spot_heights(const cv::Mat& luma, double widest, bool dark, cv::Mat& heights) {
   const int side = 2 * static_cast<int>(std::ceil(widest / 2)) + 1;
   cv::morphologyEx(luma, heights, dark ? cv::MORPH_BLACKHAT : cv::MORPH_TOPHAT, cv::Mat::ones(side, side, CV_8U));
+}
+
+double square(double value) {
+  return value * value;
 }
 
 bool inside(const Box& box, double x, double y) {
@@ -82,17 +79,15 @@ class MarkerDetector::Impl {
   const cv::Mat& prepare(const Picture& picture);
   std::span<const MarkerBlob> find(const cv::Mat& searched);
   std::span<const MarkerBlob> find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs);
-  bool is_region(const cv::Mat& luma, const MarkerBlob& blob);
-  bool stands_out(const cv::Mat& luma, const MarkerBlob& blob, bool is_disc) const;
+  bool is_region(const MarkerBlob& blob) const;
+  bool stands_out(const cv::Mat& luma, const MarkerBlob& blob, const MarkerShape& shape, bool is_disc) const;
   void mask_more(const MarkerMask& learned);
   void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
   void measure(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, std::span<const Expected> expected,
                std::vector<Detection>& found);
   Detection report(const MarkerShape& shape, const MarkerBlob& blob);
-  std::optional<double> typical_area() const;
   void drop_unlike(std::vector<Detection>& found);
-  void learn_blur();
   void learn_from(std::vector<double>& contrasts);
 
   MarkerOptions options_;
@@ -114,12 +109,8 @@ class MarkerDetector::Impl {
   std::size_t outer_ = 0;        // of them
   std::vector<MarkerBlob> full_size_;
   std::vector<double> contrasts_, blurs_;
-  /// What a detection was made of.
-  struct Kind {
-    double contrast = 0, area = 0, blur = 0;  // grey levels, px², px
-    bool disc = false;
-  };
-  std::vector<Kind> kinds_;  // of the frame's detections
+  double disc_weight_ = 0, disc_area_sum_ = 0;  // of the frame's discs
+  std::vector<char> is_disc_;                   // for each detection of the frame
   std::optional<double> blur_;
   std::optional<double> disc_area_;  // px², typical
   int split_pixels_left_ = 0;
@@ -197,32 +188,27 @@ std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) 
   return full_size_;
 }
 
-/// What passes the threshold and is too large, too long or too unlike a disc for a marker, but may have one before it.
-bool MarkerDetector::Impl::is_region(const cv::Mat& luma, const MarkerBlob& blob) {
+/// What passes the threshold and is too large or too long for a marker, but may have one before it.
+bool MarkerDetector::Impl::is_region(const MarkerBlob& blob) const {
   const auto area = static_cast<double>(blob.area);
   if (area < kLeastRegion) return false;
-  if (area > options_.max_area || roundness(blob) < kOfRoundness * options_.min_roundness) return true;
-  if (area < kLeastRoundRegion) return false;
-  const MarkerSurroundings around = surroundings(luma, blob);
-  collect_window(luma, blob, around, {}, window_);
-  const MarkerShape shape = fit_disc(window_, blob, around);
-  return !shape.fitted || shape.misfit > std::max(kRegionMisfit, 3 * around.noise / window_.scale);
+  return area > options_.max_area || (disc_area_ && area > kUnlikeArea * *disc_area_) ||
+         roundness(blob) < kOfRoundness * options_.min_roundness;
 }
 
 std::span<const MarkerBlob> MarkerDetector::Impl::find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs) {
   outer_ = blobs.size();
-  const auto region = [&](const MarkerBlob& blob) { return is_region(searched, blob); };
-  if (std::none_of(blobs.begin(), blobs.end(), region)) return blobs;
+  if (std::none_of(blobs.begin(), blobs.end(), [&](const MarkerBlob& blob) { return is_region(blob); })) return blobs;
   all_.assign(blobs.begin(), blobs.end());
-  inner_.find(searched, finder_, levels_.least(), options_.dark, all_, region);
+  inner_.find(searched, finder_, levels_.least(), options_.dark, all_, [&](const MarkerBlob& blob) { return is_region(blob); });
   return all_;
 }
 
-/// Whether a blob stands out from what lies right around it, and not only from its tile; a disc may have others close by.
-bool MarkerDetector::Impl::stands_out(const cv::Mat& luma, const MarkerBlob& blob, bool is_disc) const {
+/// Whether a blob stands out from what lies right around it, and not only from its tile: a disc as fitted, else from its rim.
+bool MarkerDetector::Impl::stands_out(const cv::Mat& luma, const MarkerBlob& blob, const MarkerShape& shape, bool is_disc) const {
   if (options_.colour || options_.threshold || looks_close_by()) return true;
   const double least = levels_.least(kOverRim);
-  return height_over_rim(luma, blob, options_.dark, is_disc) > least;
+  return (is_disc && shape.contrast > least) || height_over_rim(luma, blob, options_.dark) > least;
 }
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
@@ -243,11 +229,11 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   neighbours_.file(blobs, chosen_, luma.size());
   contrasts_.clear();
   blurs_.clear();
-  kinds_.clear();
+  disc_weight_ = disc_area_sum_ = 0;
+  is_disc_.clear();
   split_pixels_left_ = kMostSplitPixels;
   result.detections.reserve(chosen_.size());
   for (const std::size_t index : chosen_) measure(luma, blobs, index, expected, result.detections);
-  learn_blur();
   drop_unlike(result.detections);
   counts_.markers += static_cast<std::int64_t>(result.detections.size());
   learn_from(contrasts_);
@@ -267,7 +253,6 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs, std::span<c
   chosen_.clear();
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     const auto area = static_cast<double>(blobs[i].area);
-    if (area == 0) continue;  // a region: what lies within it follows
     if (area < options_.min_area) {
       ++counts_.too_small;
     } else if (area > options_.max_area) {
@@ -325,11 +310,6 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     lone.covariance = Matrix<2>::Identity() * (kColourDeviation * kColourDeviation);
   }
   const double grain = 3 * around.noise / window_.scale;
-  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
-  if (!stands_out(luma, blob, is_disc)) {
-    ++counts_.too_dim;
-    return;
-  }
   if (lone.misfit > std::max(kShapeMisfit, grain) && blob.area >= 8 && window_.count <= split_pixels_left_) {
     split_pixels_left_ -= window_.count;
     const auto several = static_cast<std::size_t>(std::count_if(expected.begin(), expected.end(), [&](const Expected& e) {
@@ -341,7 +321,7 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
       ++counts_.split;
       for (const MarkerShape& part : parts) {
         found.push_back(report(part, blob));
-        kinds_.push_back({part.contrast, std::numbers::pi * part.radius * part.radius, part.blur, true});
+        is_disc_.push_back(1);
       }
       return;
     }
@@ -350,15 +330,23 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     ++counts_.not_round;
     return;
   }
+  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
+  if (!stands_out(luma, blob, lone, is_disc)) {
+    ++counts_.too_dim;
+    return;
+  }
   if (!lone.fitted) ++counts_.not_fitted;
   if (is_disc) {
     blurs_.push_back(lone.blur);
+    const double weight = square(lone.contrast * static_cast<double>(blob.area));
+    disc_weight_ += weight;
+    disc_area_sum_ += weight * static_cast<double>(blob.area);
   }
   contrasts_.push_back(window_.scale);
   Detection detection = report(lone, blob);
   detection.box = {static_cast<double>(blob.box.x), static_cast<double>(blob.box.y), static_cast<double>(blob.box.width),
                    static_cast<double>(blob.box.height)};
-  kinds_.push_back({lone.fitted ? lone.contrast : window_.scale, static_cast<double>(blob.area), lone.blur, is_disc});
+  is_disc_.push_back(is_disc ? 1 : 0);
   found.push_back(std::move(detection));
 }
 
@@ -375,34 +363,18 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   return detection;
 }
 
-/// The middle area of what is bright in the frame, the lower one of two: specks are dim, and lamps are few.
-std::optional<double> MarkerDetector::Impl::typical_area() const {
-  double brightest = 0;
-  for (const Kind& kind : kinds_) brightest = std::max(brightest, kind.contrast);
-  std::vector<double> areas;
-  bool any_disc = false;
-  for (const Kind& kind : kinds_) {
-    if (kind.contrast < kAsBright * brightest) continue;
-    areas.push_back(kind.area);
-    any_disc = any_disc || kind.disc;
-  }
-  if (!any_disc) return std::nullopt;
-  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>((areas.size() - 1) / 2);
-  std::nth_element(areas.begin(), middle, areas.end());
-  return std::max(kLeastTypical, *middle);
-}
-
 /// Markers of one recording are of one kind. What no disc fits and is many times as large as the discs is something else that is
 /// bright: the edge of a barrier, a window. Bright and large discs say how large a disc is, specks do not: what is saturated,
 /// blurred, drawn out or touches another is not much larger than those. Where no disc is seen at all, nothing is dropped.
 void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
-  if (const auto typical = typical_area()) disc_area_ = disc_area_ ? *disc_area_ + (*typical - *disc_area_) / 8 : *typical;
+  if (disc_weight_ > 0) {
+    const double typical = disc_area_sum_ / disc_weight_;
+    disc_area_ = disc_area_ ? *disc_area_ + (typical - *disc_area_) / 8 : typical;
+  }
   if (!disc_area_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const Kind& kind = kinds_[i];
-    const bool soft = kind.disc && kind.area > kUnlikeGlow * *disc_area_ && blur_ && kind.blur > kUnlikeBlur * *blur_;
-    if (soft || found[i].box.area() > (kind.disc ? kUnlikeDisc : kUnlikeArea) * *disc_area_) {
+    if (!is_disc_[i] && found[i].box.area() > kUnlikeArea * *disc_area_) {
       ++counts_.unlike;
       continue;
     }
@@ -410,14 +382,6 @@ void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
     ++kept;
   }
   found.resize(kept);
-}
-
-/// The lower one of two in the middle: a lamp's edge is the softer one.
-void MarkerDetector::Impl::learn_blur() {
-  if (blurs_.empty()) return;
-  const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>((blurs_.size() - 1) / 2);
-  std::nth_element(blurs_.begin(), middle, blurs_.end());
-  blur_ = blur_ ? *blur_ + (*middle - *blur_) / 8 : *middle;
 }
 
 void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
@@ -429,6 +393,10 @@ void MarkerDetector::Impl::learn_from(std::vector<double>& contrasts) {
   for (MarkerLevels* levels : {&levels_, &spot_levels_}) {
     levels->learn_contrast(squares > 0 ? std::optional(cubes / squares) : std::nullopt);
   }
+  if (blurs_.empty()) return;
+  const auto middle = blurs_.begin() + static_cast<std::ptrdiff_t>(blurs_.size() / 2);
+  std::nth_element(blurs_.begin(), middle, blurs_.end());
+  blur_ = blur_ ? *blur_ + (*middle - *blur_) / 8 : *middle;
 }
 
 MarkerDetector::MarkerDetector(MarkerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}

@@ -15,13 +15,12 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
-constexpr int kGrid = 8;                 // samples a tile, each way
-constexpr int kShare = 32;               // frames in which every tile is looked at once
-constexpr double kSigmas = 6;            // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kLeast = 0.03;          // of white; of what was compressed or rounded to 8 bits
-constexpr double kLeastRaw = 0.01;       // of a picture of more bits
-constexpr double kOfContrast = 0.3;      // of the bright ones': a dim edge of something else is no marker
-constexpr double kMostOfContrast = 0.5;  // that the texture of a tile asks for; what lies close by decides the rest
+constexpr int kGrid = 8;             // samples a tile, each way
+constexpr int kShare = 32;           // frames in which every tile is looked at once
+constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
+constexpr double kLeast = 0.03;      // of white; of what was compressed or rounded to 8 bits
+constexpr double kLeastRaw = 0.01;   // of a picture of more bits
+constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
 constexpr int kMostChange = 1023;
 
 double value_at(const cv::Mat& image, int x, int y) {
@@ -115,8 +114,7 @@ double MarkerLevels::least(double share) const {
 }
 
 double MarkerLevels::needed(int tile) const {
-  const double spread = kSigmas * static_cast<double>(raw_[tile].spread);  // of two backgrounds too, where an edge runs through
-  return std::max(least(), contrast_ > 0 ? std::min(spread, kMostOfContrast * contrast_) : spread);
+  return std::max(kSigmas * static_cast<double>(raw_[tile].spread), least());
 }
 
 void MarkerLevels::set_threshold(int tile) {

@@ -43,12 +43,11 @@ std::optional<RimLevels> rim_levels(const cv::Mat& image, const cv::Rect& frame,
   return RimLevels{at(0.5), at(dark ? 0.3 : 0.7)};
 }
 
-double height_over_rim(const cv::Mat& image, const MarkerBlob& blob, bool dark, bool over_middle) {
+double height_over_rim(const cv::Mat& image, const MarkerBlob& blob, bool dark) {
   const auto rim = rim_levels(image, {blob.box.x - 2, blob.box.y - 2, blob.box.width + 4, blob.box.height + 4}, dark);
   if (!rim) return 0;
   const double extreme = extreme_of(image, blob.box, dark);
-  const double level = over_middle ? rim->middle : rim->upper;
-  return dark ? level - extreme : extreme - level;
+  return dark ? rim->upper - extreme : extreme - rim->upper;
 }
 
 std::optional<double> bright_contrast(const cv::Mat& image, std::span<const MarkerBlob> blobs, const MarkerLevels& levels,
@@ -85,7 +84,7 @@ void InnerBlobFinder::begin(const cv::Mat& image, const MarkerRunFinder& finder,
     if (begun.size() >= kMostPieces || pixels_left_ < box.area()) break;
     pixels_left_ -= box.area();
     piece_of[region] = static_cast<int>(begun.size());
-    begun.push_back({box.tl(), cv::Mat(box.size(), image.type()), cv::Mat::zeros(box.size(), CV_8UC1), 0, region});
+    begun.push_back({box.tl(), cv::Mat(box.size(), image.type()), cv::Mat::zeros(box.size(), CV_8UC1), 0});
     image(box).copyTo(begun.back().pixels);
   }
   for (const MarkerRun& run : finder.runs()) {
@@ -127,11 +126,11 @@ void InnerBlobFinder::search(std::size_t piece, double least, bool dark) {
   runs_.assign(finder_.runs().begin(), finder_.runs().end());
 }
 
-void InnerBlobFinder::add_piece(std::size_t parent, std::size_t found, std::size_t blob) {
+void InnerBlobFinder::add_piece(std::size_t parent, std::size_t found) {
   const cv::Rect box = found_[found].box;
   if (pieces_.size() >= kMostPieces || pixels_left_ < box.area()) return;
   pixels_left_ -= box.area();
-  Piece piece{pieces_[parent].corner + box.tl(), pieces_[parent].pixels(box).clone(), cv::Mat::zeros(box.size(), CV_8UC1), 0, blob};
+  Piece piece{pieces_[parent].corner + box.tl(), pieces_[parent].pixels(box).clone(), cv::Mat::zeros(box.size(), CV_8UC1), 0};
   for (const MarkerRun& run : runs_) {
     if (run.parent != static_cast<std::int32_t>(found)) continue;
     piece.own.row(run.row - box.y).colRange(run.begin - box.x, run.end - box.x) = 255;

@@ -21,9 +21,8 @@ struct RimLevels {
 /// Of the border of `frame`; nothing where all of it lies outside the picture.
 std::optional<RimLevels> rim_levels(const cv::Mat& image, const cv::Rect& frame, bool dark);
 
-/// How far a blob's pixels stand out from the rim 2 px beyond its box, whatever the tile's background is, grey levels: from its
-/// upper level, or from its middle.
-double height_over_rim(const cv::Mat& image, const MarkerBlob& blob, bool dark, bool over_middle = false);
+/// How far a blob's pixels stand out from the rim 2 px beyond its box, whatever the tile's background is, grey levels.
+double height_over_rim(const cv::Mat& image, const MarkerBlob& blob, bool dark);
 
 /// How far the blobs of one frame stand out, the bright ones deciding; nothing where there are none. `background` of their tiles.
 std::optional<double> bright_contrast(const cv::Mat& image, std::span<const MarkerBlob> blobs, const MarkerLevels& levels,
@@ -36,8 +35,7 @@ class InnerBlobFinder {
   InnerBlobFinder();
 
   /// Appends to `blobs` what lies within those of its first `blobs.size()` that `is_region` tells, with the runs that they were
-  /// found by. A region that holds some has no area any more. `least`: by how much a pixel must pass a region's median. Bounded:
-  /// pixels of twice the picture a frame.
+  /// found by. `least`: by how much a pixel must pass a region's median. Bounded: pixels of twice the picture a frame.
   template <typename IsRegion>
   void find(const cv::Mat& image, const MarkerRunFinder& finder, double least, bool dark, std::vector<MarkerBlob>& blobs,
             IsRegion&& is_region) {
@@ -51,10 +49,11 @@ class InnerBlobFinder {
     for (std::size_t next = 0; next < pieces_.size() && pixels_left_ > 0; ++next) {
       search(next, least, dark);
       for (std::size_t i = 0; i < found_.size(); ++i) {
-        const MarkerBlob blob = moved(found_[i], pieces_[next].corner);
-        if (is_region(blob)) add_piece(next, i, blobs.size());
-        blobs[pieces_[next].blob].area = 0;
-        blobs.push_back(blob);
+        if (is_region(found_[i])) {
+          add_piece(next, i);
+        } else {
+          blobs.push_back(moved(found_[i], pieces_[next].corner));
+        }
       }
     }
   }
@@ -66,13 +65,12 @@ class InnerBlobFinder {
     cv::Mat pixels;
     cv::Mat own;  ///< CV_8UC1: which are its own
     double median = 0;
-    std::size_t blob = 0;  ///< which one it is
   };
 
   static MarkerBlob moved(MarkerBlob blob, const cv::Point& by);
   void begin(const cv::Mat& image, const MarkerRunFinder& finder, std::span<const MarkerBlob> blobs);
   void search(std::size_t piece, double least, bool dark);
-  void add_piece(std::size_t parent, std::size_t found, std::size_t blob);
+  void add_piece(std::size_t parent, std::size_t found);
   void finish(Piece piece);
 
   MarkerRunFinder finder_;
