@@ -9,17 +9,19 @@
 #include <vector>
 
 #include "marey/core/error.h"
-#include "marey/format/match/ground_exchange.h"
 #include "marey/format/match/ground_file.h"
-#include "marey/format/motion/motion.h"
+#include "marey/format/match/ground_match.h"
 #include "marey/format/motion/motion_csv.h"
-#include "marey/format/rig/rig_exchange.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 
 #include "fuzz.h"
 
 using marey::fuzz::check;
 namespace fs = std::filesystem;
+namespace format = marey::format;
+using format::Content;
 namespace match = marey::format::match;
 namespace motion = marey::format::motion;
 namespace rig = marey::format::rig;
@@ -52,7 +54,7 @@ struct Sum {
   double largest = 0;
 };
 
-std::vector<Sum> sums(motion::MotionReader& reader) {
+std::vector<Sum> sums(format::FileReader& reader) {
   std::vector<Sum> result;
   while (const auto instant = reader.next()) {
     Sum sum;
@@ -69,13 +71,13 @@ std::vector<Sum> sums(motion::MotionReader& reader) {
 void check_motion(std::string_view text) {
   const auto read = [&] { return motion::read_tidy_csv(text, "file"); };
   const std::vector<Sum> before = sums(*read());
-  for (const auto& [format, name] :
-       {std::pair{motion::MotionFormat::take, "a.marey"}, std::pair{motion::MotionFormat::c3d, "a.c3d"},
-        std::pair{motion::MotionFormat::trc, "a.trc"}, std::pair{motion::MotionFormat::csv, "a.csv"}}) {
-    const std::string path = folder() + name;
+  for (const auto& [name, file] :
+       {std::pair{"take", "a.marey"}, std::pair{"c3d", "a.c3d"}, std::pair{"trc", "a.trc"}, std::pair{"csv", "a.csv"}}) {
+    const std::string path = folder() + file;
+    const format::Format& written_as = format::format_to_write(path, name, Content::space);
     const bool written = taken([&] {
-      const motion::MotionPlan plan = motion::plan_of(*read(), "file");
-      const auto sink = motion::create_motion(path, format, plan);
+      const format::WritePlan plan = format::plan_of(*read(), "file");
+      const auto sink = format::create_recording(path, written_as, plan);
       const auto reader = read();
       sink->begin(plan.info.header);
       for (bool first = true; auto instant = reader->next(); first = false) {
@@ -85,7 +87,7 @@ void check_motion(std::string_view text) {
       sink->finish();
     });
     if (!written) continue;
-    const std::vector<Sum> after = sums(*motion::open_motion(path, format));
+    const std::vector<Sum> after = sums(*format::open_recording(path, written_as));
     check(after.size() == before.size());
     for (std::size_t i = 0; i < after.size(); ++i) {
       check(after[i].count == before[i].count);
@@ -97,12 +99,12 @@ void check_motion(std::string_view text) {
 
 void check_rig(std::string_view text) {
   const marey::Rig before = rig::parse_rig(text, "file");
-  for (const auto& [format, name] : {std::pair{rig::RigFormat::marey, "a.toml"}, std::pair{rig::RigFormat::opencv, "a.yml"},
-                                     std::pair{rig::RigFormat::opencv, "a.json"}, std::pair{rig::RigFormat::aniposelib, "b.toml"},
-                                     std::pair{rig::RigFormat::qualisys, "a.qca.txt"}, std::pair{rig::RigFormat::tsai, "a.xml"}}) {
-    const std::string path = folder() + name;
-    if (!taken([&] { rig::write_rig_as(before, path, format); })) continue;
-    const marey::Rig after = rig::read_rig_any(path);
+  for (const auto& [name, file] :
+       {std::pair{"marey", "a.toml"}, std::pair{"opencv", "a.yml"}, std::pair{"opencv", "a.json"},
+        std::pair{"aniposelib", "b.toml"}, std::pair{"qualisys", "a.qca.txt"}, std::pair{"tsai", "a.xml"}}) {
+    const std::string path = folder() + file;
+    if (!taken([&] { format::format_to_write(path, name, Content::rig).write_rig(before, path); })) continue;
+    const marey::Rig after = format::format_to_read(path, Content::rig).read_rig(path);
     check(after.cameras.size() == before.cameras.size());
     for (std::size_t i = 0; i < after.cameras.size(); ++i) {
       const auto &ours = before.cameras[i].camera_from_world, &theirs = after.cameras[i].camera_from_world;
@@ -116,14 +118,13 @@ void check_rig(std::string_view text) {
 void check_match(std::string_view text) {
   match::GroundMatch before;
   before.recording = match::parse_ground(text, "file");
-  for (const auto& [format, name] :
-       {std::pair{match::GroundFormat::csv, "a.csv"}, std::pair{match::GroundFormat::mot, "a.txt"},
-        std::pair{match::GroundFormat::metrica, "a_home.csv"}, std::pair{match::GroundFormat::tracab, "a.dat"},
-        std::pair{match::GroundFormat::epts, "a.xml"}, std::pair{match::GroundFormat::soccernet, "a.json"}}) {
-    const std::string path = folder() + name;
+  for (const auto& [name, file] : {std::pair{"csv", "a.csv"}, std::pair{"mot", "a.txt"}, std::pair{"metrica", "a_home.csv"},
+                                   std::pair{"tracab", "a.dat"}, std::pair{"epts", "a.xml"}, std::pair{"soccernet", "a.json"}}) {
+    const std::string path = folder() + file;
     std::vector<std::string> warnings;
-    if (!taken([&] { warnings = match::write_ground_as(before, path, format); })) continue;
-    const match::GroundMatch after = match::read_ground_any(path);
+    if (!taken([&] { warnings = format::write_whole(path, format::format_to_write(path, name, Content::ground), before); }))
+      continue;
+    const match::GroundMatch after = format::read_match(path);
     // Who is of a third team is left out by some formats, which they say.
     check(warnings.empty() ? after.recording.samples() == before.recording.samples()
                            : after.recording.samples() <= before.recording.samples());

@@ -30,13 +30,13 @@ Recording one_person(double rate, double seconds, const std::function<Vector<2>(
   Recording recording(on_the_ground());
   recording.set_name({TrackId{7}, "seven", "white"});
   std::mt19937 random(5);
-  std::normal_distribution<double> off(0, noise);
+  std::normal_distribution<double> off;
   for (int i = 0; i <= rate * seconds; ++i) {
     Instant instant;
     instant.index = i;
     instant.time = timestamp_from_seconds(i / rate);
     const double dx = off(random), dy = off(random);
-    instant.samples = {sample_at(7, place(i / rate) + Vector<2>(dx, dy))};
+    instant.samples = {sample_at(7, place(i / rate) + noise * Vector<2>(dx, dy))};
     recording.add(instant);
   }
   return recording;

@@ -128,7 +128,10 @@ class PeopleInPicture final : public Stage {
   }
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
-    if (live_) return std::make_unique<LiveRest>(*live_, options_.seen_only);
+    if (live_) {
+      if (live_->empty()) return nullptr;
+      return std::make_unique<LiveRest>(*live_, options_.seen_only);
+    }
     return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_),
                                         outlines_ ? &*outlines_ : nullptr, options_.seen_only);
   }

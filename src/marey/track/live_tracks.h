@@ -50,6 +50,8 @@ class LiveTracks {
   void add(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames = {});
   /// The next moment that is `delay` old, or at the end of the recording, with `all`, any; nothing where there is none.
   std::optional<Instant> next(bool all = false);
+  /// Whether no moment waits to be told.
+  bool empty() const { return moments_.empty(); }
 
  private:
   struct Moment {

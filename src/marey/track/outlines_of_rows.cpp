@@ -54,6 +54,11 @@ bool may_be_written(const Outline& outline, const TrackRow& row) {
   return contour::is_outline_of({outline.order, outline.control_points}, {row.left, row.top, row.width, row.height});
 }
 
+/// Searched in a region that its target shares, and found near where the second pass says: there the first may only have coasted.
+bool is_where(const Outline& outline, const TrackRow& row) {
+  return outline.state != Outline::State::held && (outline.centre - Vector<2>(row.x, row.y)).norm() < row.height / 2;
+}
+
 }  // namespace
 
 void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, std::span<Track<2>> tracks) {
@@ -67,7 +72,7 @@ void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, 
     const TrackRow& row = rows[i];
     const Vector<2> place(row.x, row.y);
     const auto found = outlines.find(row.first_id);
-    const bool own = found != outlines.end() && (row.observed() || found->second->state != Outline::State::held);
+    const bool own = found != outlines.end() && (row.observed() || is_where(*found->second, row));
     if (own) {
       tracks[i].outline = with_names(with_centre(found->second, row), id_of);
       last_[row.id] = {found->second, place, row.height};

@@ -16,7 +16,7 @@ namespace {
 struct Dice {
   explicit Dice(unsigned seed) : engine(seed) {}
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
-  double gaussian(double sigma) { return std::normal_distribution<double>(0, sigma)(engine); }
+  double gaussian(double sigma) { return sigma * std::normal_distribution<double>()(engine); }
   Vector<3> in_cube(double half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
   std::mt19937 engine;
 };

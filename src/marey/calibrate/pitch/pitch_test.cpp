@@ -31,14 +31,14 @@ Camera turned_on_the_stand(double turn) {
 /// What a user clicks: corners and crossings in view, `sigma` px off. `left_handed`: his y grows towards the camera.
 std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_handed, unsigned seed) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0, sigma);
+  std::normal_distribution<double> noise;
   std::vector<PitchPoint> points;
   for (const double x : {0.0, 5.5, 11.0, 16.5, 44.0, 52.5, 61.0, 88.5, 99.5, 105.0}) {
     for (const double y : {0.0, 13.84, 24.84, 34.0, 43.16, 54.16, 68.0}) {
       const auto pixel = camera.project({x, y, 0});
       if (!pixel || !camera.in_picture(*pixel)) continue;
       points.push_back(
-          {{x, left_handed ? 68 - y : y}, *pixel + Vector<2>(noise(random), noise(random)), fmt::format("({},{})", x, y)});
+          {{x, left_handed ? 68 - y : y}, *pixel + sigma * Vector<2>(noise(random), noise(random)), fmt::format("({},{})", x, y)});
     }
   }
   return points;

@@ -185,7 +185,7 @@ Rig parse_aniposelib_rig(std::string_view text, const std::string& path) {
     const toml::table file = toml::parse(text, path);
     add_tables(file, path, "", rig);
   } catch (const toml::parse_error& error) {
-    throw Error("{}:{}: {}", path, std::max<unsigned>(1, error.source().begin.line), shown(error.description(), 200));
+    throw Error("{}:{}: {}", path, std::max<unsigned>(1, error.source().begin.line), excerpt(error.description(), 200));
   }
   to_metres(rig);
   check_imported(rig, path);

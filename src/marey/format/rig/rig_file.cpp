@@ -55,7 +55,7 @@ geometry::Lens blank_lens(const Section& section) {
   if (!model) return geometry::BrownLens{};
   if (const auto lens = geometry::lens_named(*model)) return *lens;
   section.problem("model",
-                  fmt::format("model \"{}\" is unknown; there are: {}", shown(*model), fmt::join(geometry::lens_names(), ", ")));
+                  fmt::format("model \"{}\" is unknown; there are: {}", excerpt(*model), fmt::join(geometry::lens_names(), ", ")));
   return geometry::BrownLens{};
 }
 
@@ -119,7 +119,7 @@ void check_name(const Section& section, const std::string& name) {
 RigCamera read_camera(Section& section, int index, const std::string& folder) {
   RigCamera camera;
   camera.name = section.text("name").value_or("");
-  section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", shown(camera.name)));
+  section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", excerpt(camera.name)));
   section.only({"name", "source", "detections", "region", "rate", "offset_s", "size", "model", "focal", "principal", "distortion",
                 "rotation", "translation", "ground_from_image", "rms_px"});
   check_name(section, camera.name);
@@ -161,7 +161,7 @@ bool read_world(const toml::node& node, Problems& problems, Rig& rig) {
   section.only({"up", "ground_from_world"});
   rig.ground_from_world = section.invertible("ground_from_world");
   const std::string up = section.text("up").value_or("z");
-  if (up != "y" && up != "z") section.problem("up", fmt::format("up is \"{}\"; it must be \"z\" or \"y\"", shown(up)));
+  if (up != "y" && up != "z") section.problem("up", fmt::format("up is \"{}\"; it must be \"z\" or \"y\"", excerpt(up)));
   return up == "y";
 }
 
@@ -208,7 +208,7 @@ Rig parse_rig(std::string_view text, const std::string& name, const std::string&
   try {
     file = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    throw Error("{}:{}: {}", name, std::max<unsigned>(1, error.source().begin.line), shown(error.description(), 200));
+    throw Error("{}:{}: {}", name, std::max<unsigned>(1, error.source().begin.line), excerpt(error.description(), 200));
   }
   Problems problems(name);
   Rig rig;
@@ -221,7 +221,7 @@ Rig parse_rig(std::string_view text, const std::string& name, const std::string&
     } else if (key == "camera") {
       read_cameras(value, folder, problems, rig);
     } else {
-      problems.add(key.source(), fmt::format("unknown key \"{}\"; there are: world, calibration, camera", shown(key.str())));
+      problems.add(key.source(), fmt::format("unknown key \"{}\"; there are: world, calibration, camera", excerpt(key.str())));
     }
   }
   if (!file.contains("camera")) problems.add({}, "there is no camera; add a [[camera]] for each");

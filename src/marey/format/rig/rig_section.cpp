@@ -38,7 +38,7 @@ std::optional<std::vector<double>> numbers_of(const toml::node& node) {
 
 }  // namespace
 
-std::string shown(std::string_view text, std::size_t most) {
+std::string excerpt(std::string_view text, std::size_t most) {
   std::string result(text.substr(0, most));
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
@@ -65,7 +65,7 @@ void Section::only(std::initializer_list<std::string_view> known) const {
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     problems_.add(key.source(),
-                  fmt::format("{}: unknown key \"{}\"; there are: {}", title_, shown(key.str()), fmt::join(known, ", ")));
+                  fmt::format("{}: unknown key \"{}\"; there are: {}", title_, excerpt(key.str()), fmt::join(known, ", ")));
   }
 }
 

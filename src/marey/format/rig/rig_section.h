@@ -14,7 +14,7 @@
 namespace marey::format::rig {
 
 /// A text of a file, fit for a one-line message.
-std::string shown(std::string_view text, std::size_t most = 40);
+std::string excerpt(std::string_view text, std::size_t most = 40);
 
 /// What is wrong with a TOML file, gathered so that all of it is told at once.
 class Problems {

@@ -113,6 +113,7 @@ void Footprint::fill(std::span<const Vector<2>> polygon) {
   width_ = std::max(0, static_cast<int>(std::floor(most.x())) + 1 - left_);
   height_ = std::max(0, static_cast<int>(std::floor(most.y())) + 1 - top_);
   pixels_.assign(static_cast<std::size_t>(width_) * height_, 0);
+  if (pixels_.empty()) return;
   // Every edge flips the first pixel at its right, row by row; what is flipped an odd number of times up to a pixel is inside.
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector<2>& a = polygon[i];
