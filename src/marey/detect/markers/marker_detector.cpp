@@ -15,7 +15,6 @@
 #include "marey/detect/markers/marker_auto_mask.h"
 #include "marey/detect/markers/marker_fit.h"
 #include "marey/detect/markers/marker_levels.h"
-#include "marey/detect/markers/marker_local.h"
 #include "marey/detect/markers/marker_neighbours.h"
 #include "marey/detect/markers/marker_split.h"
 
@@ -29,10 +28,7 @@ constexpr double kOfRoundness = 0.6;       // a blob this much less round is not
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
 constexpr double kColourDeviation = 0.5;   // px; where chroma lies within its four pixels is not known for certain
 constexpr double kLeastLumaContrast = 8;   // noises, for the centre of a coloured marker
-constexpr double kUnlikeArea = 10;         // times the area of a typical disc
-constexpr double kOverRim = 0.5;           // of the contrast asked of markers: by so much even a half-hidden one passes its rim
-constexpr double kLeastRegion = 30;        // px²: less holds no marker beside what is around it
-constexpr int kFirstLooks = 3;             // at a first picture: each raises the threshold to what markers stand out by
+constexpr double kUnlikeArea = 6;          // times the area of a typical disc
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness(const MarkerBlob& blob) {
@@ -41,15 +37,26 @@ double roundness(const MarkerBlob& blob) {
   return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
 }
 
+/// The middle of the pixels along the border of `frame`; `otherwise` where all of it lies outside the picture.
+double rim_level(const cv::Mat& luma, const cv::Rect& frame, double otherwise) {
+  std::vector<int> rim;
+  const cv::Rect within({}, luma.size());
+  const auto look = [&](int x, int y) {
+    if (within.contains({x, y})) rim.push_back(luma.depth() == CV_8U ? luma.at<std::uint8_t>(y, x) : luma.at<std::uint16_t>(y, x));
+  };
+  for (int x = frame.x; x < frame.br().x; ++x) look(x, frame.y), look(x, frame.br().y - 1);
+  for (int y = frame.y; y < frame.br().y; ++y) look(frame.x, y), look(frame.br().x - 1, y);
+  if (rim.empty()) return otherwise;
+  const auto middle = rim.begin() + static_cast<std::ptrdiff_t>(rim.size() / 2);
+  std::nth_element(rim.begin(), middle, rim.end());
+  return *middle;
+}
+
 /// How far each pixel stands out from what is wider than a marker: the picture less its morphological opening (a dark one: its
 /// closing less the picture). What is wider than `widest` px leaves nothing, edges neither (Serra 1982: the top-hat).
 void spot_heights(const cv::Mat& luma, double widest, bool dark, cv::Mat& heights) {
   const int side = 2 * static_cast<int>(std::ceil(widest / 2)) + 1;
   cv::morphologyEx(luma, heights, dark ? cv::MORPH_BLACKHAT : cv::MORPH_TOPHAT, cv::Mat::ones(side, side, CV_8U));
-}
-
-double square(double value) {
-  return value * value;
 }
 
 bool inside(const Box& box, double x, double y) {
@@ -78,9 +85,6 @@ class MarkerDetector::Impl {
  private:
   const cv::Mat& prepare(const Picture& picture);
   std::span<const MarkerBlob> find(const cv::Mat& searched);
-  std::span<const MarkerBlob> find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs);
-  bool is_region(const MarkerBlob& blob) const;
-  bool stands_out(const cv::Mat& luma, const MarkerBlob& blob, const MarkerShape& shape, bool is_disc) const;
   void mask_more(const MarkerMask& learned);
   void choose(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob) const;
@@ -104,13 +108,9 @@ class MarkerDetector::Impl {
   std::vector<std::size_t> chosen_;
   MarkerNeighbours neighbours_;
   MarkerWindow window_;
-  InnerBlobFinder inner_;
-  std::vector<MarkerBlob> all_;  // those within others after the others
-  std::size_t outer_ = 0;        // of them
   std::vector<MarkerBlob> full_size_;
-  std::vector<double> contrasts_, blurs_;
-  double disc_weight_ = 0, disc_area_sum_ = 0;  // of the frame's discs
-  std::vector<char> is_disc_;                   // for each detection of the frame
+  std::vector<double> contrasts_, blurs_, disc_areas_;
+  std::vector<char> is_disc_;  // for each detection of the frame
   std::optional<double> blur_;
   std::optional<double> disc_area_;  // px², typical
   int split_pixels_left_ = 0;
@@ -160,19 +160,10 @@ const cv::Mat& MarkerDetector::Impl::prepare(const Picture& picture) {
 std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) {
   if (!options_.colour) {
     MarkerLevels& levels = looks_close_by() ? spot_levels_ : levels_;
-    auto blobs = finder_.find(searched, levels.thresholds(), mask_);
-    if (finder_.cut_at()) {
-      levels.learn(searched, true);  // the light may have changed at once
-      blobs = finder_.find(searched, levels.thresholds(), mask_);
-    }
-    const bool begins = !levels.knows_contrast();
-    for (int look = 0; begins && look < kFirstLooks; ++look) {
-      const auto contrast = bright_contrast(searched, blobs, levels, options_.dark && !looks_close_by());
-      if (!contrast) break;
-      levels.begin_contrast(*contrast);
-      blobs = finder_.find(searched, levels.thresholds(), mask_);
-    }
-    return looks_close_by() || options_.threshold ? blobs : find_inner(searched, blobs);
+    const auto blobs = finder_.find(searched, levels.thresholds(), mask_);
+    if (!finder_.cut_at()) return blobs;
+    levels.learn(searched, true);  // the light may have changed at once
+    return finder_.find(searched, levels.thresholds(), mask_);
   }
   full_size_.clear();
   for (MarkerBlob blob : finder_.find(searched, colour_thresholds_, mask_)) {
@@ -186,29 +177,6 @@ std::span<const MarkerBlob> MarkerDetector::Impl::find(const cv::Mat& searched) 
     full_size_.push_back(blob);
   }
   return full_size_;
-}
-
-/// What passes the threshold and is too large or too long for a marker, but may have one before it.
-bool MarkerDetector::Impl::is_region(const MarkerBlob& blob) const {
-  const auto area = static_cast<double>(blob.area);
-  if (area < kLeastRegion) return false;
-  return area > options_.max_area || (disc_area_ && area > kUnlikeArea * *disc_area_) ||
-         roundness(blob) < kOfRoundness * options_.min_roundness;
-}
-
-std::span<const MarkerBlob> MarkerDetector::Impl::find_inner(const cv::Mat& searched, std::span<const MarkerBlob> blobs) {
-  outer_ = blobs.size();
-  if (std::none_of(blobs.begin(), blobs.end(), [&](const MarkerBlob& blob) { return is_region(blob); })) return blobs;
-  all_.assign(blobs.begin(), blobs.end());
-  inner_.find(searched, finder_, levels_.least(), options_.dark, all_, [&](const MarkerBlob& blob) { return is_region(blob); });
-  return all_;
-}
-
-/// Whether a blob stands out from what lies right around it, and not only from its tile: a disc as fitted, else from its rim.
-bool MarkerDetector::Impl::stands_out(const cv::Mat& luma, const MarkerBlob& blob, const MarkerShape& shape, bool is_disc) const {
-  if (options_.colour || options_.threshold || looks_close_by()) return true;
-  const double least = levels_.least(kOverRim);
-  return (is_disc && shape.contrast > least) || height_over_rim(luma, blob, options_.dark) > least;
 }
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
@@ -229,7 +197,7 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   neighbours_.file(blobs, chosen_, luma.size());
   contrasts_.clear();
   blurs_.clear();
-  disc_weight_ = disc_area_sum_ = 0;
+  disc_areas_.clear();
   is_disc_.clear();
   split_pixels_left_ = kMostSplitPixels;
   result.detections.reserve(chosen_.size());
@@ -287,13 +255,12 @@ MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const
   around.white = levels_.white();
   around.dark = options_.dark;
   around.blur = blur_;
-  const bool within = outer_ < all_.size() && &blob >= all_.data() + outer_ && &blob < all_.data() + all_.size();
-  if (!options_.colour && !options_.threshold && !looks_close_by() && !within) return around;
+  if (!options_.colour && !options_.threshold && !looks_close_by()) return around;
   // A coloured marker may be brighter or darker than what is around it, and beside a fixed threshold a tile may be mostly of
   // something else than what lies round the marker.
-  const auto rim = rim_levels(luma, {blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6}, options_.dark);
-  if (rim) around.background = rim->middle;
-  if (options_.colour) around.dark = cv::mean(luma(blob.box & cv::Rect({}, luma.size())))[0] < around.background;
+  const cv::Rect within({}, luma.size());
+  around.background = rim_level(luma, {blob.box.x - 3, blob.box.y - 3, blob.box.width + 6, blob.box.height + 6}, around.background);
+  if (options_.colour) around.dark = cv::mean(luma(blob.box & within))[0] < around.background;
   return around;
 }
 
@@ -330,17 +297,11 @@ void MarkerDetector::Impl::measure(const cv::Mat& luma, std::span<const MarkerBl
     ++counts_.not_round;
     return;
   }
-  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
-  if (!stands_out(luma, blob, lone, is_disc)) {
-    ++counts_.too_dim;
-    return;
-  }
   if (!lone.fitted) ++counts_.not_fitted;
+  const bool is_disc = lone.fitted && lone.misfit < std::max(kShapeMisfit, grain);
   if (is_disc) {
     blurs_.push_back(lone.blur);
-    const double weight = square(lone.contrast * static_cast<double>(blob.area));
-    disc_weight_ += weight;
-    disc_area_sum_ += weight * static_cast<double>(blob.area);
+    disc_areas_.push_back(static_cast<double>(blob.area));
   }
   contrasts_.push_back(window_.scale);
   Detection detection = report(lone, blob);
@@ -364,12 +325,12 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
 }
 
 /// Markers of one recording are of one kind. What no disc fits and is many times as large as the discs is something else that is
-/// bright: the edge of a barrier, a window. Bright and large discs say how large a disc is, specks do not: what is saturated,
-/// blurred, drawn out or touches another is not much larger than those. Where no disc is seen at all, nothing is dropped.
+/// bright: the edge of a barrier, a window. Where no disc is seen at all, nothing is dropped.
 void MarkerDetector::Impl::drop_unlike(std::vector<Detection>& found) {
-  if (disc_weight_ > 0) {
-    const double typical = disc_area_sum_ / disc_weight_;
-    disc_area_ = disc_area_ ? *disc_area_ + (typical - *disc_area_) / 8 : typical;
+  if (!disc_areas_.empty()) {
+    const auto middle = disc_areas_.begin() + static_cast<std::ptrdiff_t>(disc_areas_.size() / 2);
+    std::nth_element(disc_areas_.begin(), middle, disc_areas_.end());
+    disc_area_ = disc_area_ ? *disc_area_ + (*middle - *disc_area_) / 8 : *middle;
   }
   if (!disc_area_) return;
   std::size_t kept = 0;
@@ -412,7 +373,7 @@ Detections MarkerDetector::detect(const Frame& frame, std::span<const Expected> 
 
 DetectionCounts MarkerDetector::detection_counts() const {
   const MarkerCounts& all = counts();
-  return {all.too_small + all.too_dim, all.too_large + all.not_round + all.unlike};
+  return {all.too_small, all.too_large + all.not_round + all.unlike};
 }
 
 const MarkerCounts& MarkerDetector::counts() const {
@@ -434,12 +395,6 @@ std::vector<std::string> warnings(const MarkerCounts& counts) {
         fmt::format("{} blobs beyond the most markers allowed a frame were left out: is there glare? A mask or a higher "
                     "threshold helps",
                     counts.over_limit));
-  }
-  if (counts.unlike > 0) {
-    result.push_back(
-        fmt::format("{} bright things that are no discs and more than {:g} times as large as the markers were left out; --widest "
-                    "finds markers before them",
-                    counts.unlike, kUnlikeArea));
   }
   if (counts.frames_cut > 0) {
     result.push_back(

@@ -36,7 +36,6 @@ struct MarkerCounts {
   std::int64_t too_small = 0;   ///< below min_area
   std::int64_t too_large = 0;   ///< above max_area
   std::int64_t not_round = 0;   ///< below min_roundness
-  std::int64_t too_dim = 0;     ///< stand out from their tile, but hardly from what lies right around them
   std::int64_t unlike = 0;      ///< no disc, and many times as large as the discs that are seen: a thing's bright edge
   std::int64_t over_limit = 0;  ///< more than most_markers in their frame
   std::int64_t split = 0;       ///< blobs that were taken apart

@@ -109,12 +109,9 @@ double MarkerLevels::smooth_median(int tile) const {
   return around[(n - 1) / 2];
 }
 
-double MarkerLevels::least(double share) const {
-  return std::max({kSigmas * noise_, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, share * kOfContrast * contrast_});
-}
-
 double MarkerLevels::needed(int tile) const {
-  return std::max(kSigmas * static_cast<double>(raw_[tile].spread), least());
+  const double sigma = std::max<double>(noise_, raw_[tile].spread);
+  return std::max({kSigmas * sigma, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, kOfContrast * contrast_});
 }
 
 void MarkerLevels::set_threshold(int tile) {
@@ -128,13 +125,7 @@ void MarkerLevels::set_threshold(int tile) {
 
 void MarkerLevels::learn_contrast(std::optional<double> contrast) {
   if (!contrast) return;
-  if (contrast_ < 2 * kSigmas * noise_) contrast_ = 0;  // it was that of noise
   contrast_ = contrast_ > 0 ? contrast_ + (*contrast - contrast_) / kShare : *contrast;
-}
-
-void MarkerLevels::begin_contrast(double contrast) {
-  contrast_ = contrast;
-  for (int tile = 0; tile < tiles_.area(); ++tile) set_threshold(tile);
 }
 
 double MarkerLevels::background(int x, int y) const {

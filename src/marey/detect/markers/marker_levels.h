@@ -25,13 +25,6 @@ class MarkerLevels {
   /// How far markers stand out from their background, from the blobs of a frame; nothing where there were none.
   void learn_contrast(std::optional<double> contrast);
 
-  /// The same from a first picture, and all thresholds at once: what stands out by far less than the rest is no marker.
-  void begin_contrast(double contrast);
-  bool knows_contrast() const { return contrast_ > 0 || fixed_; }
-
-  /// What noise, compression and the markers seen so far ask of a marker's contrast anywhere, `share` of it; grey levels.
-  double least(double share = 1) const;
-
   const MarkerThresholds& thresholds() const { return thresholds_; }
   /// Standard deviation of the pixels' noise, grey levels; rounding included.
   double noise() const { return noise_; }
