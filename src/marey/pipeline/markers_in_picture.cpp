@@ -90,7 +90,8 @@ class MarkersInPicture final : public Stage {
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
-    return std::make_unique<FilledRows>(track::fill_gaps(recording_), std::move(moments_), std::move(labels_));
+    const int fewest = static_cast<int>(std::min<std::size_t>(3, moments_.size()));  // a single picture has markers too
+    return std::make_unique<FilledRows>(track::fill_gaps(recording_, {}, fewest), std::move(moments_), std::move(labels_));
   }
 
   void report(Summary& summary) const override {
