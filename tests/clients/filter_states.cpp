@@ -91,7 +91,7 @@ class Walk {
 
  private:
   Vector<D> normal(double sigma) {
-    return Vector<D>::NullaryExpr([&] { return std::normal_distribution<double>(0, sigma)(random_); });
+    return Vector<D>::NullaryExpr([&] { return sigma * std::normal_distribution<double>()(random_); });
   }
 
   Matrix<D> covariance() {

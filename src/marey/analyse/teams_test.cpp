@@ -27,7 +27,7 @@ struct Scene {
 
   explicit Scene(std::uint64_t seed) : engine(seed) {}
 
-  double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(engine); }
+  double normal(double sigma) { return sigma * std::normal_distribution<double>()(engine); }
 
   void add(const std::string& colour, double spread, double x, double y, double from = 0, double to = 1) {
     const Appearance typical = colour_named(colour);

@@ -127,7 +127,7 @@ void Footprint::fill(std::span<const Vector<2>> polygon) {
     }
   }
   for (int y = 0; y < height_; ++y) {
-    std::uint8_t* row = &pixels_[static_cast<std::size_t>(y) * width_];
+    std::uint8_t* row = pixels_.data() + static_cast<std::size_t>(y) * width_;
     for (int x = 1; x < width_; ++x) row[x] ^= row[x - 1];
   }
 }

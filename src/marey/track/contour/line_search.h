@@ -28,7 +28,7 @@ class Footprint {
   int width() const { return width_; }
   int height() const { return height_; }
   std::span<const std::uint8_t> row(int y) const {
-    return {&pixels_[static_cast<std::size_t>(y - top_) * width_], static_cast<std::size_t>(width_)};
+    return {pixels_.data() + static_cast<std::size_t>(y - top_) * width_, static_cast<std::size_t>(width_)};
   }
 
  private:
