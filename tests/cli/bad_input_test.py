@@ -4,6 +4,7 @@ Usage: bad_input_test.py MAREY [unittest options]. Input is made with ffmpeg; no
 """
 
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -33,6 +34,12 @@ def film(path, seconds=4, size="320x240", codec=("-c:v", "mpeg4", "-q:v", "4")):
 def cut(path, share):
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * share)])
+
+
+def processor_time(process):
+    """s that it took so far."""
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class BadInput(unittest.TestCase):
@@ -226,7 +233,8 @@ class BadInput(unittest.TestCase):
                 if list(self.folder.glob("out.txt.*.part")):
                     break
                 time.sleep(0.01)
-            time.sleep(0.1)
+            while run.poll() is None and processor_time(run) < 0.5:
+                time.sleep(0.01)  # until something was tracked
             run.send_signal(signal.SIGINT)
             out, said = run.communicate(timeout=120)
             self.assertEqual(run.returncode, 130, said)
