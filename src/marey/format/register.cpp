@@ -204,7 +204,9 @@ const Format& format_to_write(const std::string& path, std::string_view name, Co
         throw WrongFormat("{}: {} is read only; these can be written: {}", path, format->title, endings_of_written(content));
       return *format;
     }
-    if (const Format* other = format_named(name, kAll)) refuse(path, *other, content);
+    if (const Format* other = format_named(name, kAll); other != nullptr && !path.empty()) refuse(path, *other, content);
+    if (format_named(name, kAll) != nullptr)
+      throw WrongFormat("\"{}\" holds no {}; these can be written: {}", name, words_of(content), names_of_written(content));
     throw WrongFormat("\"{}\" is no format; these can be written: {}", name, names_of_written(kAll));
   }
   if (const Format* format = format_of_name(path, content)) return *format;
