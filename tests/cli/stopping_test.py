@@ -116,7 +116,6 @@ class Stopping(unittest.TestCase):
                  "-o", "out.toml"),
                 ("calibrate", "pitch", "rig.toml", "--points", f"left={self.pipe}", "--points", f"right={self.pipe}", "-o", "out.toml"),
                 ("measure", self.pipe, *out),
-                ("convert", self.pipe, "out.csv"),
                 ("evaluate", "--truth", self.pipe, "--tracks", self.pipe))):
             with self.subTest(arguments=arguments):
                 self.leaves_nothing(*arguments, number=SIGNALS[number % len(SIGNALS)])

@@ -77,7 +77,7 @@ struct Beginning {
   bool has(std::string_view part) const { return bytes.find(part) != std::string::npos; }
 };
 
-/// Throws Error where there is no such file or folder, or it may not be read.
+/// Without bytes of what is neither file nor folder. Throws Error where there is no such file or folder, or it may not be read.
 Beginning beginning_of(const std::string& path);
 
 /// What is known of a recording in a file before its first instant.

@@ -10,16 +10,22 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
+#include "marey/format/read_file.h"
 
 namespace marey::format {
 
 MappedFile::MappedFile(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe is refused, not waited for
+  struct stat status{};
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+    if (S_ISDIR(status.st_mode)) throw Error("{}: is a folder, not a file", path);
+    read_ = read_file(path);
+    return;
+  }
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {
     if (errno == ENOENT) throw Error("{}: no such file", path);
     throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
   }
-  struct stat status{};
   const bool regular = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
   if (regular && status.st_size > 0) {
     size_ = static_cast<std::size_t>(status.st_size);

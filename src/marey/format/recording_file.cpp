@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/limits.h"
 #include "marey/format/register.h"
 
 namespace marey::format {
@@ -56,6 +57,14 @@ class TurningSink : public Sink {
  private:
   std::unique_ptr<Sink> sink_;
 };
+
+void require_short_labels(const FileInfo& info, const std::string& path) {
+  const std::size_t most = Limits::in_force().label_bytes;
+  for (const TrackName& track : info.tracks) {
+    if (track.label.size() > most)
+      throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", path, track.label.size(), most);
+  }
+}
 
 /// A recording in memory as a file's.
 class WholeReader : public FileReader {
@@ -119,6 +128,7 @@ std::unique_ptr<FileReader> open_recording(const std::string& path, const Format
   if (format.read != nullptr) return std::make_unique<MatchReader>(read_whole(path, format, options));
   if (format.open == nullptr) throw Error("{}: is {}, which is no recording", path, format.title);
   auto reader = format.open(path, options);
+  require_short_labels(reader->info(), path);
   if (options.up == UpAxis::z || format.z_up) return reader;
   return std::make_unique<TurningReader>(std::move(reader));
 }
@@ -143,9 +153,11 @@ match::GroundMatch read_whole(const std::string& path, const Format& format, con
 }
 
 match::GroundMatch read_match(const std::string& path, const ReadOptions& options) {
-  // What is no format at all is told by the reader of ours, which says what it wants.
+  // What is no format at all is told by the reader of ours, which says what it wants; of an empty file the name tells.
   const Format* format = path == "-" ? nullptr : format_of_content(path);
   if (format == nullptr && std::filesystem::is_directory(path)) throw Error("{}: is a folder, not a file", path);
+  if (format == nullptr && std::filesystem::is_regular_file(path) && std::filesystem::is_empty(path))
+    format = format_of_name(path, Content::ground);
   if (format == nullptr || !format->holds.any_of(kRecordings)) format = format_named("ground", Content::ground);
   // Boxes in a picture are told by the reader of the same text with places.
   if (const Format* places = format_named(format->name, Content::ground); !format->holds.has(Content::ground) && places != nullptr)
@@ -181,6 +193,7 @@ std::unique_ptr<Sink> create_recording(const std::string& path, const Format& fo
                                        std::vector<std::string>* lost) {
   if (format.create == nullptr && format.write == nullptr) throw Error("{}: {} is read only", path, format.title);
   if (format.create == nullptr) return std::make_unique<GatheringSink>(path, format, lost);
+  require_short_labels(plan.info, path);  // what is written is read again
   auto sink = format.create(path, plan);
   if (plan.up == UpAxis::z || format.z_up) return sink;
   return std::make_unique<TurningSink>(std::move(sink));

@@ -145,7 +145,7 @@ Beginning beginning_of(const std::string& path) {
   if (!fs::exists(status)) throw Error("{}: no such file; is the name right?", path);
   Beginning beginning{.path = path, .folder = fs::is_directory(status), .bytes = {}};
   if (beginning.folder) return beginning;
-  if (!fs::is_regular_file(status)) throw Error("{}: is no file", path);
+  if (!fs::is_regular_file(status)) return beginning;  // what is read of a pipe is gone
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("{}: cannot be read; have you the right to?", path);
   beginning.bytes.resize(kLookedAt);
@@ -169,6 +169,8 @@ const Format* format_of_content(const std::string& path) {
 
 const Format& format_to_read(const std::string& path, Contents wanted) {
   const Format* format = format_of_content(path);
+  if (format == nullptr && !fs::is_regular_file(path) && !fs::is_directory(path))
+    throw Error("{}: is no file, and is looked at more than once; write what it says to a file first", path);
   if (format == nullptr) throw Error("{}: is none of the files that Marey knows: {}", path, names_of_read(kAll));
   if (!format->holds.any_of(wanted))
     throw Error("{}: is {}; {} are wanted: {}", path, format->title, words_of_all(wanted), names_of_read(wanted));

@@ -27,7 +27,8 @@ constexpr std::array<std::string_view, kColumns> kAllNames = {"frame", "time",  
                                                               "vy",    "state", "cameras", "left",  "top",  "width", "height"};
 constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture
 constexpr std::array kNeeded = {kId, kX, kY};
-constexpr double kFarthest = 1e5;  // m
+constexpr double kFarthest = 1e5;   // m
+constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz
 constexpr std::size_t kMostCameras = 64;
 constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
 
@@ -117,7 +118,7 @@ class GroundFileReader {
   void add() {
     GroundBuilder::Row row;
     if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, 1e9));
-    row.time = where_[kTime] ? number(kTime, -1e7, 1e7) : row.frame / rate_hz_;
+    row.time = where_[kTime] ? number(kTime, -kMostTime, kMostTime) : row.frame / rate_hz_;
     if (!where_[kFrame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
     const std::int32_t person = builder_.person(static_cast<int>(number(kId, 1, 1e9)), text(kLabel), text(kTeam));
     row.place = {number(kX, -kFarthestOnGround, kFarthestOnGround), number(kY, -kFarthestOnGround, kFarthestOnGround)};
@@ -147,7 +148,7 @@ class GroundFileReader {
       line_ = lines.number();
       if (line.empty()) continue;
       split_fields(line, ',', fields_);
-      times.push_back(number(kTime, -1e7, 1e7));
+      times.push_back(number(kTime, -kMostTime, kMostTime));
     }
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
