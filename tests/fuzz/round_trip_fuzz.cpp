@@ -118,6 +118,7 @@ void check_rig(std::string_view text) {
 void check_match(std::string_view text) {
   match::GroundMatch before;
   before.recording = match::parse_ground(text, "file");
+  if (before.recording.samples() == 0) return;  // some formats are rows alone, and an empty file is refused
   for (const auto& [name, file] : {std::pair{"csv", "a.csv"}, std::pair{"mot", "a.txt"}, std::pair{"metrica", "a_home.csv"},
                                    std::pair{"tracab", "a.dat"}, std::pair{"epts", "a.xml"}, std::pair{"soccernet", "a.json"}}) {
     const std::string path = folder() + file;

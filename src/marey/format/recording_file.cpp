@@ -153,11 +153,9 @@ match::GroundMatch read_whole(const std::string& path, const Format& format, con
 }
 
 match::GroundMatch read_match(const std::string& path, const ReadOptions& options) {
-  // What is no format at all is told by the reader of ours, which says what it wants; of an empty file the name tells.
+  // What is no format at all is told by the reader of ours, which says what it wants.
   const Format* format = path == "-" ? nullptr : format_of_content(path);
   if (format == nullptr && std::filesystem::is_directory(path)) throw Error("{}: is a folder, not a file", path);
-  if (format == nullptr && std::filesystem::is_regular_file(path) && std::filesystem::is_empty(path))
-    format = format_of_name(path, Content::ground);
   if (format == nullptr || !format->holds.any_of(kRecordings)) format = format_named("ground", Content::ground);
   // Boxes in a picture are told by the reader of the same text with places.
   if (const Format* places = format_named(format->name, Content::ground); !format->holds.has(Content::ground) && places != nullptr)

@@ -13,6 +13,8 @@ namespace marey::format::match {
 
 /// m from the origin, to either side: what is farther stands on no ground near a pitch.
 constexpr double kFarthestOnGround = 1e5;
+/// The last frame as files count that begin with 1.
+constexpr double kMostFrame = 1e9;
 
 /// Gathers the people of a file that names them in its own way, in whatever order its rows come, and makes a recording of them.
 class GroundBuilder {

@@ -117,7 +117,7 @@ class GroundFileReader {
 
   void add() {
     GroundBuilder::Row row;
-    if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, 1e9));
+    if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, kMostFrame - 1));
     row.time = where_[kTime] ? number(kTime, -kMostTime, kMostTime) : row.frame / rate_hz_;
     if (!where_[kFrame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
     const std::int32_t person = builder_.person(static_cast<int>(number(kId, 1, 1e9)), text(kLabel), text(kTeam));

@@ -87,7 +87,7 @@ class MetricaReader {
 
   void read_row(const std::vector<PersonColumn>& columns) {
     const int period = static_cast<int>(number(0, 1, 9));
-    const auto frame = static_cast<std::int32_t>(number(1, 1, 1e9)) - 1;
+    const auto frame = static_cast<std::int32_t>(number(1, 1, kMostFrame)) - 1;
     number(2, -1e11, 1e11);
     auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == period; });
     if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
