@@ -13,10 +13,16 @@ using CameraMask = std::uint64_t;
 /// A track's name for good: positive, given in the order of birth, never given twice.
 enum class TrackId : int {};
 
+/// A rigid body's or a segment's, positive.
+enum class BodyId : int {};
+
 constexpr int number(CameraId id) {
   return static_cast<int>(id);
 }
 constexpr int number(TrackId id) {
+  return static_cast<int>(id);
+}
+constexpr int number(BodyId id) {
   return static_cast<int>(id);
 }
 

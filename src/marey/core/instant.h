@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/body.h"
 #include "marey/core/frame.h"
 #include "marey/core/geometry.h"
 #include "marey/core/ids.h"
@@ -80,6 +81,7 @@ struct Instant {
   Timestamp time{};              ///< by the recording's clock
   std::vector<Sample> samples;   ///< by track, each at most once
   std::vector<SeenPoint> seen;   ///< what the cameras saw, where the recording keeps it
+  std::vector<BodyPose> bodies;  ///< by body, each at most once; what they are says the recording's header
   std::vector<TrackName> named;  ///< tracks whose label or team is new, or another than before
   std::vector<BoxInView> boxes;  ///< in cameras' pictures, where a sink asked for them; never stored
   std::vector<Frame> frames;     ///< the pictures of this moment, by camera, where a sink asked for them; never stored
