@@ -108,6 +108,7 @@ void add_convert(Command& program) {
   command.choice("--up", how.up, kAxes,
                  "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
   command.choice("--from-up", how.from_up, kAxes, "the axis that is up in A, z where it is left out");
+  command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
   add_match_options(command, *options);
   command.also_reads([options] { return beside(options->from); });

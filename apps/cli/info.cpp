@@ -31,7 +31,9 @@ struct InfoOptions {
 };
 
 void report_recording(const InfoOptions& options, const format::Format& format) {
-  const auto reader = format::open_recording(options.file, format);
+  format::ReadOptions how;
+  how.as_recorded = true;
+  const auto reader = format::open_recording(options.file, format, how);
   const RecordingSummary summary = reader->summary();
   print_warnings(reader->warnings());
   if (options.json) {

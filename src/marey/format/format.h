@@ -62,6 +62,7 @@ struct ReadOptions {
   std::string metadata;       ///< of a match, the file that belongs to it; empty: beside it, under a like name
   geometry::PitchSize pitch;  ///< of a match
   double rate_hz = 25;
+  bool as_recorded = false;  ///< of a take: without its edits, which are then told beside it
   UpAxis up = UpAxis::z;  ///< of points in space, the axis that is up in the file
 };
 

@@ -7,6 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/core/limits.h"
+#include "marey/edit/edited.h"
 #include "marey/format/register.h"
 
 namespace marey::format {
@@ -124,11 +125,33 @@ class GatheringSink : public Sink {
 
 }  // namespace
 
+namespace {
+
+/// With its edits applied, where it has any that count.
+std::unique_ptr<FileReader> edited(std::unique_ptr<FileReader> reader, const std::string& path) {
+  if (!reader->info().head) return reader;
+  const std::vector<std::string> warnings = reader->warnings();
+  try {
+    Recording recording = read_all(*reader);
+    recording.edits = reader->info().edits;
+    recording.head = reader->info().head;
+    match::GroundMatch match;
+    match.recording = edit::edited(std::move(recording));
+    match.warnings = warnings;
+    return std::make_unique<MatchReader>(std::move(match));
+  } catch (const Error& error) {
+    throw Error("{}: {}; \"marey edit {} --undo\" goes back behind it", path, error.what(), path);
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options) {
   if (format.read != nullptr) return std::make_unique<MatchReader>(read_whole(path, format, options));
   if (format.open == nullptr) throw Error("{}: is {}, which is no recording", path, format.title);
   auto reader = format.open(path, options);
   require_short_labels(reader->info(), path);
+  if (!options.as_recorded) reader = edited(std::move(reader), path);
   if (options.up == UpAxis::z || format.z_up) return reader;
   return std::make_unique<TurningReader>(std::move(reader));
 }

@@ -138,11 +138,15 @@ ConvertSummary convert(const std::string& from, const std::string& to, const Con
     const Format& out = format::format_to_write(to, options.format, format::content_of(match.recording.header.frame));
     return convert_match(std::move(match), to, in, out, options);
   }
-  const Content content = format::content_of(format::open_recording(from, in, options.read)->header().frame);
+  ConvertOptions how = options;
+  how.read.as_recorded = true;
+  const Content content = format::content_of(format::open_recording(from, in, how.read)->header().frame);
   if (content != Content::space) refuse_axes(from, options, "holds no points in space");
   const Format& out = format::format_to_write(to, options.format, content);
-  if (out.create != nullptr) return convert_stream(from, to, in, out, options, hooks);
-  return convert_match(format::read_whole(from, in, options.read), to, in, out, options);
+  // A copy of a take keeps what was recorded and its edits; what the edits make of it is for the others.
+  how.read.as_recorded = options.read.as_recorded || (in.name == out.name && !options.labelled);
+  if (out.create != nullptr) return convert_stream(from, to, in, out, how, hooks);
+  return convert_match(format::read_whole(from, in, how.read), to, in, out, how);
 }
 
 }  // namespace marey::pipeline

@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/edit/operation.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_cursor.h"
 #include "marey/format/take/take_file.h"
@@ -23,8 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
 constexpr std::size_t kApplicationIdAt = 68;
-/// What edits this version can do. Others are kept as they are.
-constexpr std::array<std::string_view, 1> kOperations{"note"};
 
 /// The beginning of a SQLite file, up to the application's id.
 std::optional<std::array<char, kApplicationIdAt + 4>> beginning_of(const std::string& path) {
@@ -131,8 +130,7 @@ std::vector<std::string> TakeReader::warnings() const {
     warnings.push_back(path_ + ": its recording was cut off, or still goes on; what there is was read");
   std::set<std::string> unknown;
   for (const Edit& edit : cursor_->edits()) {
-    if (std::find(kOperations.begin(), kOperations.end(), edit.operation) == kOperations.end())
-      unknown.insert(edit.operation.substr(0, 40));
+    if (!edit::is_known(edit)) unknown.insert(edit.operation.substr(0, 40));
   }
   for (const std::string& operation : unknown) {
     warnings.push_back(

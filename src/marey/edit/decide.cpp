@@ -1,0 +1,106 @@
+#include "marey/edit/decide.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "marey/core/error.h"
+#include "marey/core/text_safety.h"
+#include "marey/edit/fill_gap.h"
+#include "marey/edit/lowpass.h"
+
+namespace marey::edit {
+namespace {
+
+using Kind = Operation::Kind;
+
+constexpr double kUsualCutoff_hz = 6;  // of walking (Winter), where a path is too short to propose one
+
+TrackId track_named(const std::string& name, const std::vector<TrackName>& names) {
+  if (name.starts_with('#')) {
+    int id = 0;
+    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), id);
+    const bool whole = error == std::errc() && end == name.data() + name.size();
+    for (const TrackName& track : names) {
+      if (whole && number(track.id) == id) return track.id;
+    }
+    throw Error("there is no track {}", plain_text(name));
+  }
+  const auto named = [&](const TrackName& track) { return track.label == name; };
+  const auto found = std::find_if(names.begin(), names.end(), named);
+  if (found == names.end()) throw Error("there is no track called \"{}\"", plain_text(name));
+  if (std::count_if(names.begin(), names.end(), named) > 1)
+    throw Error("several tracks are called \"{}\"; name one by its number, as #{}", plain_text(name), number(found->id));
+  return found->id;
+}
+
+std::vector<TrackId> tracks_named(const Request& request, const std::vector<TrackName>& names) {
+  std::vector<TrackId> tracks;
+  const bool all = request.tracks.size() == 1 && request.tracks[0] == "all" &&
+                   std::none_of(names.begin(), names.end(), [](const TrackName& track) { return track.label == "all"; });
+  if (all && (request.kind == Kind::fill || request.kind == Kind::filter)) {
+    for (const TrackName& track : names) tracks.push_back(track.id);
+    return tracks;
+  }
+  for (const std::string& name : request.tracks) {
+    const TrackId track = track_named(name, names);
+    if (std::find(tracks.begin(), tracks.end(), track) != tracks.end())
+      throw Error("{}: \"{}\" is named twice", name_of(request.kind), plain_text(name));
+    tracks.push_back(track);
+  }
+  return tracks;
+}
+
+/// The cut-off of one track: residual analysis on its longest piece without a gap.
+double cutoff_of(Tracks& tracks, TrackId track) {
+  const Tracks::Rows& rows = tracks.rows(track);
+  std::size_t best_begin = 0, best_end = 0;
+  for (std::size_t begin = 0; begin < rows.size();) {
+    std::size_t end = begin + 1;
+    while (end < rows.size() && rows[end].at == rows[end - 1].at + 1) ++end;
+    if (end - begin > best_end - best_begin) best_begin = begin, best_end = end;
+    begin = end;
+  }
+  if (best_end - best_begin < 2) return kUsualCutoff_hz;
+  std::vector<Vector<3>> path;
+  for (std::size_t row = best_begin; row < best_end; ++row) path.push_back(rows[row].sample.position);
+  const double rate_hz = rate_between(tracks.moments(), rows[best_begin].at, rows[best_end - 1].at);
+  return proposed_cutoff(path, rate_hz).value_or(kUsualCutoff_hz);
+}
+
+void require_rows(const Request& request, Tracks& tracks, const std::vector<TrackId>& named) {
+  if (!request.frames || request.kind == Kind::fill) return;
+  const auto within = [&](TrackId track) {
+    const auto& rows = tracks.rows(track);
+    return std::any_of(rows.begin(), rows.end(), [&](const Tracks::Row& row) {
+      const std::int64_t index = tracks.moments()[static_cast<std::size_t>(row.at)].index;
+      return request.kind == Kind::split ? index >= request.frames->first : request.frames->holds(index);
+    });
+  };
+  if (std::none_of(named.begin(), named.end(), within))
+    throw Error("{}: nothing is there in frames {} to {}", name_of(request.kind), request.frames->first, request.frames->last);
+}
+
+}  // namespace
+
+Operation decide(const Request& request, Tracks& tracks) {
+  const std::vector<TrackName> names = tracks.names();
+  Operation operation{
+      .kind = request.kind, .tracks = tracks_named(request, names), .frames = request.frames, .label = request.label};
+  require_rows(request, tracks, operation.tracks);
+  if (request.kind == Kind::split) operation.born = tracks.unused_id();
+  if (request.kind == Kind::filter) {
+    for (const TrackId track : operation.tracks)
+      operation.cutoffs_hz.push_back(request.cutoff_hz ? *request.cutoff_hz : cutoff_of(tracks, track));
+  }
+  if (request.kind == Kind::fill) {
+    for (const TrackId track : operation.tracks) {
+      const auto fills = decide_fills(tracks, track, request.frames, {.method = request.method, .longest_s = request.longest_s});
+      operation.gaps.insert(operation.gaps.end(), fills.begin(), fills.end());
+    }
+    operation.tracks.clear();
+    if (operation.gaps.empty()) throw Error("fill: there is no gap of up to {:g} s that could be filled", request.longest_s);
+  }
+  return operation;
+}
+
+}  // namespace marey::edit

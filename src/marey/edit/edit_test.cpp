@@ -1,0 +1,208 @@
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/core/recording_reader.h"
+#include "marey/edit/decide.h"
+#include "marey/edit/edited.h"
+#include "marey/edit/history.h"
+#include "marey/edit/tracks.h"
+
+namespace marey::edit {
+namespace {
+
+/// Tracks 1, 2, … called A, B, …, each at x = its number, y = the frame, in frames 0 to `frames` − 1.
+Recording letters(int tracks, int frames) {
+  RecordingHeader header;
+  header.name = "letters";
+  header.rate_hz = 100;
+  Recording recording(header);
+  for (int track = 1; track <= tracks; ++track)
+    recording.set_name({.id = TrackId{track}, .label = std::string(1, static_cast<char>('A' + track - 1)), .team = {}});
+  for (int frame = 0; frame < frames; ++frame) {
+    Instant instant;
+    instant.index = frame;
+    instant.time = timestamp_from_seconds(0.01 * frame);
+    for (int track = 1; track <= tracks; ++track) {
+      instant.samples.emplace_back();
+      instant.samples.back().track = TrackId{track};
+      instant.samples.back().position = Vector<3>(track, frame, 0);
+    }
+    recording.add(instant);
+  }
+  return recording;
+}
+
+void edit(Recording& recording, const std::string& text) {
+  Recording now = edited(recording);
+  std::vector<TrackName> names;
+  for (const TrackColumns& track : now.tracks()) names.push_back(track.name);
+  Tracks tracks(now.instants(), names, [&](TrackId track) { return *now.find(track); });
+  Edit done = edit_of(decide(parse_request(text), tracks));
+  done.id = next_id(recording.edits);
+  done.parent = recording.head;
+  recording.head = done.id;
+  recording.edits.push_back(done);
+}
+
+std::string error_of(Recording recording, const std::string& text) {
+  try {
+    edit(recording, text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// "A:111222" says whose place, by x, the track called A has in each frame, and "." where it has none.
+std::string picture(const Recording& recording) {
+  std::string all;
+  for (const TrackColumns& track : recording.tracks()) {
+    std::string row(recording.instants().size(), '.');
+    for (std::size_t i = 0; i < track.size(); ++i)
+      row[static_cast<std::size_t>(track.at()[i])] = static_cast<char>('0' + static_cast<int>(track.x()[i]));
+    all += fmt::format("{}:{} ", track.name.label, row);
+  }
+  return all;
+}
+
+TEST(Edit, SwapExchangesWhatLiesInTheFrames) {
+  Recording recording = letters(2, 6);
+  edit(recording, "swap A B 2:3");
+  EXPECT_EQ(picture(edited(recording)), "A:112211 B:221122 ");
+  EXPECT_EQ(picture(recording), "A:111111 B:222222 ") << "what was recorded is as it was";
+}
+
+TEST(Edit, SwapOfOneThatIsNotThere) {
+  Recording recording = letters(2, 6);
+  edit(recording, "delete B 2:5");
+  edit(recording, "swap A B 1:3");
+  EXPECT_EQ(picture(edited(recording)), "A:12..11 B:2111.. ");
+}
+
+TEST(Edit, SplitJoinRenameDelete) {
+  Recording recording = letters(2, 6);
+  edit(recording, "split A 4 \"A two\"");
+  edit(recording, "delete B 3:");
+  EXPECT_EQ(picture(edited(recording)), "A:1111.. B:222... A two:....11 ");
+  edit(recording, "join B \"A two\"");
+  edit(recording, "rename B \"one, two\"");
+  EXPECT_EQ(picture(edited(recording)), "A:1111.. one, two:222.11 ");
+  edit(recording, "delete \"one, two\"");
+  EXPECT_EQ(picture(edited(recording)), "A:1111.. ");
+}
+
+TEST(Edit, UndoRedoAndBranches) {
+  Recording recording = letters(2, 3);
+  edit(recording, "rename A C");
+  edit(recording, "rename C D");
+  recording.head = undone(recording.edits, recording.head, 1);
+  EXPECT_EQ(picture(edited(recording)), "C:111 B:222 ");
+  edit(recording, "rename B E");  // another branch: nothing of the first is lost
+  EXPECT_EQ(picture(edited(recording)), "C:111 E:222 ");
+  recording.head = undone(recording.edits, recording.head, 9);
+  EXPECT_FALSE(recording.head);
+  EXPECT_EQ(redone(recording.edits, recording.head, 9), 3);
+  recording.head = 2;
+  EXPECT_EQ(picture(edited(recording)), "D:111 B:222 ");
+}
+
+TEST(Edit, WhatCannotBeDoneIsSaid) {
+  const Recording recording = letters(3, 6);
+  EXPECT_EQ(error_of(recording, "swp A B"), "\"swp\" is no edit; rename, swap, split, join, delete, fill and filter are known");
+  EXPECT_EQ(error_of(recording, "swap A X"), "there is no track called \"X\"");
+  EXPECT_EQ(error_of(recording, "swap A A"), "swap: \"A\" is named twice");
+  EXPECT_EQ(error_of(recording, "swap A"), "swap: the second track is missing");
+  EXPECT_EQ(error_of(recording, "swap A B 5:2"), "\"5:2\" are no frames; write FIRST:LAST, counted from 0");
+  EXPECT_EQ(error_of(recording, "swap A B 1:2 C"), "swap: \"C\" is too much");
+  EXPECT_EQ(error_of(recording, "join A B"), "\"A\" and \"B\" are both there in frame 0; split or delete one of them first");
+  EXPECT_EQ(error_of(recording, "delete A 100:200"), "delete: nothing is there in frames 100 to 200");
+  EXPECT_EQ(error_of(recording, "rename #7 B"), "there is no track #7");
+  EXPECT_EQ(error_of(recording, "rename \"A B"), "a name begins with \" and does not end");
+  EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is no cut-off; it is in Hz, above 0, or auto");
+  EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap of up to 1 s that could be filled");
+  EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill and filter are known");
+}
+
+TEST(Edit, AnOperationSurvivesItsText) {
+  const Operation operation{.kind = Operation::Kind::fill,
+                            .gaps = {{TrackId{3}, {4, 9}, FillMethod::rigid, {TrackId{1}, TrackId{2}}, 0.25},
+                                     {TrackId{3}, {40, 41}, FillMethod::spline, {}, 1e-3}}};
+  EXPECT_EQ(operation_of(edit_of(operation)), operation);
+  EXPECT_FALSE(operation_of({.id = 1, .parent = {}, .operation = "note", .payload = "x"}));
+  EXPECT_FALSE(operation_of({.id = 1, .parent = {}, .operation = "stretch", .payload = "{}"}));
+  for (const char* payload : {"", "[]", "{", "{\"tracks\":[1]}", "{\"tracks\":[1,-2]}", "{\"tracks\":[1,2],\"frames\":[3]}",
+                              "{\"tracks\":[1,2],\"frames\":[3,2]}", "{\"tracks\":\"x\"}"})
+    EXPECT_THROW(operation_of({.id = 1, .parent = {}, .operation = "swap", .payload = payload}), Error) << payload;
+}
+
+TEST(Edit, AHeadOrAParentThatIsNotThere) {
+  EXPECT_THROW(branch_of({}, 3), Error);
+  EXPECT_THROW(branch_of({{.id = 1, .parent = 2, .operation = "note", .payload = {}},
+                          {.id = 2, .parent = 1, .operation = "note", .payload = {}}},
+                         2),
+               Error);
+}
+
+/// The slow twin: a table of frames × tracks, without ranges of rows.
+struct Table {
+  std::vector<std::vector<int>> x;  // by track, by frame; 0: none
+  std::string picture() const {
+    std::string all;
+    for (std::size_t track = 0; track < x.size(); ++track) {
+      std::string row;
+      bool any = false;
+      for (const int value : x[track]) {
+        row += value == 0 ? '.' : static_cast<char>('0' + value);
+        any |= value != 0;
+      }
+      if (any) all += fmt::format("{}:{} ", static_cast<char>('A' + track), row);
+    }
+    return all;
+  }
+};
+
+TEST(Edit, ManyRandomEditsLeaveWhatASlowTableLeavesAndAreUndone) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE(fmt::format("seed {}", seed));
+  std::mt19937 random(seed);
+  constexpr int kTracks = 4, kFrames = 40;
+  Recording recording = letters(kTracks, kFrames);
+  const std::string before = picture(edited(recording));
+  Table table{std::vector(kTracks, std::vector<int>(kFrames))};
+  for (int track = 0; track < kTracks; ++track)
+    std::fill(table.x[static_cast<std::size_t>(track)].begin(), table.x[static_cast<std::size_t>(track)].end(), track + 1);
+  const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
+  for (int i = 0; i < 200; ++i) {
+    const int a = any(kTracks), b = (a + 1 + any(kTracks - 1)) % kTracks, first = any(kFrames), last = first + any(kFrames - first);
+    const bool remove = any(4) == 0;
+    const char mine_called = static_cast<char>('A' + a), other_called = static_cast<char>('A' + b);
+    const int end = remove ? std::min(last, first + 1) : last;
+    const std::string text = remove ? fmt::format("delete {} {}:{}", mine_called, first, end)
+                                    : fmt::format("swap {} {} {}:{}", mine_called, other_called, first, end);
+    try {
+      edit(recording, text);
+    } catch (const Error&) {
+      continue;  // nothing there
+    }
+    for (int frame = first; frame <= end; ++frame) {
+      int& mine = table.x[static_cast<std::size_t>(a)][static_cast<std::size_t>(frame)];
+      if (remove) {
+        mine = 0;
+      } else {
+        std::swap(mine, table.x[static_cast<std::size_t>(b)][static_cast<std::size_t>(frame)]);
+      }
+    }
+  }
+  EXPECT_GT(recording.edits.size(), 100u);
+  EXPECT_EQ(picture(edited(recording)), table.picture());
+  recording.head = undone(recording.edits, recording.head, 1000);
+  EXPECT_EQ(picture(edited(recording)), before);
+}
+
+}  // namespace
+}  // namespace marey::edit

@@ -1,0 +1,26 @@
+// Filling a gap in a marker's path: the method is chosen by trying each on holes of the same length, cut into what was seen of the
+// same marker round about; how far it was off there is what the fill is expected to be off.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "marey/edit/operation.h"
+#include "marey/edit/tracks.h"
+
+namespace marey::edit {
+
+struct FillOptions {
+  std::optional<FillMethod> method = {};  ///< nothing: the one that did best
+  double longest_s = 1;                   ///< longer gaps stay open
+};
+
+/// The gaps of a track between its first and its last place, within `frames`, that can be filled, and how. What other tracks have
+/// filled or predicted tells nothing.
+std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::optional<FrameRange>& frames,
+                                    const FillOptions& options);
+
+/// The rows of a gap, filled as was decided. Throws Error where what it was decided on is not there any more.
+Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap);
+
+}  // namespace marey::edit

@@ -1,0 +1,291 @@
+#include "marey/edit/gap_methods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include "marey/geometry/rigid.h"
+
+namespace marey::edit {
+namespace {
+
+using Path = std::vector<Vector<3>>;
+using Dense = Eigen::MatrixXd;
+
+constexpr std::size_t kMostDonors = 12;
+constexpr std::size_t kFrameDonors = 5;  // whose frame the marker is carried in
+constexpr double kWeightFloor = 1e-3;    // m: donors more rigid than this count alike
+
+/// Adds to each place what makes the ends meet: `at_first` before the first place, `at_last` behind the last, straight between.
+void bend(Path& path, const Vector<3>& at_first, const Vector<3>& at_last) {
+  const double steps = static_cast<double>(path.size()) + 1;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / steps;
+    path[i] += (1 - share) * at_first + share * at_last;
+  }
+}
+
+bool has_ends(const Places& places, std::size_t marker, const Hole& hole) {
+  const auto& known = places.markers[marker].known;
+  return hole.first > 0 && hole.last + 1 < places.size() && known[hole.first - 1] != 0 && known[hole.last + 1] != 0;
+}
+
+/// How far two markers' distance wanders, as a standard deviation; nothing where few frames have both.
+std::optional<double> distance_deviation(const Places::Marker& a, const Places::Marker& b) {
+  double count = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < a.place.size(); ++i) {
+    if (a.known[i] == 0 || b.known[i] == 0) continue;
+    const double distance = (a.place[i] - b.place[i]).norm();
+    ++count;
+    sum += distance;
+    squares += distance * distance;
+  }
+  if (count < 10) return std::nullopt;
+  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+}
+
+/// The donors' shape, and where it stands in each frame: the frame in which the marker is carried along.
+class Carrier {
+ public:
+  /// The shape is the mean of the donors just before and after the hole.
+  Carrier(const Places& places, std::size_t marker, std::span<const std::size_t> donors, const Hole& hole)
+      : places_(&places),
+        donors_(donors.begin(), donors.begin() + static_cast<std::ptrdiff_t>(std::min(donors.size(), kFrameDonors))) {
+    for (const std::size_t donor : donors_) {
+      const double wander = distance_deviation(places.markers[marker], places.markers[donor]).value_or(1);
+      weights_.push_back(1 / (wander * wander + kWeightFloor * kWeightFloor));
+    }
+    shape_ = config(hole.first - 1);
+    const Path after = config(hole.last + 1);
+    if (const auto aligned = fit(after, shape_)) {
+      for (std::size_t i = 0; i < shape_.size(); ++i) shape_[i] = 0.5 * (shape_[i] + *aligned * after[i]);
+    }
+  }
+
+  /// world_from_shape; nothing where the donors lie on one line.
+  std::optional<geometry::Rigid3> at(std::size_t frame) const { return fit(shape_, config(frame)); }
+
+  bool knows(std::size_t frame) const {
+    return std::all_of(donors_.begin(), donors_.end(),
+                       [&](std::size_t donor) { return places_->markers[donor].known[frame] != 0; });
+  }
+
+ private:
+  Path config(std::size_t frame) const {
+    Path places;
+    for (const std::size_t donor : donors_) places.push_back(places_->markers[donor].place[frame]);
+    return places;
+  }
+
+  /// to ≈ fit · from, by weighted least squares (Kabsch 1976).
+  std::optional<geometry::Rigid3> fit(const Path& from, const Path& to) const {
+    if (from.size() < 3) return std::nullopt;
+    Vector<3> from_mean = Vector<3>::Zero(), to_mean = Vector<3>::Zero();
+    double weight = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      from_mean += weights_[i] * from[i];
+      to_mean += weights_[i] * to[i];
+      weight += weights_[i];
+    }
+    from_mean /= weight;
+    to_mean /= weight;
+    Matrix<3> cross = Matrix<3>::Zero();
+    for (std::size_t i = 0; i < from.size(); ++i)
+      cross += weights_[i] / weight * (to[i] - to_mean) * (from[i] - from_mean).transpose();
+    const Eigen::JacobiSVD<Matrix<3>> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (svd.singularValues()[1] < 1e-6) return std::nullopt;  // m²: within a millimetre of one line
+    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    geometry::Rigid3 result;
+    result.rotation = svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    result.translation = to_mean - result.rotation * from_mean;
+    return result;
+  }
+
+  const Places* places_;
+  std::vector<std::size_t> donors_;
+  std::vector<double> weights_;
+  Path shape_;
+};
+
+/// A linear map from features to a place, learned by ridge regression on principal components.
+class Regression {
+ public:
+  /// Rows are frames.
+  Regression(const Dense& features, const Dense& places)
+      : feature_mean_(features.colwise().mean()), place_mean_(places.colwise().mean()) {
+    const Dense centred = features.rowwise() - feature_mean_.transpose();
+    const double frames = static_cast<double>(features.rows());
+    const Eigen::SelfAdjointEigenSolver<Dense> principal(centred.transpose() * centred / frames);
+    const Eigen::VectorXd& variance = principal.eigenvalues();  // growing
+    Eigen::Index components = 0;
+    const double enough = 1e-4 * variance.sum();
+    for (double left = variance.sum(); components < variance.size() && left > enough; ++components)
+      left -= variance[variance.size() - 1 - components];
+    components = std::min<Eigen::Index>(components, features.rows() / 8 + 1);
+    basis_ = principal.eigenvectors().rightCols(components);
+    const Dense scores = centred * basis_;
+    Dense normal = scores.transpose() * scores;
+    normal.diagonal().array() += frames * kNoise * kNoise;
+    map_ = normal.ldlt().solve(scores.transpose() * (places.rowwise() - place_mean_.transpose()));
+  }
+
+  Vector<3> operator()(const Eigen::VectorXd& features) const {
+    return place_mean_ + map_.transpose() * (basis_.transpose() * (features - feature_mean_));
+  }
+
+ private:
+  static constexpr double kNoise = 1e-3;  // m, of a feature
+
+  Eigen::VectorXd feature_mean_;
+  Vector<3> place_mean_;
+  Dense basis_, map_;
+};
+
+/// The donors' places in the carrier's frame.
+Eigen::VectorXd features_at(const Places& places, std::span<const std::size_t> donors, const geometry::Rigid3& shape_from_world,
+                            std::size_t frame) {
+  Eigen::VectorXd features(3 * std::ssize(donors));
+  for (std::size_t i = 0; i < donors.size(); ++i)
+    features.segment<3>(3 * static_cast<Eigen::Index>(i)) = shape_from_world * places.markers[donors[i]].place[frame];
+  return features;
+}
+
+/// Frames that have the marker and all donors, outside both holes: six hundred at most, spread evenly.
+std::vector<std::size_t> frames_to_learn_from(const Places& places, std::size_t marker, std::span<const std::size_t> donors,
+                                              const Hole& hole, const Hole& hidden) {
+  std::vector<std::size_t> frames;
+  for (std::size_t frame = 0; frame < places.size(); ++frame) {
+    const auto in = [&](const Hole& one) { return one.first <= frame && frame <= one.last; };
+    const auto known = [&](std::size_t one) { return places.markers[one].known[frame] != 0; };
+    if (!in(hole) && !in(hidden) && known(marker) && std::all_of(donors.begin(), donors.end(), known)) frames.push_back(frame);
+  }
+  constexpr std::size_t kMost = 600;
+  if (frames.size() <= kMost) return frames;
+  std::vector<std::size_t> fewer;
+  for (std::size_t i = 0; i < kMost; ++i) fewer.push_back(frames[i * frames.size() / kMost]);
+  return fewer;
+}
+
+/// A polynomial over `t` by least squares, a column of coefficients for each coordinate; t is scaled to about one.
+Dense fitted(const std::vector<double>& t, const Path& path, int degree) {
+  Dense powers(std::ssize(t), degree + 1), values(std::ssize(t), 3);
+  for (Eigen::Index i = 0; i < std::ssize(t); ++i) {
+    double power = 1;
+    for (int k = 0; k <= degree; ++k, power *= t[static_cast<std::size_t>(i)]) powers(i, k) = power;
+    values.row(i) = path[static_cast<std::size_t>(i)].transpose();
+  }
+  return (powers.transpose() * powers).ldlt().solve(powers.transpose() * values);
+}
+
+Vector<3> value_of(const Dense& polynomial, double t) {
+  Vector<3> value = Vector<3>::Zero();
+  for (Eigen::Index k = polynomial.rows() - 1; k >= 0; --k) value = value * t + polynomial.row(k).transpose();
+  return value;
+}
+
+}  // namespace
+
+bool Places::Marker::spans(const Hole& hole) const {
+  if (hole.first == 0 || hole.last + 1 >= known.size()) return false;
+  const auto begin = known.begin() + static_cast<std::ptrdiff_t>(hole.first) - 1;
+  return std::all_of(begin, begin + static_cast<std::ptrdiff_t>(hole.size()) + 2, [](char one) { return one != 0; });
+}
+
+std::vector<std::size_t> donors_of(const Places& places, std::size_t marker, const Hole& hole) {
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t other = 0; other < places.markers.size(); ++other) {
+    if (other == marker || !places.markers[other].spans(hole)) continue;
+    if (const auto wander = distance_deviation(places.markers[marker], places.markers[other])) ranked.emplace_back(*wander, other);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::size_t> donors;
+  for (const auto& [wander, donor] : ranked) {
+    if (donors.size() < kMostDonors) donors.push_back(donor);
+  }
+  return donors;
+}
+
+std::optional<Path> spline_fill(const Places& places, std::size_t marker, const Hole& hole) {
+  if (!has_ends(places, marker, hole)) return std::nullopt;
+  const Places::Marker& seen = places.markers[marker];
+  const std::size_t reach = std::clamp<std::size_t>(hole.size() / 2 + 1, 4, 16);
+  const double middle = 0.5 * static_cast<double>(hole.first + hole.last),
+               scale = 0.5 * static_cast<double>(hole.size()) + static_cast<double>(reach);
+  const auto scaled = [&](std::size_t frame) { return (static_cast<double>(frame) - middle) / scale; };
+  std::vector<double> t;
+  Path path;
+  const auto take = [&](std::size_t frame) {
+    if (seen.known[frame] == 0) return false;
+    t.push_back(scaled(frame));
+    path.push_back(seen.place[frame]);
+    return true;
+  };
+  for (std::size_t i = 1; i <= reach && i <= hole.first && take(hole.first - i); ++i) {
+  }
+  const std::size_t before = t.size();
+  for (std::size_t i = 1; i <= reach && hole.last + i < places.size() && take(hole.last + i); ++i) {
+  }
+  const std::size_t fewer = std::min(before, t.size() - before);
+  const Dense polynomial = fitted(t, path, fewer >= 4 ? 5 : fewer >= 2 ? 3 : 1);
+  Path filled;
+  for (std::size_t frame = hole.first; frame <= hole.last; ++frame) filled.push_back(value_of(polynomial, scaled(frame)));
+  bend(filled, seen.place[hole.first - 1] - value_of(polynomial, scaled(hole.first - 1)),
+       seen.place[hole.last + 1] - value_of(polynomial, scaled(hole.last + 1)));
+  return filled;
+}
+
+std::optional<Path> rigid_fill(const Places& places, std::size_t marker, const Hole& hole, std::span<const std::size_t> donors) {
+  if (donors.size() < 3 || !has_ends(places, marker, hole)) return std::nullopt;
+  const Places::Marker& seen = places.markers[marker];
+  const Carrier carrier(places, marker, donors, hole);
+  const auto before = carrier.at(hole.first - 1), after = carrier.at(hole.last + 1);
+  if (!before || !after) return std::nullopt;
+  Path filled(hole.size(), before->inverse() * seen.place[hole.first - 1]);
+  bend(filled, Vector<3>::Zero(), after->inverse() * seen.place[hole.last + 1] - filled.front());
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const auto pose = carrier.at(hole.first + i);
+    if (!pose) return std::nullopt;
+    filled[i] = *pose * filled[i];
+  }
+  return filled;
+}
+
+std::optional<Path> pattern_fill(const Places& places, std::size_t marker, const Hole& hole, std::span<const std::size_t> donors,
+                                 const Hole& hidden) {
+  if (donors.size() < 4 || !has_ends(places, marker, hole)) return std::nullopt;
+  const Places::Marker& seen = places.markers[marker];
+  const Carrier carrier(places, marker, donors, hole);
+  const std::vector<std::size_t> frames = frames_to_learn_from(places, marker, donors, hole, hidden);
+  if (frames.size() < 40) return std::nullopt;
+  Dense features(std::ssize(frames), 3 * std::ssize(donors)), targets(std::ssize(frames), 3);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto pose = carrier.at(frames[i]);
+    if (!pose) return std::nullopt;
+    const geometry::Rigid3 shape_from_world = pose->inverse();
+    const auto row = static_cast<Eigen::Index>(i);
+    features.row(row) = features_at(places, donors, shape_from_world, frames[i]).transpose();
+    targets.row(row) = (shape_from_world * seen.place[frames[i]]).transpose();
+  }
+  const Regression told(features, targets);
+  Path filled;
+  std::vector<geometry::Rigid3> poses;
+  for (std::size_t frame = hole.first - 1; frame <= hole.last + 1; ++frame) {
+    const auto pose = carrier.at(frame);
+    if (!pose) return std::nullopt;
+    poses.push_back(*pose);
+    filled.push_back(told(features_at(places, donors, pose->inverse(), frame)));
+  }
+  const Vector<3> at_first = poses.front().inverse() * seen.place[hole.first - 1] - filled.front();
+  const Vector<3> at_last = poses.back().inverse() * seen.place[hole.last + 1] - filled.back();
+  filled.erase(filled.begin());
+  filled.pop_back();
+  bend(filled, at_first, at_last);
+  for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = poses[i + 1] * filled[i];
+  return filled;
+}
+
+}  // namespace marey::edit

@@ -1,0 +1,157 @@
+#include "marey/edit/operation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+
+namespace marey::edit {
+namespace {
+
+using nlohmann::json;
+using Kind = Operation::Kind;
+
+constexpr std::array<std::pair<Kind, std::string_view>, 7> kKinds{{{Kind::rename, "rename"},
+                                                                   {Kind::swap, "swap"},
+                                                                   {Kind::split, "split"},
+                                                                   {Kind::join, "join"},
+                                                                   {Kind::remove, "delete"},
+                                                                   {Kind::fill, "fill"},
+                                                                   {Kind::filter, "filter"}}};
+constexpr std::array<std::pair<FillMethod, std::string_view>, 3> kMethods{
+    {{FillMethod::spline, "spline"}, {FillMethod::rigid, "rigid"}, {FillMethod::pattern, "pattern"}}};
+
+template <typename Value, std::size_t Count>
+std::string_view name_in(const std::array<std::pair<Value, std::string_view>, Count>& names, Value value) {
+  return std::find_if(names.begin(), names.end(), [&](const auto& known) { return known.first == value; })->second;
+}
+
+template <typename Value, std::size_t Count>
+std::optional<Value> value_in(const std::array<std::pair<Value, std::string_view>, Count>& names, std::string_view name) {
+  const auto known = std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.second == name; });
+  return known == names.end() ? std::nullopt : std::optional(known->first);
+}
+
+json ids(const std::vector<TrackId>& tracks) {
+  json list = json::array();
+  for (const TrackId track : tracks) list.push_back(number(track));
+  return list;
+}
+
+TrackId track_of(const json& value) {
+  const auto id = value.get<std::int64_t>();
+  if (id <= 0 || id > std::int64_t{1} << 31) throw json::other_error::create(500, "a track's id", &value);
+  return TrackId{static_cast<int>(id)};
+}
+
+std::vector<TrackId> tracks_of(const json& list) {
+  std::vector<TrackId> tracks;
+  for (const json& id : list) tracks.push_back(track_of(id));
+  return tracks;
+}
+
+FrameRange range_of(const json& value) {
+  const FrameRange frames{value.at(0).get<std::int64_t>(), value.at(1).get<std::int64_t>()};
+  if (frames.last < frames.first) throw json::other_error::create(500, "a range", &value);
+  return frames;
+}
+
+double positive(const json& value) {
+  const double number = value.get<double>();
+  if (!(std::isfinite(number) && number >= 0)) throw json::other_error::create(500, "a number", &value);
+  return number;
+}
+
+FilledGap gap_of(const json& value) {
+  FilledGap gap{.track = track_of(value.at("track")),
+                .frames = range_of(value.at("frames")),
+                .donors = tracks_of(value.value("donors", json::array())),
+                .expected_m = positive(value.at("expected_m"))};
+  const auto method = method_named(value.at("method").get<std::string>());
+  if (!method) throw json::other_error::create(500, "a method", &value);
+  gap.method = *method;
+  return gap;
+}
+
+/// How many tracks an operation names at least, and at most.
+std::pair<std::size_t, std::size_t> tracks_wanted(Kind kind) {
+  if (kind == Kind::rename || kind == Kind::split) return {1, 1};
+  if (kind == Kind::swap || kind == Kind::join) return {2, 2};
+  if (kind == Kind::fill) return {0, 0};
+  return {1, SIZE_MAX};
+}
+
+Operation parsed(Kind kind, const json& payload) {
+  Operation operation{.kind = kind};
+  operation.tracks = tracks_of(payload.value("tracks", json::array()));
+  if (payload.contains("frames")) operation.frames = range_of(payload["frames"]);
+  operation.label = payload.value("label", std::string());
+  if (payload.contains("born")) operation.born = track_of(payload["born"]);
+  for (const json& gap : payload.value("gaps", json::array())) operation.gaps.push_back(gap_of(gap));
+  for (const json& cutoff : payload.value("cutoffs_hz", json::array())) operation.cutoffs_hz.push_back(positive(cutoff));
+  const auto [fewest, most] = tracks_wanted(kind);
+  const bool whole = operation.tracks.size() >= fewest && operation.tracks.size() <= most &&
+                     (kind != Kind::split || (operation.born && operation.frames)) &&
+                     (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());
+  if (!whole) throw json::other_error::create(500, "its parts", &payload);
+  return operation;
+}
+
+}  // namespace
+
+std::string_view name_of(Kind kind) {
+  return name_in(kKinds, kind);
+}
+
+std::optional<Kind> kind_named(std::string_view name) {
+  return value_in(kKinds, name);
+}
+
+std::string_view name_of(FillMethod method) {
+  return name_in(kMethods, method);
+}
+
+std::optional<FillMethod> method_named(std::string_view name) {
+  return value_in(kMethods, name);
+}
+
+Edit edit_of(const Operation& operation) {
+  json payload = json::object();
+  if (!operation.tracks.empty()) payload["tracks"] = ids(operation.tracks);
+  if (operation.frames) payload["frames"] = {operation.frames->first, operation.frames->last};
+  if (!operation.label.empty()) payload["label"] = operation.label;
+  if (operation.born) payload["born"] = number(*operation.born);
+  for (const FilledGap& gap : operation.gaps) {
+    json entry{{"track", number(gap.track)},
+               {"frames", {gap.frames.first, gap.frames.last}},
+               {"method", name_of(gap.method)},
+               {"expected_m", gap.expected_m}};
+    if (!gap.donors.empty()) entry["donors"] = ids(gap.donors);
+    payload["gaps"].push_back(std::move(entry));
+  }
+  if (!operation.cutoffs_hz.empty()) payload["cutoffs_hz"] = operation.cutoffs_hz;
+  return {.id = 0,
+          .parent = {},
+          .operation = std::string(name_of(operation.kind)),
+          .payload = payload.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+bool is_known(const Edit& edit) {
+  return edit.operation == "note" || kind_named(edit.operation);
+}
+
+std::optional<Operation> operation_of(const Edit& edit) {
+  const auto kind = kind_named(edit.operation);
+  if (!kind) return std::nullopt;
+  try {
+    return parsed(*kind, json::parse(edit.payload));
+  } catch (const json::exception&) {
+    throw Error("edit {} ({}) is damaged: what it was done to cannot be read", edit.id, edit.operation);
+  }
+}
+
+}  // namespace marey::edit

@@ -1,0 +1,212 @@
+#include "marey/edit/request.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "marey/core/error.h"
+#include "marey/core/text_safety.h"
+
+namespace marey::edit {
+namespace {
+
+using Kind = Operation::Kind;
+
+constexpr std::string_view kKnown = "rename, swap, split, join, delete, fill and filter are known";
+
+struct Word {
+  std::string text;
+  bool quoted = false;
+};
+
+/// Words between blanks, and within them lists between commas, as a list of lists.
+std::vector<std::vector<Word>> words_of(std::string_view text) {
+  std::vector<std::vector<Word>> words;
+  bool open = false;  // within a word
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == ' ' || c == '\t') {
+      open = false;
+      ++i;
+      continue;
+    }
+    if (!open) words.emplace_back(1);
+    open = true;
+    if (c == ',') {
+      words.back().emplace_back();
+      ++i;
+    } else if (c == '"') {
+      const std::size_t end = text.find('"', i + 1);
+      if (end == std::string_view::npos) throw Error("a name begins with \" and does not end");
+      words.back().back().text += text.substr(i + 1, end - i - 1);
+      words.back().back().quoted = true;
+      i = end + 1;
+    } else {
+      words.back().back().text += c;
+      ++i;
+    }
+  }
+  return words;
+}
+
+template <typename Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
+  return value;
+}
+
+std::optional<FrameRange> range_in(const Word& word) {
+  const std::size_t colon = word.text.find(':');
+  if (word.quoted || colon == std::string::npos) return std::nullopt;
+  const std::string_view first = std::string_view(word.text).substr(0, colon), last = std::string_view(word.text).substr(colon + 1);
+  constexpr std::int64_t kLast = std::numeric_limits<std::int32_t>::max();
+  const auto begin = first.empty() ? std::optional<std::int64_t>(0) : number_in<std::int64_t>(first);
+  const auto end = last.empty() ? std::optional<std::int64_t>(kLast) : number_in<std::int64_t>(last);
+  if (!begin || !end) return std::nullopt;
+  if (*begin < 0 || *end < *begin || *end > kLast) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", word.text);
+  return FrameRange{*begin, *end};
+}
+
+/// What is left to be read of a request.
+class Reader {
+ public:
+  Reader(std::string_view kind, std::span<const std::vector<Word>> words) : kind_(kind), words_(words) {}
+
+  bool ended() const { return words_.empty(); }
+
+  std::vector<std::string> tracks(const char* what) {
+    if (ended()) throw Error("{}: {} is missing", kind_, what);
+    std::vector<std::string> names;
+    for (const Word& word : words_.front()) {
+      if (word.text.empty()) throw Error("{}: a name is empty", kind_);
+      names.push_back(word.text);
+    }
+    words_ = words_.subspan(1);
+    return names;
+  }
+
+  std::string name(const char* what) {
+    const std::vector<std::string> names = tracks(what);
+    if (names.size() != 1) throw Error("{}: {} is one name; one with commas stands in double quotes", kind_, what);
+    return names.front();
+  }
+
+  /// The next word, where it is of this kind.
+  template <typename Value>
+  std::optional<Value> next(std::optional<Value> (*of)(const Word&)) {
+    if (ended() || words_.front().size() != 1) return std::nullopt;
+    const auto value = of(words_.front().front());
+    if (value) words_ = words_.subspan(1);
+    return value;
+  }
+
+  void end() const {
+    if (!ended()) throw Error("{}: \"{}\" is too much", kind_, words_.front().front().text);
+  }
+
+ private:
+  std::string_view kind_;
+  std::span<const std::vector<Word>> words_;
+};
+
+std::optional<FillMethod> method_in(const Word& word) {
+  return word.quoted ? std::nullopt : method_named(word.text);
+}
+
+std::optional<double> longest_in(const Word& word) {
+  if (!word.text.starts_with("longest=")) return std::nullopt;
+  const auto value = number_in<double>(std::string_view(word.text).substr(8));
+  if (!value || !(*value > 0 && *value <= 60)) throw Error("fill: {} is none; longest is from 0 to 60 s", word.text);
+  return value;
+}
+
+std::optional<double> cutoff_in(const Word& word) {
+  if (word.quoted || word.text.find(':') != std::string::npos) return std::nullopt;
+  const auto value = number_in<double>(word.text);
+  if (!value || !(*value > 0 && *value <= 10'000))
+    throw Error("filter: \"{}\" is no cut-off; it is in Hz, above 0, or auto", word.text);
+  return value;
+}
+
+std::optional<bool> auto_in(const Word& word) {
+  return word.text == "auto" ? std::optional(true) : std::nullopt;
+}
+
+std::optional<std::int64_t> frame_in(const Word& word) {
+  const auto frame = number_in<std::int64_t>(word.text);
+  return frame && *frame >= 0 && *frame <= std::numeric_limits<std::int32_t>::max() ? frame : std::nullopt;
+}
+
+void read_fill(Reader& words, Request& request) {
+  while (!words.ended()) {
+    if (const auto frames = words.next(range_in)) {
+      request.frames = frames;
+    } else if (const auto method = words.next(method_in)) {
+      request.method = method;
+    } else if (const auto longest = words.next(longest_in)) {
+      request.longest_s = *longest;
+    } else {
+      break;
+    }
+  }
+}
+
+void read_filter(Reader& words, Request& request) {
+  if (!words.next(auto_in)) request.cutoff_hz = words.next(cutoff_in);
+  request.frames = words.next(range_in);
+}
+
+void read(Reader& words, Request& request) {
+  switch (request.kind) {
+    case Kind::rename:
+      request.tracks = {words.name("the track")};
+      request.label = words.name("its new name");
+      break;
+    case Kind::swap:
+    case Kind::join:
+      request.tracks = {words.name("the first track"), words.name("the second track")};
+      if (request.kind == Kind::swap) request.frames = words.next(range_in);
+      break;
+    case Kind::split: {
+      request.tracks = {words.name("the track")};
+      const auto frame = words.next(frame_in);
+      if (!frame) throw Error("split: the frame from which on it is another track is missing");
+      request.frames = {*frame, *frame};
+      if (!words.ended()) request.label = words.name("its new name");
+      break;
+    }
+    case Kind::remove:
+      request.tracks = words.tracks("the track");
+      request.frames = words.next(range_in);
+      break;
+    case Kind::fill:
+      request.tracks = words.tracks("the track, or all,");
+      read_fill(words, request);
+      break;
+    case Kind::filter:
+      request.tracks = words.tracks("the track, or all,");
+      read_filter(words, request);
+      break;
+  }
+  words.end();
+}
+
+}  // namespace
+
+Request parse_request(std::string_view text) {
+  const std::vector<std::vector<Word>> words = words_of(text);
+  if (words.empty()) throw Error("an edit is empty; {}", kKnown);
+  const std::string& word = words.front().front().text;
+  const auto kind = words.front().size() == 1 ? kind_named(word) : std::nullopt;
+  if (!kind) throw Error("\"{}\" is no edit; {}", plain_text(word), kKnown);
+  Request request{.kind = *kind};
+  Reader rest(word, std::span(words).subspan(1));
+  read(rest, request);
+  return request;
+}
+
+}  // namespace marey::edit

@@ -1,0 +1,39 @@
+#include "marey/format/take/take_edits.h"
+
+#include <string_view>
+
+#include "marey/core/error.h"
+#include "marey/core/file_lock.h"
+#include "marey/format/take/sqlite.h"
+#include "marey/format/take/take_file.h"
+#include "marey/format/take/take_schema.h"
+
+namespace marey::format::take {
+
+void add_edits(const std::string& path, std::span<const Edit> more, std::optional<std::int64_t> head) {
+  const TakeReader whole(path);  // says what is wrong with it
+  const FileLock lock(path);
+  Database database(path, Database::Mode::create);
+  if (database.number("PRAGMA user_version") < kTakeSchemaVersion)
+    throw Error("{}: is a take of an earlier version of Marey; bring it up to date with \"marey convert {} NEW.marey\"", path,
+                path);
+  database.run("BEGIN IMMEDIATE");
+  Statement add(database, "INSERT INTO edit VALUES (?, ?, ?, ?)");
+  for (const Edit& edit : more) {
+    add.bind(0, edit.id);
+    if (edit.parent) {
+      add.bind(1, *edit.parent);
+    } else {
+      add.bind_null(1);
+    }
+    add.bind(2, std::string_view(edit.operation));
+    add.bind(3, std::string_view(edit.payload));
+    add.run();
+  }
+  Statement set(database, "INSERT OR REPLACE INTO take VALUES ('head', ?)");
+  set.bind(0, head.value_or(0));
+  set.run();
+  if (!database.commit()) throw Error("{}: another program holds it; try again", path);
+}
+
+}  // namespace marey::format::take

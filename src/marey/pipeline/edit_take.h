@@ -1,0 +1,47 @@
+// Edits of a take that is there: each is decided on what the ones before it made of the take, then all are kept, or none.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/hooks.h"
+#include "marey/core/recording.h"
+#include "marey/edit/operation.h"
+
+namespace marey::pipeline {
+
+/// One edit as it was asked for, and where: "line 3" of a script.
+struct EditRequest {
+  std::string text;
+  std::string where;
+};
+
+/// A script of edits: one a line, `#` begins a remark. Throws Error where it cannot be read.
+std::vector<EditRequest> read_edit_script(const std::string& path);
+
+/// An edit as it was done.
+struct DoneEdit {
+  Edit edit;
+  std::optional<edit::Operation> operation;  ///< nothing for a note, or what a later version of Marey did
+};
+
+/// What was done to a take.
+struct EditHistory {
+  std::vector<DoneEdit> edits;         ///< all there are, by id
+  std::vector<std::int64_t> counting;  ///< ids of those that count, from the first to the head
+  std::vector<TrackName> tracks;       ///< as recorded
+};
+
+EditHistory edit_history(const std::string& path);
+
+/// Throws Error, with where it was asked for, at the first that cannot be done; then nothing is. Returns them as they were done.
+std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditRequest>& requests, const Hooks& hooks = {});
+
+/// Goes back (steps < 0) or on along the branch that was taken last, and returns the head then; nothing: what was recorded.
+std::optional<std::int64_t> move_head(const std::string& path, std::int64_t steps);
+/// Lets the edits up to this one count; 0: none. Throws Error where there is no such edit.
+void set_head(const std::string& path, std::int64_t id);
+
+}  // namespace marey::pipeline
