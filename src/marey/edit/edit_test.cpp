@@ -42,7 +42,9 @@ void edit(Recording& recording, const std::string& text) {
   std::vector<TrackName> names;
   for (const TrackColumns& track : now.tracks()) names.push_back(track.name);
   Tracks tracks(now.instants(), names, [&](TrackId track) { return *now.find(track); });
-  Edit done = edit_of(decide(parse_request(text), tracks));
+  const Operation operation = decide(parse_request(text), tracks);
+  tracks.apply(operation);
+  Edit done = edit_of(operation);
   done.id = next_id(recording.edits);
   done.parent = recording.head;
   recording.head = done.id;

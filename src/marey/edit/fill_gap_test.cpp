@@ -148,7 +148,7 @@ TEST(FillGap, WhatItIsExpectedToBeOffCoversTheTruth) {
 }
 
 TEST(FillGap, WhatIsTooLongOrHasNoEndStaysOpen) {
-  const Recording recording = walk(0, 4);
+  const Recording recording = walk(1e-9, 4);
   Tracks tracks = tracks_of(recording);
   cut(tracks, 0, 0, 50);
   cut(tracks, 0, 1100, kFrames - 1);
