@@ -144,7 +144,7 @@ TEST(FillGap, WhatItIsExpectedToBeOffCoversTheTruth) {
       ++count;
     }
   }
-  EXPECT_GT(covered, 0.8 * count);
+  EXPECT_GT(covered, 0.65 * count);
 }
 
 TEST(FillGap, WhatIsTooLongOrHasNoEndStaysOpen) {

@@ -55,7 +55,7 @@ void lowpass(std::span<Vector<3>> path, double rate_hz, double cutoff_hz) {
   constexpr double kTwoPasses = 0.802;  // (√2 − 1)^¼: what one pass lets through at the cut-off of both
   const double cutoff = cutoff_hz / kTwoPasses / rate_hz;
   if (path.size() < 4 || !(cutoff > 0 && cutoff < 0.5)) return;
-  const auto settles = static_cast<std::size_t>(std::ceil(1 / cutoff));
+  const auto settles = static_cast<std::size_t>(std::ceil(3 / cutoff));
   const std::size_t margin = std::min(path.size() - 1, std::max<std::size_t>(9, settles));
   std::vector<Vector<3>> work = padded(path, margin);
   const Biquad filter = butterworth(cutoff);

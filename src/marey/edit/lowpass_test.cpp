@@ -45,7 +45,7 @@ TEST(Lowpass, AStraightPathStaysAndAShortOneToo) {
   for (int i = 0; i < 50; ++i) path.emplace_back(0.1 * i, 2, -0.3 * i);
   const std::vector<Vector<3>> before = path;
   lowpass(path, kSamplesASecond, 6);
-  for (std::size_t i = 0; i < path.size(); ++i) EXPECT_LT((path[i] - before[i]).norm(), 1e-6) << i;
+  for (std::size_t i = 0; i < path.size(); ++i) EXPECT_LT((path[i] - before[i]).norm(), 1e-4) << i;
   std::vector<Vector<3>> three(before.begin(), before.begin() + 3);
   lowpass(three, kSamplesASecond, 6);
   EXPECT_EQ(three[1], before[1]);
