@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 
 #include "access.h"
 #include "film_pictures.h"
@@ -21,6 +23,29 @@ namespace {
 
 enum RecordingTopic { kSceneChanged, kFilmPicture };
 constexpr std::chrono::milliseconds kBetweenReports{300};
+
+/// A match that was read whole, as a reader that owns it.
+class OwningReader : public format::FileReader {
+ public:
+  explicit OwningReader(format::match::GroundMatch match)
+      : match_(std::move(match)), reader_(format::reader_of(match_.recording)) {}
+  const format::FileInfo& info() const override { return reader_->info(); }
+  std::optional<Instant> next() override { return reader_->next(); }
+  std::vector<std::string> warnings() const override { return match_.warnings; }
+
+ private:
+  format::match::GroundMatch match_;
+  std::unique_ptr<format::FileReader> reader_;
+};
+
+/// Formats of matches tell how large the pitch is, which a recording does not.
+std::unique_ptr<format::FileReader> opened(const std::string& path, const ViewOptions& options, GroundChoice& ground) {
+  const format::Format& format = format::format_to_read(path, format::kRecordings);
+  if (!format.from_corner || format.read == nullptr) return format::open_recording(path, format, options.read);
+  format::match::GroundMatch match = format::read_whole(path, format, options.read);
+  if (!ground.pitch) ground.pitch = match.pitch;
+  return std::make_unique<OwningReader>(std::move(match));
+}
 
 }  // namespace
 
@@ -48,7 +73,7 @@ class RecordingViewer::Core {
 
 RecordingViewer::Core::Core(const std::string& path, const ViewOptions& options)
     : ground_(options.ground),
-      reader_(format::open_recording(path, options.read)),
+      reader_(opened(path, options, ground_)),
       header_(reader_->header()),
       recording_(header_, reader_->tracks()) {
   header_.name = std::filesystem::path(path).filename().string();

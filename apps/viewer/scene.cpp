@@ -39,6 +39,7 @@ Json json_of(const RecordingState::Course& course) {
   track["measured"] = course.measured;
   track["first"] = course.first_s;
   track["last"] = course.last_s;
+  track["within"] = course.last_instant - course.first_instant + 1;
   return track;
 }
 

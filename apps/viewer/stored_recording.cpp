@@ -61,11 +61,16 @@ void StoredRecording::add(const Instant& instant) {
     for (const Sample& row : instant.samples) {
       RecordingState::Course& course = courses_[row.track];
       course.name.id = row.track;
-      if (course.rows++ == 0) course.first_s = seconds(instant.time);
+      if (course.rows++ == 0) {
+        course.first_s = seconds(instant.time);
+        course.first_instant = added_;
+      }
       course.measured += row.measured() ? 1 : 0;
       course.last_s = seconds(instant.time);
+      course.last_instant = added_;
       sample(row.position);
     }
+    ++added_;
   }
   open_rows_ += std::ssize(instant.samples) + std::ssize(instant.bodies);
   open_.push_back({.index = instant.index,

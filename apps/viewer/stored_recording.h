@@ -31,6 +31,7 @@ struct RecordingState {
     TrackName name;
     std::int64_t rows = 0, measured = 0;
     double first_s = 0, last_s = 0;
+    std::int64_t first_instant = 0, last_instant = 0;  ///< counted from 0
   };
 
   std::vector<Stretch> stretches;
@@ -66,7 +67,7 @@ class StoredRecording {
 
   WireColumns columns_;
   std::vector<Instant> open_;  // the stretch that is being filled
-  std::int64_t open_rows_ = 0;
+  std::int64_t open_rows_ = 0, added_ = 0;
 
   mutable std::mutex mutex_;  // for what follows
   RecordingState state_;

@@ -157,8 +157,7 @@ class Page {
       if (live) return live.seen(track.id);
       if (scene.frame === "space") return (track.measured ?? 0) / whole;
       // Of somebody who comes and goes: while the track lasts.
-      const lasts = Math.max(1, Math.round(((track.last ?? 0) - (track.first ?? 0)) * scene.rate) + 1);
-      return Math.min(1, (track.measured ?? 0) / lasts);
+      return (track.measured ?? 0) / Math.max(1, track.within ?? 1);
     });
     this.cameras.take(scene);
     this.plots.forget();

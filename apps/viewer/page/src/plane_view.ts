@@ -250,7 +250,7 @@ export class PlaneView implements View {
   private draw_people(moment: Moment): void {
     const { stretch, k } = moment;
     const draw = this.overlay.draw;
-    const radius = Math.max(6, Math.min(16, 0.011 * 113 * this.scale));
+    const radius = Math.max(7.5, Math.min(15, 1.25 * this.scale));
     const marks: Mark[] = [];
     draw.textAlign = "center";
     draw.textBaseline = "middle";

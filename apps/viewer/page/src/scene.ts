@@ -12,6 +12,8 @@ export interface Track {
   measured?: number;
   first?: number;
   last?: number;
+  /** Instants from its first to its last. */
+  within?: number;
 }
 
 export interface Camera {
