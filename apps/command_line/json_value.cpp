@@ -69,4 +69,8 @@ void print(const Json& json) {
   fmt::print("{}\n", JsonWriter::written(json).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+std::string compact(const Json& json) {
+  return JsonWriter::written(json).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace marey::cli

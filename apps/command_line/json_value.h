@@ -75,4 +75,7 @@ inline Json path_or_null(const std::string& path) {
 /// On standard output, two blanks deep, with a newline behind it. Bytes that are no UTF-8 become U+FFFD.
 void print(const Json& json);
 
+/// On one line, for programs. Likewise.
+std::string compact(const Json& json);
+
 }  // namespace marey::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "command_line.h"
+#include "viewer/web_server.h"
+
+namespace marey::cli {
+
+/// --listen and --port, of every command that shows a page.
+void add_web_place(Command& command, viewer::WebPlace& place);
+
+/// Returns when the command is asked to stop.
+void wait_for_stop();
+
+}  // namespace marey::cli

@@ -1,0 +1,55 @@
+// Who may talk to the viewer. A page of any other site that is open in the same browser can reach every port of this machine, and
+// browsers hold WebSockets to no same-origin policy: so every request must name this machine as its Host (against DNS rebinding),
+// come from our own page where it says where it comes from (Origin), and bring the token.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace marey::viewer {
+
+/// The lines of a request that count here, as they came. Empty where they did not.
+struct RequestHead {
+  std::string method;
+  std::string target;  ///< "/scene?token=…"
+  std::string host;    ///< "127.0.0.1:8780"
+  std::string origin;
+  std::string cookie;
+  std::string authorization;
+  bool upgrade = false;  ///< to a WebSocket
+};
+
+/// What a target is made of. Nothing is decoded: our own paths and values need no escapes.
+std::string_view path_of(std::string_view target);
+/// The value of `name` in the query; empty where it is not there.
+std::string_view query_value(std::string_view target, std::string_view name);
+
+class Access {
+ public:
+  struct Verdict {
+    int status = 200;      ///< 200, or what a refusal says
+    std::string sentence;  ///< of a refusal
+    bool by_link = false;  ///< the token stood in the address: the answer is to set the cookie
+  };
+
+  /// `cookie` is the cookie's name, another one for each port, since browsers do not tell ports apart. `hosts` are names of this
+  /// machine beside "localhost"; addresses in digits are taken always, for no name server stands behind them.
+  Access(std::string token, std::string cookie, std::vector<std::string> hosts);
+
+  Verdict check(const RequestHead& head) const;
+  const std::string& token() const { return token_; }
+  /// The line that makes the browser bring the token from now on.
+  std::string set_cookie() const;
+
+ private:
+  bool is_this_machine(std::string_view host) const;
+
+  std::string token_, cookie_;
+  std::vector<std::string> hosts_;
+};
+
+/// 48 hexadecimal digits that nobody can guess. Throws Error where the system has none.
+std::string new_token();
+
+}  // namespace marey::viewer

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "marey/core/source.h"
+
+#include "jpeg.h"
+#include "web_server.h"
+
+namespace marey::viewer {
+
+/// The pictures of a film behind its tracks, on a thread of its own. Each page has one wish at a time, the newest. Forwards it
+/// reads on; backwards it begins anew, since not every film can be entered in its middle.
+class FilmPictures {
+ public:
+  /// `ready` gets a message of kind 3 (wire.h), on the film's thread. Throws Error where the film cannot be opened.
+  FilmPictures(const std::string& path, std::function<void(PageId, std::string)> ready);
+  ~FilmPictures();
+  FilmPictures(const FilmPictures&) = delete;
+  FilmPictures& operator=(const FilmPictures&) = delete;
+
+  /// `frame` counts from 0; `width` in px.
+  void ask(PageId page, std::int64_t frame, int width);
+  void forget(PageId page);
+  /// Calls `ready` no more.
+  void end();
+
+ private:
+  struct Wish {
+    std::int64_t frame = 0;
+    int width = 0;
+  };
+
+  void run();
+  void answer(PageId page, const Wish& wish);
+  /// Whether `held_` is the frame, or the last one before it.
+  bool read_to(std::int64_t frame);
+
+  std::string path_;
+  std::function<void(PageId, std::string)> ready_;
+  std::unique_ptr<Source> film_;
+  std::optional<Frame> held_;
+  JpegEncoder encoder_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<PageId, Wish> wishes_;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace marey::viewer

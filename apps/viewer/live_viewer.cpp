@@ -1,0 +1,361 @@
+#include "live_viewer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+
+#include "access.h"
+#include "jpeg.h"
+#include "json_value.h"
+#include "page_files.h"
+#include "page_words.h"
+#include "scene.h"
+#include "wire.h"
+
+namespace marey::viewer {
+namespace {
+
+enum LiveTopic { kLiveScene, kState, kStatus, kRecording, kSaid, kPong, kPictures };
+constexpr int kMostCameras = 64;
+
+std::uint64_t steady_ns() {
+  return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+WebServer::Message text_message(int topic, std::string text) {
+  return {.topic = topic, .bytes = bytes_of(std::move(text)), .text = true};
+}
+
+const char* state_name(FeedState state) {
+  switch (state) {
+    case FeedState::connecting:
+      return "connecting";
+    case FeedState::live:
+      return "live";
+    case FeedState::stalled:
+      return "stalled";
+    case FeedState::lost:
+      return "lost";
+    case FeedState::back:
+      return "back";
+    case FeedState::ended:
+      break;
+  }
+  return "ended";
+}
+
+std::string status_text(const LiveReport& report) {
+  cli::Json status{{"cameras", cli::Json::array()},
+                   {"steps", cli::Json::array()},
+                   {"overtaken", report.overtaken},
+                   {"notes", cli::Json(report.notes)}};
+  for (const LiveReport::Camera& camera : report.cameras) {
+    status["cameras"].push_back(
+        {{"state", state_name(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}});
+  }
+  for (const LiveReport::Step& step : report.steps)
+    status["steps"].push_back({{"name", step.name}, {"median", step.median}, {"p99", step.p99}});
+  return "status " + compact(status);
+}
+
+/// Which camera's picture a page shows, and how wide, px.
+using Watched = std::map<int, int>;
+
+Watched watched_by(std::string_view line) {
+  Watched watched;
+  while (true) {
+    const auto camera = whole_in(next_word(line), 0, kMostCameras - 1);
+    const auto width = whole_in(next_word(line), 16, 4096);
+    if (!camera || !width) return watched;
+    watched[static_cast<int>(*camera)] = static_cast<int>(*width);
+  }
+}
+
+}  // namespace
+
+class LiveViewer::Core {
+ public:
+  explicit Core(const LiveViewOptions& options);
+  ~Core();
+
+  std::string address() const { return server_->address(); }
+  WebServer::Count count() const { return server_->count(); }
+  void begin(const RecordingHeader& header);
+  void write(const Instant& instant);
+  void finish() { server_->publish(text_message(kSaid, "ended")); }
+  void report(const LiveReport& report);
+  void recording(bool on, const std::string& into);
+
+ private:
+  // On the server's thread.
+  WebAnswer get(std::string_view target);
+  void joined(PageId page);
+  void left(PageId page);
+  void received(PageId page, std::string_view line);
+  void record(PageId page, std::string_view word);
+  void watch(PageId page, Watched watched);
+
+  // On the pictures' thread.
+  void make_pictures();
+  void publish_picture(const Instant& instant, int camera, int width);
+
+  void keep_for_pictures(const Instant& instant);
+  void name_tracks(const Instant& instant);
+
+  LiveViewOptions options_;
+  std::atomic<std::uint32_t> written_ = 0;
+  WireColumns columns_;
+  std::map<PageId, Watched> watching_;  // the server's thread alone
+  std::set<PageId> asleep_;             // likewise
+
+  std::mutex mutex_;  // for what follows
+  std::condition_variable changed_;
+  RecordingHeader header_;
+  std::map<TrackId, TrackName> names_;
+  Watched widths_;  // of all pages, the widest of each camera
+  std::shared_ptr<const Instant> newest_;
+  std::string status_ = "status {}", recording_ = "recording off";
+  bool ending_ = false;
+
+  std::set<int> with_pictures_;  // the pictures' thread alone
+  JpegEncoder encoder_;          // likewise
+  std::unique_ptr<WebServer> server_;
+  std::thread pictures_;
+};
+
+LiveViewer::Core::Core(const LiveViewOptions& options) : options_(options) {
+  WebServer::Handlers handlers;
+  handlers.get = [this](std::string_view target) { return get(target); };
+  handlers.joined = [this](PageId page) { joined(page); };
+  handlers.left = [this](PageId page) { left(page); };
+  handlers.received = [this](PageId page, std::string_view line) { received(page, line); };
+  server_ = std::make_unique<WebServer>(options.place, std::move(handlers));
+  server_->start();
+  pictures_ = std::thread([this] { make_pictures(); });
+}
+
+LiveViewer::Core::~Core() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  pictures_.join();
+}
+
+void LiveViewer::Core::begin(const RecordingHeader& header) {
+  {
+    const std::lock_guard lock(mutex_);
+    header_ = header;
+    names_.clear();
+  }
+  columns_ = {.z = header.frame.dimensions() == 3, .boxes = header.frame.kind == FrameOfReference::Kind::image};
+  server_->publish(text_message(kLiveScene, "scene"));
+}
+
+void LiveViewer::Core::write(const Instant& instant) {
+  name_tracks(instant);
+  const std::uint32_t sequence = written_++;
+  if (server_->count().pages == 0) return;
+  keep_for_pictures(instant);
+  // A page that shows how late it is adds what passed between the capture and here, which only the run's clock can tell.
+  const std::uint64_t now_ns = steady_ns();
+  const std::uint64_t age_ns =
+      options_.now ? static_cast<std::uint64_t>(std::max<std::int64_t>(0, (options_.now() - instant.time).count())) : 0;
+  server_->publish({.topic = kState, .bytes = bytes_of(wire_of(instant, sequence, columns_, now_ns - age_ns)), .text = false},
+                   [this](PageId page) { return !asleep_.contains(page); });
+}
+
+void LiveViewer::Core::name_tracks(const Instant& instant) {
+  if (instant.named.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const TrackName& name : instant.named) names_[name.id] = name;
+  }
+  server_->publish(text_message(kLiveScene, "scene"));
+}
+
+void LiveViewer::Core::keep_for_pictures(const Instant& instant) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (widths_.empty()) return;
+  }
+  auto kept = std::make_shared<Instant>();
+  kept->index = instant.index;
+  kept->time = instant.time;
+  kept->seen = instant.seen;
+  kept->boxes = instant.boxes;
+  kept->frames = instant.frames;
+  if (header_.frame.kind == FrameOfReference::Kind::image) {
+    for (const Sample& sample : instant.samples) {
+      if (sample.box)
+        kept->boxes.push_back(
+            {header_.frame.camera.value_or(CameraId{}), instant.index, sample.track, *sample.box, {}, sample.measured()});
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  newest_ = std::move(kept);
+}
+
+void LiveViewer::Core::make_pictures() {
+  const std::chrono::duration<double> period(1 / options_.pictures_hz);
+  std::unique_lock lock(mutex_);
+  while (!changed_.wait_for(lock, period, [this] { return ending_; })) {
+    const std::shared_ptr<const Instant> instant = std::exchange(newest_, nullptr);
+    const Watched widths = widths_;
+    lock.unlock();
+    for (const auto& [camera, width] : widths) {
+      if (instant != nullptr) publish_picture(*instant, camera, width);
+    }
+    lock.lock();
+  }
+}
+
+void LiveViewer::Core::publish_picture(const Instant& instant, int camera, int width) {
+  const auto found = std::find_if(instant.frames.begin(), instant.frames.end(),
+                                  [&](const Frame& frame) { return number(frame.camera) == camera && !frame.picture.empty(); });
+  const bool has = found != instant.frames.end();
+  // Of a camera that gave nothing at this moment the last picture stays.
+  if (!has && with_pictures_.contains(camera)) return;
+  if (has) with_pictures_.insert(camera);
+  const std::string jpeg = has ? encoder_.encode(found->picture, width) : std::string();
+  std::string bytes = wire_of({.camera = CameraId{camera},
+                               .frame = has ? found->index : instant.index,
+                               .time = instant.time,
+                               .sent_ns = steady_ns(),
+                               .size = has ? found->picture.size() : cv::Size(),
+                               .seen = instant.seen,
+                               .boxes = instant.boxes,
+                               .jpeg = jpeg});
+  server_->publish({.topic = kPictures + camera, .bytes = bytes_of(std::move(bytes)), .text = false}, [this, camera](PageId page) {
+    const auto watched = watching_.find(page);
+    return watched != watching_.end() && watched->second.contains(camera);
+  });
+}
+
+void LiveViewer::Core::report(const LiveReport& report) {
+  std::string text = status_text(report);
+  {
+    const std::lock_guard lock(mutex_);
+    status_ = text;
+  }
+  server_->publish(text_message(kStatus, std::move(text)));
+}
+
+void LiveViewer::Core::recording(bool on, const std::string& into) {
+  std::string text = on ? "recording on " + into : "recording off";
+  {
+    const std::lock_guard lock(mutex_);
+    recording_ = text;
+  }
+  server_->publish(text_message(kRecording, std::move(text)));
+}
+
+WebAnswer LiveViewer::Core::get(std::string_view target) {
+  const std::string_view path = path_of(target);
+  if (std::optional<WebAnswer> file = page_file(path)) return *file;
+  if (path != "/scene")
+    return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};
+  const std::lock_guard lock(mutex_);
+  LiveScene live{.names = {}, .can_record = options_.record != nullptr};
+  for (const auto& [id, name] : names_) live.names.push_back(name);
+  return {.status = 200, .type = "application/json", .body = bytes_of(scene_text(header_, live))};
+}
+
+void LiveViewer::Core::joined(PageId page) {
+  const std::lock_guard lock(mutex_);
+  server_->send(page, text_message(kStatus, status_));
+  server_->send(page, text_message(kRecording, recording_));
+}
+
+void LiveViewer::Core::left(PageId page) {
+  asleep_.erase(page);
+  watch(page, {});
+}
+
+void LiveViewer::Core::received(PageId page, std::string_view line) {
+  const std::string_view word = next_word(line);
+  if (word == "watch") {
+    watch(page, watched_by(line));
+  } else if (word == "sleep") {
+    asleep_.insert(page);
+    watch(page, {});
+  } else if (word == "wake") {
+    asleep_.erase(page);
+  } else if (word == "record") {
+    record(page, next_word(line));
+  } else if (word == "ping") {
+    if (const auto number = whole_in(next_word(line), 0, 1'000'000'000))
+      server_->send(page, text_message(kPong, fmt::format("pong {} {}", *number, steady_ns())));
+  }
+}
+
+void LiveViewer::Core::record(PageId page, std::string_view word) {
+  if (!options_.record || (word != "on" && word != "off")) return;
+  try {
+    options_.record(word == "on");
+  } catch (const Error& error) {
+    server_->send(page, text_message(kSaid, fmt::format("said {}", error.what())));
+  }
+}
+
+void LiveViewer::Core::watch(PageId page, Watched watched) {
+  watching_.erase(page);
+  if (!watched.empty()) watching_[page] = std::move(watched);
+  Watched widths;
+  for (const auto& [other, cameras] : watching_) {
+    for (const auto& [camera, width] : cameras) widths[camera] = std::max(widths[camera], width);
+  }
+  const std::lock_guard lock(mutex_);
+  widths_ = std::move(widths);
+}
+
+class LiveViewer::ViewerSink final : public Sink {
+ public:
+  explicit ViewerSink(std::weak_ptr<Core> core) : core_(std::move(core)) {}
+
+  std::string name() const override { return "the viewer"; }
+  Wants begin(const RecordingHeader& header) override {
+    if (const auto core = core_.lock()) core->begin(header);
+    return {.pictures = true, .boxes = true, .seen = true};
+  }
+  void write(const Instant& instant) override {
+    if (const auto core = core_.lock()) core->write(instant);
+  }
+  void finish() override {
+    if (const auto core = core_.lock()) core->finish();
+  }
+
+ private:
+  std::weak_ptr<Core> core_;
+};
+
+LiveViewer::LiveViewer(const LiveViewOptions& options) : core_(std::make_shared<Core>(options)) {}
+LiveViewer::~LiveViewer() = default;
+std::string LiveViewer::address() const {
+  return core_->address();
+}
+std::unique_ptr<Sink> LiveViewer::make_sink() {
+  return std::make_unique<ViewerSink>(core_);
+}
+void LiveViewer::report(const LiveReport& report) {
+  core_->report(report);
+}
+void LiveViewer::recording(bool on, const std::string& into) {
+  core_->recording(on, into);
+}
+WebServer::Count LiveViewer::count() const {
+  return core_->count();
+}
+
+}  // namespace marey::viewer

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/frame_set.h"
+#include "marey/core/sink.h"
+
+#include "web_server.h"
+
+namespace marey::viewer {
+
+/// How the cameras are and what is lost, as the page shows it beside them.
+struct LiveReport {
+  struct Camera {
+    FeedState state = FeedState::connecting;
+    std::optional<double> rate_hz = {};
+    std::int64_t frames = 0, dropped = 0;
+  };
+  /// One step of the way from the camera to the page, s.
+  struct Step {
+    std::string name;  ///< "decode", "track"
+    double median = 0, p99 = 0;
+  };
+
+  std::vector<Camera> cameras;     ///< CameraId i is cameras[i]
+  std::int64_t overtaken = 0;      ///< moments that were let go because newer ones were whole
+  std::vector<Step> steps;         ///< none where nobody measured them
+  std::vector<std::string> notes;  ///< sentences to the user; the page shows them until the next report
+};
+
+struct LiveViewOptions {
+  WebPlace place;
+  /// The page's record button; without it there is none. Called on the server's thread, so it only notes what is wanted. An Error
+  /// of its is shown on the page.
+  std::function<void(bool on)> record = {};
+  /// The time now by the run's clock, so that the page can say how old is what it shows.
+  std::function<Timestamp()> now = {};
+  double pictures_hz = 10;  ///< of each camera that somebody watches
+};
+
+/// Shows a run while it goes on. `sinks.add(viewer.make_sink())` is all that a run needs of it.
+///
+/// It holds nothing up: of everything the newest counts, pictures are made into JPEG on a thread of its own, only of cameras that
+/// some page shows, at the size at which it shows them. A run without tracks (a preview of a rig that is not calibrated) writes
+/// instants with frames and what was seen in them, and nothing else.
+class LiveViewer {
+ public:
+  /// Listens from now on. Throws Error where that cannot be.
+  explicit LiveViewer(const LiveViewOptions& options);
+  ~LiveViewer();
+  LiveViewer(const LiveViewer&) = delete;
+  LiveViewer& operator=(const LiveViewer&) = delete;
+
+  std::string address() const;
+  /// The sink of a run; of one run at a time. It may outlive the viewer, and then does nothing.
+  std::unique_ptr<Sink> make_sink();
+
+  // From any thread.
+  void report(const LiveReport& report);
+  /// What the record button shows: whether it is being recorded now, and into what.
+  void recording(bool on, const std::string& into = {});
+  WebServer::Count count() const;
+
+ private:
+  class Core;
+  class ViewerSink;
+  std::shared_ptr<Core> core_;
+};
+
+}  // namespace marey::viewer

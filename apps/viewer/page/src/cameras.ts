@@ -1,0 +1,142 @@
+// The cameras of a live run: each one's picture with what was found in it drawn over it, its state, rate and losses. Only pictures
+// that are in sight are asked for, as wide as they are shown.
+import type { Colours } from "./colours";
+import type { Scene } from "./scene";
+import type { State } from "./state";
+import type { Picture } from "./wire";
+
+export interface CameraStatus {
+  state: string;
+  rate: number | null;
+  frames: number;
+  dropped: number;
+}
+
+class Tile {
+  readonly element = document.createElement("figure");
+  readonly canvas = document.createElement("canvas");
+  private title = document.createElement("figcaption");
+  private state = document.createElement("b");
+  private facts = document.createElement("span");
+  visible = false;
+  shown: { picture: Picture; image: ImageBitmap | null } | null = null;
+  private decoding = false;
+  private next: Picture | null = null;
+
+  constructor(readonly number: number, name: string, private colours: Colours, private drawn: (picture: Picture) => void) {
+    this.element.className = "camera";
+    const label = document.createElement("em");
+    label.textContent = name;
+    this.title.append(this.state, label, this.facts);
+    this.element.append(this.canvas, this.title);
+    this.element.tabIndex = 0;
+    this.element.addEventListener("click", () => this.element.classList.toggle("large"));
+  }
+
+  status(status: CameraStatus | undefined): void {
+    this.state.className = status?.state ?? "connecting";
+    this.state.title = status?.state ?? "connecting";
+    if (!status) return;
+    const parts = [status.state === "live" || status.state === "back" ? `${(status.rate ?? 0).toFixed(0)} Hz` : status.state];
+    if (status.dropped > 0) parts.push(`${status.dropped} lost`);
+    this.facts.textContent = parts.join(" · ");
+  }
+
+  /** Of pictures that come faster than they are decoded the newest counts. */
+  async take(picture: Picture): Promise<void> {
+    this.next = picture;
+    if (this.decoding) return;
+    this.decoding = true;
+    while (this.next) {
+      const now: Picture = this.next;
+      this.next = null;
+      const image = now.jpeg ? await createImageBitmap(now.jpeg).catch(() => null) : null;
+      this.shown?.image?.close();
+      this.shown = { picture: now, image };
+      requestAnimationFrame(() => {
+        this.draw();
+        this.drawn(now);
+      });
+    }
+    this.decoding = false;
+  }
+
+  draw(): void {
+    if (!this.shown) return;
+    const { picture, image } = this.shown;
+    const width = picture.width || image?.width || 640;
+    const height = picture.height || image?.height || 480;
+    this.canvas.style.aspectRatio = `${width} / ${height}`;
+    const ratio = Math.min(devicePixelRatio, 2);
+    const wide = Math.max(16, Math.round(this.canvas.clientWidth * ratio));
+    const tall = Math.round((wide * height) / width);
+    if (this.canvas.width !== wide || this.canvas.height !== tall) {
+      this.canvas.width = wide;
+      this.canvas.height = tall;
+    }
+    const draw = this.canvas.getContext("2d")!;
+    const scale = wide / width;
+    if (image) draw.drawImage(image, 0, 0, wide, tall);
+    else {
+      draw.fillStyle = "#0b0e12";
+      draw.fillRect(0, 0, wide, tall);
+    }
+    draw.lineWidth = 1.25 * ratio;
+    const { points, boxes } = picture;
+    for (let i = 0; i < points.x.length; ++i) {
+      draw.strokeStyle = points.track[i] ? this.colours.css(points.track[i]) : "#ff5d5d";
+      draw.beginPath();
+      draw.arc(scale * (points.x[i] + 0.5), scale * (points.y[i] + 0.5), 3.2 * ratio, 0, 7);
+      draw.stroke();
+    }
+    for (let i = 0; i < boxes.left.length; ++i) {
+      draw.strokeStyle = this.colours.css(boxes.track[i]);
+      draw.strokeRect(scale * boxes.left[i], scale * boxes.top[i], scale * boxes.width[i], scale * boxes.height[i]);
+    }
+  }
+}
+
+export class Cameras {
+  private grid = document.querySelector<HTMLElement>("#cameras")!;
+  private tiles: Tile[] = [];
+  private watched = "";
+  private watcher: IntersectionObserver;
+
+  constructor(private state: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: Picture) => void) {
+    this.watcher = new IntersectionObserver((entries) => {
+      for (const entry of entries) {
+        const tile = this.tiles.find((each) => each.element === entry.target);
+        if (tile) tile.visible = entry.isIntersecting;
+      }
+      this.ask();
+    });
+    new ResizeObserver(() => this.ask()).observe(this.grid);
+    void this.state;
+  }
+
+  take(scene: Scene): void {
+    if (this.tiles.length === scene.cameras.length && scene.cameras.length > 0) return;
+    this.watcher.disconnect();
+    this.tiles = scene.cameras.map((camera, i) => new Tile(i, camera.name, this.colours, this.drawn));
+    this.grid.replaceChildren(...this.tiles.map((tile) => tile.element));
+    for (const tile of this.tiles) this.watcher.observe(tile.element);
+  }
+
+  picture(picture: Picture): void {
+    this.tiles[picture.camera]?.take(picture);
+  }
+  status(cameras: CameraStatus[]): void {
+    this.tiles.forEach((tile, i) => tile.status(cameras[i]));
+  }
+
+  /** Says again what is watched, as after a new connection. */
+  ask(anew = false): void {
+    const ratio = Math.min(devicePixelRatio, 2);
+    const step = (width: number) => Math.min(4096, Math.max(64, 32 * Math.ceil((width * ratio) / 32)));
+    const parts = this.tiles.filter((tile) => tile.visible && !document.hidden).map((tile) => `${tile.number} ${step(tile.canvas.clientWidth)}`);
+    const line = `watch ${parts.join(" ")}`;
+    if (line === this.watched && !anew) return;
+    this.watched = line;
+    this.say(line);
+  }
+}

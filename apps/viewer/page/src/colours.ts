@@ -1,0 +1,82 @@
+// Which colour a track has: its own where the recording says one, its team's on a pitch, its side's on a body, else one of its number.
+import type { Scene, Track } from "./scene";
+
+export type Rgb = [number, number, number]; // 0 to 1
+
+const LEFT: Rgb = [0.96, 0.52, 0.36];
+const RIGHT: Rgb = [0.33, 0.72, 0.9];
+const MIDDLE: Rgb = [0.93, 0.83, 0.55];
+const TEAMS: Rgb[] = [
+  [0.3, 0.62, 0.95],
+  [0.95, 0.42, 0.4],
+  [0.98, 0.8, 0.35],
+  [0.62, 0.8, 0.45],
+];
+
+function from_hsl(hue: number, saturation: number, lightness: number): Rgb {
+  const amount = saturation * Math.min(lightness, 1 - lightness);
+  const channel = (n: number) => {
+    const k = (n + hue * 12) % 12;
+    return lightness - amount * Math.max(-1, Math.min(k - 3, 9 - k, 1));
+  };
+  return [channel(0), channel(8), channel(4)];
+}
+
+/** Neighbouring numbers are a golden angle apart. */
+function of_number(id: number): Rgb {
+  return from_hsl(((id * 137.50776 + 205) % 360) / 360, 0.62, 0.6 + 0.07 * ((id % 3) - 1));
+}
+
+const is_left = (label: string) => /^(left|l_)|^L[A-Z]/.test(label);
+const is_right = (label: string) => /^(right|r_)|^R[A-Z]/.test(label);
+
+export class Colours {
+  private of = new Map<number, Rgb>();
+  private sides = false;
+  private teams: string[] = [];
+  private frame: Scene["frame"] = "space";
+
+  take(scene: Scene): void {
+    this.of.clear();
+    this.frame = scene.frame;
+    const labelled = scene.tracks.filter((track) => track.label !== "");
+    const left = labelled.filter((track) => is_left(track.label)).length;
+    const right = labelled.filter((track) => is_right(track.label)).length;
+    this.sides = scene.frame === "space" && Math.min(left, right) >= 0.15 * labelled.length && labelled.length > 3;
+    const counts = new Map<string, number>();
+    for (const track of scene.tracks) if (track.team !== "") counts.set(track.team, (counts.get(track.team) ?? 0) + 1);
+    this.teams = [...counts.keys()].sort((a, b) => counts.get(b)! - counts.get(a)! || a.localeCompare(b));
+    this.teams = [...this.teams.slice(0, 2).sort(), ...this.teams.slice(2)];
+    for (const track of scene.tracks) this.of.set(track.id, this.chosen(track));
+  }
+
+  rgb(id: number): Rgb {
+    let colour = this.of.get(id);
+    if (!colour) this.of.set(id, (colour = of_number(id)));
+    return colour;
+  }
+  css(id: number, alpha = 1): string {
+    const [r, g, b] = this.rgb(id);
+    return `rgba(${Math.round(255 * r)},${Math.round(255 * g)},${Math.round(255 * b)},${alpha})`;
+  }
+  /** Whether dark text is easier to read on it than white. */
+  is_light(id: number): boolean {
+    const [r, g, b] = this.rgb(id);
+    return 0.299 * r + 0.587 * g + 0.114 * b > 0.55;
+  }
+  /** What the colours stand for, for the legend. */
+  legend(): [string, string][] {
+    const css = (c: Rgb) => `rgb(${c.map((v) => Math.round(255 * v)).join(",")})`;
+    if (this.sides) return [["left", css(LEFT)], ["right", css(RIGHT)], ["middle", css(MIDDLE)]];
+    if (this.frame === "ground") return this.teams.slice(0, 4).map((team, i) => [team, css(TEAMS[i])]);
+    return [];
+  }
+
+  private chosen(track: Track): Rgb {
+    if (track.colour) return track.colour.map((v) => v / 255) as Rgb;
+    const team = this.teams.indexOf(track.team);
+    if (track.team !== "" && team >= 0 && team < TEAMS.length) return TEAMS[team];
+    if (this.sides) return is_left(track.label) ? LEFT : is_right(track.label) ? RIGHT : MIDDLE;
+    return of_number(track.id);
+  }
+}

@@ -1,0 +1,105 @@
+// A run that goes on: the newest instants as they come, the last minute of them kept.
+import { last_at_or_before, type Moment, type Motion } from "./motion";
+import type { Scene } from "./scene";
+import { Stretch, type Course } from "./wire";
+
+const KEPT_S = 60;
+const MOST_KEPT = 15000;
+
+export class Live implements Motion {
+  scene: Scene;
+  on_change = () => {};
+  private times: number[] = [];
+  private here: Stretch[] = []; // of one instant each
+  private place = new Map<Stretch, number>(); // counted from the first that ever came
+  private gone = 0;
+
+  constructor(scene: Scene) {
+    this.scene = scene;
+  }
+
+  get first(): number {
+    return this.times.length ? Math.max(this.times[0], this.last - KEPT_S) : 0;
+  }
+  get last(): number {
+    return this.times[this.times.length - 1] ?? 0;
+  }
+
+  take(scene: Scene): void {
+    this.scene = scene;
+    this.on_change();
+  }
+
+  add(stretch: Stretch): void {
+    if (stretch.time[0] < this.last - 1) this.forget(); // another run
+    this.place.set(stretch, this.gone + this.here.length);
+    this.times.push(stretch.time[0]);
+    this.here.push(stretch);
+    if (this.here.length > MOST_KEPT || (this.here.length > 400 && this.times[200] < this.last - KEPT_S)) {
+      const drop = 200;
+      for (const old of this.here.splice(0, drop)) this.place.delete(old);
+      this.times.splice(0, drop);
+      this.gone += drop;
+    }
+    this.on_change();
+  }
+
+  at(time: number): Moment | null {
+    const i = Math.max(0, last_at_or_before(this.times, time + 1e-9));
+    return i < this.here.length ? { stretch: this.here[i], k: 0 } : null;
+  }
+
+  beside(moment: Moment, step: 1 | -1): Moment | null {
+    const at = this.place.get(moment.stretch);
+    const stretch = at === undefined ? undefined : this.here[at - this.gone + step];
+    return stretch ? { stretch, k: 0 } : null;
+  }
+
+  async course(track: number): Promise<Course> {
+    const rows: [number, number, number, number, number][] = [];
+    let has_z = false;
+    for (const s of this.here) {
+      const row = s.track.indexOf(track);
+      if (row < 0) continue;
+      has_z = s.z !== null;
+      rows.push([s.time[0], s.x[row], s.y[row], s.z ? s.z[row] : 0, s.state[row]]);
+    }
+    const column = (i: number) => Float32Array.from(rows, (row) => row[i]);
+    return { time: Float64Array.from(rows, (row) => row[0]), x: column(1), y: column(2), z: has_z ? column(3) : null, state: Uint8Array.from(rows, (row) => row[4]) };
+  }
+
+  density(): [number, number][] {
+    const every = Math.max(1, Math.floor(this.here.length / 600));
+    const list: [number, number][] = [];
+    for (let i = 0; i < this.here.length; i += every) list.push([this.times[i], this.here[i].track.length]);
+    return list;
+  }
+
+  /** Of the instants that are kept, the share in which this track was seen. */
+  seen(track: number): number | null {
+    if (this.here.length === 0) return null;
+    let count = 0;
+    let looked = 0;
+    for (let i = Math.max(0, this.here.length - 600); i < this.here.length; ++i) {
+      ++looked;
+      const row = this.here[i].track.indexOf(track);
+      if (row >= 0 && this.here[i].provenance(row) === 0) ++count;
+    }
+    return count / looked;
+  }
+
+  /** Instants a second that arrived of late. */
+  rate(): number {
+    const n = Math.min(60, this.times.length - 1);
+    if (n < 2) return 0;
+    const span = this.last - this.times[this.times.length - 1 - n];
+    return span > 0 ? n / span : 0;
+  }
+
+  private forget(): void {
+    this.gone += this.here.length;
+    this.here = [];
+    this.times = [];
+    this.place.clear();
+  }
+}

@@ -1,0 +1,97 @@
+// A recording that lies with the server: stretches are fetched as they are needed, all of them where it is short.
+import { last_at_or_before, type Moment, type Motion } from "./motion";
+import type { Scene } from "./scene";
+import { course_of, Stretch, type Course } from "./wire";
+
+const AT_ONCE = 160; // stretches that are fetched without being asked for
+const MOST_KEPT = 600;
+const AHEAD = 4;
+
+export class Recorded implements Motion {
+  scene: Scene;
+  on_change = () => {};
+  private begins: number[] = [];
+  private here = new Map<number, Stretch>(); // in the order of their last use
+  private asked = new Set<number>();
+
+  constructor(scene: Scene) {
+    this.scene = scene;
+    this.take(scene);
+  }
+
+  get first(): number {
+    return this.begins[0] ?? 0;
+  }
+  get last(): number {
+    return this.scene.last ?? 0;
+  }
+
+  take(scene: Scene): void {
+    this.scene = scene;
+    this.begins = (scene.stretches ?? []).map((stretch) => stretch[0]);
+    const count = Math.min(this.begins.length, AT_ONCE);
+    for (let n = 0; n < count; ++n) this.fetch(n);
+    this.on_change();
+  }
+
+  at(time: number): Moment | null {
+    const n = Math.max(0, last_at_or_before(this.begins, time + 1e-9));
+    if (n >= this.begins.length) return null;
+    for (let ahead = 1; ahead <= AHEAD && n + ahead < this.begins.length; ++ahead) this.fetch(n + ahead);
+    const stretch = this.stretch(n);
+    if (!stretch) return null;
+    return { stretch, k: Math.max(0, last_at_or_before(stretch.time, time + 1e-9)) };
+  }
+
+  beside(moment: Moment, step: 1 | -1): Moment | null {
+    const k = moment.k + step;
+    if (k >= 0 && k < moment.stretch.time.length) return { stretch: moment.stretch, k };
+    const n = last_at_or_before(this.begins, moment.stretch.time[0] + 1e-9) + step;
+    if (n < 0 || n >= this.begins.length) return null;
+    const stretch = this.stretch(n);
+    return stretch ? { stretch, k: step > 0 ? 0 : stretch.time.length - 1 } : null;
+  }
+
+  async course(track: number): Promise<Course> {
+    const answer = await fetch(`course?track=${track}`);
+    return course_of(await answer.arrayBuffer());
+  }
+
+  density(): [number, number][] {
+    const list = this.scene.stretches ?? [];
+    if (list.length > AT_ONCE || this.here.size < list.length) return list.map(([time, n, rows]) => [time, rows / Math.max(1, n)]);
+    const fine: [number, number][] = [];
+    for (let n = 0; n < list.length; ++n) {
+      const stretch = this.here.get(n)!;
+      for (let k = 0; k < stretch.time.length; ++k) fine.push([stretch.time[k], stretch.row_end[k] - stretch.begin(k)]);
+    }
+    return fine;
+  }
+
+  private stretch(n: number): Stretch | null {
+    const stretch = this.here.get(n);
+    if (!stretch) {
+      this.fetch(n);
+      return null;
+    }
+    this.here.delete(n);
+    this.here.set(n, stretch);
+    return stretch;
+  }
+
+  private async fetch(n: number): Promise<void> {
+    if (this.here.has(n) || this.asked.has(n)) return;
+    this.asked.add(n);
+    try {
+      const answer = await fetch(`stretch?n=${n}`);
+      if (!answer.ok) return;
+      this.here.set(n, new Stretch(await answer.arrayBuffer()));
+      if (this.here.size > MOST_KEPT) this.here.delete(this.here.keys().next().value!);
+      this.on_change();
+    } catch {
+      // the server has gone, which the socket tells
+    } finally {
+      this.asked.delete(n);
+    }
+  }
+}

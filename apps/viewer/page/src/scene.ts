@@ -1,0 +1,71 @@
+// What the server says of a scene once, as apps/viewer/scene.cpp writes it.
+
+export type Vector = [number, number, number];
+
+export interface Track {
+  id: number;
+  label: string;
+  team: string;
+  colour?: [number, number, number];
+  /** Of a recording: instants it is in, those in which it was seen, and the first and last time (s). */
+  rows?: number;
+  measured?: number;
+  first?: number;
+  last?: number;
+  /** Instants from its first to its last. */
+  within?: number;
+}
+
+export interface Camera {
+  name: string;
+  size?: [number, number];
+  centre?: Vector;
+  /** Directions of its picture's corners, from the top left one clockwise. */
+  corners?: Vector[];
+}
+
+export interface Body {
+  id: number;
+  label: string;
+  skeleton: string;
+  parent?: number;
+  end?: Vector;
+  markers: Vector[];
+}
+
+export interface Pitch {
+  length: number;
+  width: number;
+  x: number;
+  y: number;
+}
+
+export interface Scene {
+  kind: "recording" | "live";
+  name: string;
+  frame: "space" | "ground" | "image";
+  rate: number;
+  made_by: string;
+  cameras: Camera[];
+  bodies: Body[];
+  tracks: Track[];
+  size?: [number, number];
+  pitch?: Pitch | null;
+  y_down?: boolean;
+  low?: Vector;
+  high?: Vector;
+  // of a recording
+  film?: boolean;
+  instants?: number;
+  last?: number;
+  complete?: boolean;
+  warnings?: string[];
+  /** First time (s), instants, rows. */
+  stretches?: [number, number, number][];
+  // of a live run
+  can_record?: boolean;
+}
+
+export function name_of(track: Track | undefined, id: number): string {
+  return track && track.label !== "" ? track.label : `${id}`;
+}

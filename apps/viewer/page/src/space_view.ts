@@ -1,0 +1,313 @@
+// Markers in space: spheres, trails, bodies, the cameras' frusta, a floor of one metre squares. z is up.
+import {
+  BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Float32BufferAttribute, Group, HemisphereLight, DirectionalLight,
+  InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Colours } from "./colours";
+import { time_of, type Moment, type Motion } from "./motion";
+import { Overlay, type Mark } from "./overlay";
+import { name_of, type Scene, type Track } from "./scene";
+import type { State } from "./state";
+import { moments_back, type View } from "./view";
+
+const TRAIL_STEPS = 90;
+const MOST_TRAIL_SEGMENTS = 60000;
+const MARKER_M = 0.017; // radius where the scene is a few metres wide
+
+/** Lines whose ends and colours change with every picture. */
+class Lines {
+  readonly object: LineSegments;
+  private position: Float32Array;
+  private colour: Float32Array;
+  private used = 0;
+  constructor(private most: number) {
+    const geometry = new BufferGeometry();
+    this.position = new Float32Array(most * 6);
+    this.colour = new Float32Array(most * 8);
+    geometry.setAttribute("position", new BufferAttribute(this.position, 3).setUsage(DynamicDrawUsage));
+    geometry.setAttribute("color", new BufferAttribute(this.colour, 4).setUsage(DynamicDrawUsage));
+    this.object = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }));
+    this.object.frustumCulled = false;
+  }
+  begin(): void {
+    this.used = 0;
+  }
+  add(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, rgb: ArrayLike<number>, a0: number, a1: number): void {
+    if (this.used === this.most) return;
+    this.position.set([x0, y0, z0, x1, y1, z1], 6 * this.used);
+    this.colour.set([rgb[0], rgb[1], rgb[2], a0, rgb[0], rgb[1], rgb[2], a1], 8 * this.used);
+    ++this.used;
+  }
+  end(): void {
+    const { geometry } = this.object;
+    geometry.setDrawRange(0, 2 * this.used);
+    for (const [name, size] of [["position", 6], ["color", 8]] as const) {
+      const attribute = geometry.getAttribute(name) as BufferAttribute;
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(0, size * this.used);
+      attribute.needsUpdate = true;
+    }
+  }
+}
+
+export class SpaceView implements View {
+  readonly element = document.createElement("div");
+  readonly overlay: Overlay;
+  private renderer = new WebGLRenderer({ antialias: true, alpha: false, preserveDrawingBuffer: false });
+  private world = new World();
+  private camera = new PerspectiveCamera(42, 1, 0.02, 500);
+  private controls: OrbitControls;
+  private markers: InstancedMesh;
+  private trails = new Lines(MOST_TRAIL_SEGMENTS);
+  private bones = new Lines(4000);
+  private floor = new Group();
+  private rig = new Group();
+  private camera_names: { name: string; at: Vector3 }[] = [];
+  private tracks = new Map<number, Track>();
+  private scene: Scene | null = null;
+  private low = new Vector3(-2, -2, 0);
+  private high = new Vector3(2, 2, 2);
+  private framed = false;
+  private capacity = 0;
+  private dark: boolean | null = null;
+  private scratch = { matrix: new Matrix4(), colour: new Color(), v: new Vector3(), q: new Quaternion() };
+
+  constructor(private state: State, private colours: Colours, private redraw: () => void) {
+    this.overlay = new Overlay(state, colours);
+    this.element.className = "view space";
+    this.element.append(this.renderer.domElement, this.overlay.canvas);
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.element);
+    this.controls.enableDamping = false;
+    this.controls.zoomToCursor = true;
+    this.controls.maxPolarAngle = 0.97 * Math.PI;
+    this.controls.addEventListener("change", this.redraw);
+    this.markers = this.make_markers(128);
+    const sun = new DirectionalLight(0xffffff, 1.5);
+    sun.position.set(2, -3, 5);
+    this.world.add(new HemisphereLight(0xffffff, 0x8a94a0, 2), sun, this.floor, this.rig, this.trails.object, this.bones.object);
+  }
+
+  take(scene: Scene): void {
+    this.scene = scene;
+    this.tracks = new Map(scene.tracks.map((track) => [track.id, track]));
+    if (scene.low && scene.high) {
+      this.low.set(...scene.low);
+      this.high.set(...scene.high);
+    }
+    this.dark = null;
+    if (!this.framed || scene.complete) {
+      if (!this.framed) this.reset();
+      this.framed = scene.kind === "live" || scene.low !== undefined;
+    }
+  }
+
+  resize(width: number, height: number): void {
+    this.camera.aspect = width / Math.max(1, height);
+    this.camera.updateProjectionMatrix();
+    this.renderer.setSize(width, height);
+    this.overlay.resize(width, height);
+    if (this.moved_by_user === 0) this.reset();
+  }
+  private moved_by_user = 0;
+
+  reset(): void {
+    this.look(new Vector3(0.75, -1, 0.42));
+  }
+  look_from(side: "top" | "front" | "side"): void {
+    this.look(side === "top" ? new Vector3(0, -0.001, 1) : side === "front" ? new Vector3(0, -1, 0.06) : new Vector3(1, 0, 0.06));
+  }
+  private look(direction: Vector3): void {
+    const middle = new Vector3().addVectors(this.low, this.high).multiplyScalar(0.5);
+    const size = new Vector3().subVectors(this.high, this.low);
+    const radius = Math.max(0.3, 0.5 * size.length());
+    const half = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
+    const distance = (0.9 * radius) / Math.sin(half);
+    this.camera.position.copy(direction.normalize().multiplyScalar(distance).add(middle));
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 60;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(middle);
+    this.controls.update();
+  }
+
+  draw(motion: Motion, moment: Moment | null): void {
+    if (this.dark !== this.state.dark) this.paint_surroundings();
+    this.rig.visible = this.state.cameras;
+    const marks = moment ? this.place_markers(moment) : [];
+    this.place_trails(motion, moment);
+    this.place_bones(moment);
+    this.renderer.render(this.world, this.camera);
+    this.overlay.clear();
+    if (this.state.cameras) this.name_cameras();
+    this.overlay.labels(marks, this.state.labels);
+  }
+
+  private place_markers(moment: Moment): Mark[] {
+    const { stretch, k } = moment;
+    const end = stretch.row_end[k];
+    const begin = stretch.begin(k);
+    if (end - begin > this.capacity) this.markers = this.make_markers(2 * (end - begin));
+    const { matrix, colour, v } = this.scratch;
+    const marks: Mark[] = [];
+    const scale = Math.max(0.5, Math.min(12, new Vector3().subVectors(this.high, this.low).length() / 4)) * MARKER_M;
+    const focal = this.overlay.height / 2 / Math.tan((this.camera.fov * Math.PI) / 360);
+    let count = 0;
+    for (let row = begin; row < end; ++row) {
+      const id = stretch.track[row];
+      if (this.state.hidden.has(id)) continue;
+      const selected = this.state.selected.has(id);
+      const radius = scale * (selected || this.state.hover === id ? 1.5 : 1);
+      const z = stretch.z ? stretch.z[row] : 0;
+      matrix.makeScale(radius, radius, radius).setPosition(stretch.x[row], stretch.y[row], z);
+      this.markers.setMatrixAt(count, matrix);
+      colour.setRGB(...this.colours.rgb(id), "srgb");
+      if (stretch.provenance(row) !== 0) colour.lerp(this.background, 0.6); // not seen at this moment
+      if (this.state.selected.size > 0 && !selected) colour.lerp(this.background, 0.35);
+      this.markers.setColorAt(count++, colour);
+      v.set(stretch.x[row], stretch.y[row], z);
+      const away = v.distanceTo(this.camera.position);
+      v.project(this.camera);
+      if (v.z > 1 || Math.abs(v.x) > 1 || Math.abs(v.y) > 1) continue;
+      marks.push({
+        id, x: ((v.x + 1) / 2) * this.overlay.width, y: ((1 - v.y) / 2) * this.overlay.height,
+        radius: (radius * focal) / away + 1, text: name_of(this.tracks.get(id), id), depth: away,
+      });
+    }
+    this.markers.count = count;
+    this.markers.instanceMatrix.needsUpdate = true;
+    if (this.markers.instanceColor) this.markers.instanceColor.needsUpdate = true;
+    return marks;
+  }
+
+  private place_trails(motion: Motion, moment: Moment | null): void {
+    this.trails.begin();
+    if (moment && this.state.trail_s > 0) {
+      const now = time_of(moment);
+      const before = new Map<number, [number, number, number, number]>();
+      const chosen = this.state.selected.size > 0;
+      for (const { stretch, k } of moments_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
+        const time = stretch.time[k];
+        const alpha = 0.75 * (1 - (now - time) / this.state.trail_s);
+        for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
+          const id = stretch.track[row];
+          if (this.state.hidden.has(id) || (chosen && !this.state.selected.has(id))) continue;
+          const z = stretch.z ? stretch.z[row] : 0;
+          const last = before.get(id);
+          if (last && last[3] - time < 0.25)
+            this.trails.add(stretch.x[row], stretch.y[row], z, last[0], last[1], last[2], this.linear(id), alpha, alpha + 0.02);
+          before.set(id, [stretch.x[row], stretch.y[row], z, time]);
+        }
+      }
+    }
+    this.trails.end();
+  }
+
+  private linear(id: number): number[] {
+    this.scratch.colour.setRGB(...this.colours.rgb(id), "srgb");
+    return [this.scratch.colour.r, this.scratch.colour.g, this.scratch.colour.b];
+  }
+
+  /** A segment of a skeleton is a line from its parent's origin to its own, and to its end; a body by itself is its axes. */
+  private place_bones(moment: Moment | null): void {
+    this.bones.begin();
+    if (moment && this.scene && this.scene.bodies.length > 0) {
+      const { stretch, k } = moment;
+      const at = new Map<number, number>();
+      for (let p = stretch.pose_begin(k); p < stretch.pose_end[k]; ++p) at.set(stretch.body[p], p);
+      const origin = (p: number) => new Vector3(stretch.pose[0][p], stretch.pose[1][p], stretch.pose[2][p]);
+      const turned = (p: number, v: Vector3) =>
+        v.applyQuaternion(this.scratch.q.set(stretch.pose[3][p], stretch.pose[4][p], stretch.pose[5][p], stretch.pose[6][p])).add(origin(p));
+      const bone = this.state.dark ? [0.75, 0.8, 0.86] : [0.2, 0.25, 0.3];
+      const line = (a: Vector3, b: Vector3, rgb: number[], alpha: number) => this.bones.add(a.x, a.y, a.z, b.x, b.y, b.z, rgb, alpha, alpha);
+      for (const body of this.scene.bodies) {
+        const p = at.get(body.id);
+        if (p === undefined) continue;
+        const alpha = stretch.tracked[p] ? 0.95 : 0.4;
+        const parent = body.parent === undefined ? undefined : at.get(body.parent);
+        if (parent !== undefined) line(origin(parent), origin(p), bone, alpha);
+        if (body.end) line(origin(p), turned(p, new Vector3(...body.end)), bone, alpha);
+        if (body.skeleton !== "") continue;
+        for (const marker of body.markers) line(origin(p), turned(p, new Vector3(...marker)), bone, 0.5 * alpha);
+        for (let axis = 0; axis < 3; ++axis)
+          line(origin(p), turned(p, new Vector3().setComponent(axis, 0.1)), [Number(axis === 0), 0.6 * Number(axis === 1), Number(axis === 2)], alpha);
+      }
+    }
+    this.bones.end();
+  }
+
+  private background = new Color();
+
+  private make_markers(capacity: number): InstancedMesh {
+    if (this.markers) {
+      this.world.remove(this.markers);
+      this.markers.dispose();
+    }
+    this.capacity = capacity;
+    const mesh = new InstancedMesh(new SphereGeometry(1, 16, 12), new MeshLambertMaterial(), capacity);
+    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    mesh.frustumCulled = false;
+    mesh.count = 0;
+    this.world.add(mesh);
+    return mesh;
+  }
+
+  private paint_surroundings(): void {
+    this.dark = this.state.dark;
+    this.background.set(this.dark ? 0x0e1115 : 0xf4f5f7);
+    this.world.background = this.background;
+    this.floor.clear();
+    this.rig.clear();
+    this.camera_names = [];
+    this.paint_floor();
+    for (const camera of this.scene?.cameras ?? []) {
+      if (camera.centre && camera.corners?.length === 4) this.paint_camera(camera.name, camera.centre, camera.corners);
+    }
+  }
+
+  private paint_floor(): void {
+    const cameras = (this.scene?.cameras ?? []).flatMap((camera) => (camera.centre ? [camera.centre] : []));
+    const reach = (axis: 0 | 1, side: 1 | -1) => {
+      const values = [side > 0 ? this.high.getComponent(axis) : this.low.getComponent(axis), ...cameras.map((centre) => centre[axis])];
+      const far = side > 0 ? Math.max(...values) : Math.min(...values);
+      return Math.max(-60, Math.min(60, side > 0 ? Math.ceil(far + 0.5) : Math.floor(far - 0.5)));
+    };
+    const [left, right, front, back] = [reach(0, -1), reach(0, 1), reach(1, -1), reach(1, 1)];
+    const fine: number[] = [];
+    for (let x = left; x <= right; ++x) if (x !== 0) fine.push(x, front, 0, x, back, 0);
+    for (let y = front; y <= back; ++y) if (y !== 0) fine.push(left, y, 0, right, y, 0);
+    this.floor.add(lines(fine, this.dark ? 0x252c35 : 0xd9dde3));
+    const axis = (points: number[], colour: number) => this.floor.add(lines(points, colour));
+    axis([left, 0, 0, right, 0, 0], this.dark ? 0x5a3a3c : 0xd9a0a0);
+    axis([0, front, 0, 0, back, 0], this.dark ? 0x39533f : 0x9cc7a3);
+  }
+
+  private paint_camera(name: string, centre: number[], corners: number[][]): void {
+    const size = 0.09 * Math.max(2, Math.min(20, new Vector3().subVectors(this.high, this.low).length()));
+    const tip = (corner: number[]) => corner.map((v, axis) => centre[axis] + size * v);
+    const points: number[] = [];
+    for (let i = 0; i < 4; ++i) points.push(...centre, ...tip(corners[i]), ...tip(corners[i]), ...tip(corners[(i + 1) % 4]));
+    this.rig.add(lines(points, this.dark ? 0x62788f : 0x7f95ab));
+    this.camera_names.push({ name, at: new Vector3(...(centre as [number, number, number])) });
+  }
+
+  private name_cameras(): void {
+    const { draw, width, height } = this.overlay;
+    draw.font = `10.5px ${getComputedStyle(document.body).fontFamily}`;
+    draw.textAlign = "center";
+    draw.fillStyle = this.state.dark ? "#7d93ab" : "#5d7388";
+    for (const { name, at } of this.camera_names) {
+      const v = at.clone().project(this.camera);
+      if (v.z < 1) draw.fillText(name, ((v.x + 1) / 2) * width, ((1 - v.y) / 2) * height - 9);
+    }
+    draw.textAlign = "left";
+  }
+}
+
+function lines(points: number[], colour: number): LineSegments {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute(points, 3));
+  return new LineSegments(geometry, new LineBasicMaterial({ color: colour }));
+}

@@ -1,0 +1,43 @@
+// What the user has chosen, shared by all parts of the page. Whoever changes it calls `changed`.
+
+export type Speed = number;
+export const SPEEDS: Speed[] = [0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
+
+export class State {
+  time = 0;
+  playing = false;
+  /** Live: the newest is shown. */
+  following = true;
+  speed: Speed = 1;
+  labels = true;
+  trail_s = 1;
+  cameras = true;
+  dark = true;
+  selected = new Set<number>();
+  hidden = new Set<number>();
+  hover: number | null = null;
+  private listeners: (() => void)[] = [];
+
+  constructor() {
+    const kept = JSON.parse(localStorage.getItem("marey") ?? "{}") as Partial<State>;
+    this.dark = kept.dark ?? !matchMedia("(prefers-color-scheme: light)").matches;
+    this.labels = kept.labels ?? true;
+    this.cameras = kept.cameras ?? true;
+  }
+  on_change(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+  changed(): void {
+    localStorage.setItem("marey", JSON.stringify({ dark: this.dark, labels: this.labels, cameras: this.cameras }));
+    for (const listener of this.listeners) listener();
+  }
+  /** Only who is under the pointer: the table does not make its rows anew for that. */
+  on_hover = () => {};
+  changed_hover(): void {
+    this.on_hover();
+  }
+  toggle_selected(id: number): void {
+    if (!this.selected.delete(id)) this.selected.add(id);
+    this.changed();
+  }
+}

@@ -1,0 +1,31 @@
+import type { Moment, Motion } from "./motion";
+import { time_of } from "./motion";
+import type { Scene } from "./scene";
+import type { Overlay } from "./overlay";
+
+/** One way to look at a scene. It draws when it is told to, into an element that the page sizes. */
+export interface View {
+  readonly element: HTMLElement;
+  readonly overlay: Overlay;
+  take(scene: Scene): void;
+  resize(width: number, height: number): void;
+  draw(motion: Motion, moment: Moment | null): void;
+  /** Everything in sight again. */
+  reset(): void;
+  /** A preset, "top" or "front", where there are any. */
+  look_from?(side: "top" | "front" | "side"): void;
+}
+
+/** The moments of the last `seconds` before and with this one, the newest first, at most `most` of them. */
+export function moments_back(motion: Motion, from: Moment, seconds: number, most: number): Moment[] {
+  const list = [from];
+  const begin = time_of(from) - seconds;
+  const least = seconds / most;
+  let kept = time_of(from);
+  for (let at = motion.beside(from, -1); at && time_of(at) >= begin; at = motion.beside(at, -1)) {
+    if (kept - time_of(at) < least - 1e-9) continue;
+    kept = time_of(at);
+    list.push(at);
+  }
+  return list;
+}

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "web_server.h"
+
+namespace marey::viewer {
+
+/// A file of the page, which is part of the program; nothing where there is none of that path ("/", "/page.js", "/page.css").
+std::optional<WebAnswer> page_file(std::string_view path);
+
+}  // namespace marey::viewer

@@ -1,0 +1,149 @@
+#include "recording_viewer.h"
+
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+
+#include "access.h"
+#include "film_pictures.h"
+#include "page_files.h"
+#include "page_words.h"
+#include "stored_recording.h"
+
+namespace marey::viewer {
+namespace {
+
+enum RecordingTopic { kSceneChanged, kFilmPicture };
+constexpr std::chrono::milliseconds kBetweenReports{300};
+
+/// A match that was read whole, as a reader that owns it.
+class OwningReader : public format::FileReader {
+ public:
+  explicit OwningReader(format::match::GroundMatch match)
+      : match_(std::move(match)), reader_(format::reader_of(match_.recording)) {}
+  const format::FileInfo& info() const override { return reader_->info(); }
+  std::optional<Instant> next() override { return reader_->next(); }
+  std::vector<std::string> warnings() const override { return match_.warnings; }
+
+ private:
+  format::match::GroundMatch match_;
+  std::unique_ptr<format::FileReader> reader_;
+};
+
+/// Formats of matches tell how large the pitch is, which a recording does not.
+std::unique_ptr<format::FileReader> opened(const std::string& path, const ViewOptions& options, GroundChoice& ground) {
+  const format::Format& format = format::format_to_read(path, format::kRecordings);
+  if (!format.from_corner || format.read == nullptr) return format::open_recording(path, format, options.read);
+  format::match::GroundMatch match = format::read_whole(path, format, options.read);
+  if (!ground.pitch) ground.pitch = match.pitch;
+  return std::make_unique<OwningReader>(std::move(match));
+}
+
+}  // namespace
+
+class RecordingViewer::Core {
+ public:
+  Core(const std::string& path, const ViewOptions& options);
+  ~Core() {
+    if (film_) film_->end();
+  }
+
+  std::string address() const { return server_->address(); }
+  std::vector<std::string> read(const Hooks& hooks);
+
+ private:
+  WebAnswer get(std::string_view target);
+  void received(PageId page, std::string_view line);
+
+  GroundChoice ground_;
+  std::unique_ptr<format::FileReader> reader_;
+  RecordingHeader header_;  // a copy: the reader goes on while the server looks at it
+  StoredRecording recording_;
+  std::optional<FilmPictures> film_;
+  std::unique_ptr<WebServer> server_;
+};
+
+RecordingViewer::Core::Core(const std::string& path, const ViewOptions& options)
+    : ground_(options.ground),
+      reader_(opened(path, options, ground_)),
+      header_(reader_->header()),
+      recording_(header_, reader_->tracks()) {
+  header_.name = std::filesystem::path(path).filename().string();
+  if (!options.film.empty()) {
+    if (header_.frame.kind != FrameOfReference::Kind::image)
+      throw Error("{}: holds no tracks in a picture, so no film lies behind them", path);
+    film_.emplace(options.film, [this](PageId page, std::string bytes) {
+      server_->publish({.topic = kFilmPicture + static_cast<int>(page), .bytes = bytes_of(std::move(bytes)), .text = false},
+                       [page](PageId other) { return other == page; });
+    });
+  }
+  WebServer::Handlers handlers;
+  handlers.get = [this](std::string_view target) { return get(target); };
+  handlers.received = [this](PageId page, std::string_view line) { received(page, line); };
+  handlers.left = [this](PageId page) {
+    if (film_) film_->forget(page);
+  };
+  server_ = std::make_unique<WebServer>(options.place, std::move(handlers));
+  server_->start();
+}
+
+std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
+  auto reported = std::chrono::steady_clock::now();
+  std::int64_t count = 0;
+  while (const std::optional<Instant> instant = reader_->next()) {
+    recording_.add(*instant);
+    hooks.advance({.step = "reading", .done = ++count, .total = reader_->instant_count()});
+    const auto now = std::chrono::steady_clock::now();
+    if (now - reported < kBetweenReports) continue;
+    reported = now;
+    server_->publish({.topic = kSceneChanged, .bytes = bytes_of("scene"), .text = true});
+  }
+  recording_.finish(reader_->warnings());
+  server_->publish({.topic = kSceneChanged, .bytes = bytes_of("scene"), .text = true});
+  return reader_->warnings();
+}
+
+WebAnswer RecordingViewer::Core::get(std::string_view target) {
+  const std::string_view path = path_of(target);
+  if (std::optional<WebAnswer> file = page_file(path)) return *file;
+  constexpr auto kMost = std::numeric_limits<std::int32_t>::max();
+  if (path == "/scene")
+    return {.type = "application/json", .body = bytes_of(scene_text(header_, recording_.state(), ground_, film_.has_value()))};
+  if (path == "/stretch") {
+    const auto wanted = whole_in(query_value(target, "n"), 0, kMost);
+    const Bytes bytes = wanted ? recording_.stretch(static_cast<std::size_t>(*wanted)) : nullptr;
+    if (bytes != nullptr) return {.body = bytes};
+  }
+  if (path == "/course") {
+    if (const auto track = whole_in(query_value(target, "track"), 0, kMost))
+      return {.body = bytes_of(recording_.course(TrackId{static_cast<int>(*track)}))};
+  }
+  return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};
+}
+
+void RecordingViewer::Core::received(PageId page, std::string_view line) {
+  if (next_word(line) != "film" || !film_) return;
+  const auto frame = whole_in(next_word(line), 0, std::numeric_limits<std::int32_t>::max());
+  const auto width = whole_in(next_word(line), 16, 4096);
+  if (frame && width) film_->ask(page, *frame, static_cast<int>(*width));
+}
+
+RecordingViewer::RecordingViewer(const std::string& path, const ViewOptions& options)
+    : core_(std::make_unique<Core>(path, options)) {}
+RecordingViewer::~RecordingViewer() = default;
+std::string RecordingViewer::address() const {
+  return core_->address();
+}
+std::vector<std::string> RecordingViewer::read(const Hooks& hooks) {
+  return core_->read(hooks);
+}
+
+}  // namespace marey::viewer

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/core/hooks.h"
+#include "marey/format/format.h"
+
+#include "scene.h"
+#include "web_server.h"
+
+namespace marey::viewer {
+
+struct ViewOptions {
+  WebPlace place;
+  format::ReadOptions read;
+  GroundChoice ground;
+  std::string film;  ///< whose pictures lie behind tracks in a picture; empty: none
+};
+
+/// Shows a recording in a file to whoever opens `address()`: any that format::open_recording reads.
+class RecordingViewer {
+ public:
+  /// Opens the file and listens. Throws Error where either cannot be.
+  RecordingViewer(const std::string& path, const ViewOptions& options);
+  ~RecordingViewer();
+
+  std::string address() const;
+  /// Reads the file to its end; what was read is shown meanwhile. Returns its warnings. Throws Error where the file breaks off,
+  /// Stopped where it is asked to stop.
+  std::vector<std::string> read(const Hooks& hooks);
+
+ private:
+  class Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace marey::viewer

@@ -1,0 +1,176 @@
+#include "stored_recording.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace marey::viewer {
+namespace {
+
+constexpr std::int64_t kStretchInstants = 128, kStretchRows = 32768;
+constexpr std::size_t kMostSampled = 20000;
+constexpr double kOutside = 0.005;  // share of positions, at either end, that may be errors
+
+template <typename T>
+T number_at(const std::string& bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+template <typename T>
+void append_column(std::string& bytes, const std::vector<T>& column) {
+  bytes.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(T));
+}
+
+struct CourseColumns {
+  std::vector<double> time;
+  std::array<std::vector<float>, 3> position;
+  std::vector<std::uint8_t> state;
+};
+
+/// The rows of one track in a stretch, whose columns lie as wire.h says.
+void gather_rows(const std::string& stretch, TrackId track, const WireColumns& columns, CourseColumns& course) {
+  const std::size_t instants = number_at<std::uint32_t>(stretch, 24), rows = number_at<std::uint32_t>(stretch, 28),
+                    poses = number_at<std::uint32_t>(stretch, 32);
+  const std::size_t row_end = 40 + 12 * instants, tracks = 40 + 20 * instants, positions = tracks + 4 * rows;
+  const std::size_t axes = columns.z ? 3 : 2, floats = axes + (columns.boxes ? 4 : 0);
+  const std::size_t states = positions + 4 * rows * floats + 32 * poses;
+  for (std::size_t instant = 0, row = 0; instant < instants; ++instant) {
+    for (const std::size_t end = number_at<std::uint32_t>(stretch, row_end + 4 * instant); row < end; ++row) {
+      if (number_at<std::int32_t>(stretch, tracks + 4 * row) != number(track)) continue;
+      course.time.push_back(number_at<double>(stretch, 40 + 8 * instant));
+      for (std::size_t axis = 0; axis < axes; ++axis)
+        course.position[axis].push_back(number_at<float>(stretch, positions + 4 * (axis * rows + row)));
+      course.state.push_back(number_at<std::uint8_t>(stretch, states + row));
+    }
+  }
+}
+
+}  // namespace
+
+StoredRecording::StoredRecording(const RecordingHeader& header, const std::vector<TrackName>& tracks) {
+  columns_ = {.z = header.frame.dimensions() == 3, .boxes = header.frame.kind == FrameOfReference::Kind::image};
+  for (const TrackName& name : tracks) courses_[name.id].name = name;
+}
+
+void StoredRecording::add(const Instant& instant) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (const TrackName& name : instant.named) courses_[name.id].name = name;
+    for (const Sample& row : instant.samples) {
+      RecordingState::Course& course = courses_[row.track];
+      course.name.id = row.track;
+      if (course.rows++ == 0) {
+        course.first_s = seconds(instant.time);
+        course.first_instant = added_;
+      }
+      course.measured += row.measured() ? 1 : 0;
+      course.last_s = seconds(instant.time);
+      course.last_instant = added_;
+      sample(row.position);
+    }
+    ++added_;
+  }
+  open_rows_ += std::ssize(instant.samples) + std::ssize(instant.bodies);
+  open_.push_back({.index = instant.index,
+                   .time = instant.time,
+                   .samples = instant.samples,
+                   .seen = {},
+                   .bodies = instant.bodies,
+                   .named = {},
+                   .boxes = {},
+                   .frames = {}});
+  for (Sample& row : open_.back().samples) row.outline = nullptr;
+  if (std::ssize(open_) >= kStretchInstants || open_rows_ >= kStretchRows) close_stretch();
+}
+
+void StoredRecording::close_stretch() {
+  if (open_.empty()) return;
+  const RecordingState::Stretch stretch{seconds(open_.front().time), std::ssize(open_), open_rows_};
+  Bytes bytes = bytes_of(wire_of(open_, static_cast<std::uint32_t>(state_.instants), columns_));
+  const std::lock_guard lock(mutex_);
+  stretches_.push_back(std::move(bytes));
+  state_.stretches.push_back(stretch);
+  state_.instants += stretch.instants;
+  state_.last_s = seconds(open_.back().time);
+  open_.clear();
+  open_rows_ = 0;
+}
+
+void StoredRecording::finish(std::vector<std::string> warnings) {
+  close_stretch();
+  const std::lock_guard lock(mutex_);
+  state_.warnings = std::move(warnings);
+  state_.complete = true;
+}
+
+void StoredRecording::sample(const Vector<3>& position) {
+  if (until_next_-- > 0) return;
+  until_next_ = sampled_each_ - 1;
+  sampled_.push_back(position);
+  if (sampled_.size() < kMostSampled) return;
+  for (std::size_t i = 0; 2 * i < sampled_.size(); ++i) sampled_[i] = sampled_[2 * i];
+  sampled_.resize(sampled_.size() / 2);
+  sampled_each_ *= 2;
+}
+
+std::optional<Extent> StoredRecording::extent() const {
+  if (sampled_.empty()) return std::nullopt;
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Vector<3>& position : sampled_) values.push_back(position[axis]);
+    const auto cut = static_cast<std::ptrdiff_t>(kOutside * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), values.begin() + cut, values.end());
+    extent.low[axis] = values[static_cast<std::size_t>(cut)];
+    const std::ptrdiff_t last = std::ssize(values) - 1 - cut;
+    std::nth_element(values.begin(), values.begin() + last, values.end());
+    extent.high[axis] = values[static_cast<std::size_t>(last)];
+  }
+  return extent;
+}
+
+RecordingState StoredRecording::state() const {
+  const std::lock_guard lock(mutex_);
+  RecordingState state = state_;
+  for (const auto& [id, course] : courses_) {
+    if (course.rows > 0) state.tracks.push_back(course);
+  }
+  state.extent = extent();
+  return state;
+}
+
+Bytes StoredRecording::stretch(std::size_t number) const {
+  const std::lock_guard lock(mutex_);
+  return number < stretches_.size() ? stretches_[number] : nullptr;
+}
+
+std::string StoredRecording::course(TrackId track) const {
+  std::vector<Bytes> stretches;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = courses_.find(track);
+    if (known != courses_.end() && known->second.rows > 0) {
+      for (std::size_t i = 0; i < stretches_.size(); ++i) {
+        const RecordingState::Stretch& stretch = state_.stretches[i];
+        const double end_s = i + 1 < stretches_.size() ? state_.stretches[i + 1].first_s : state_.last_s;
+        if (end_s >= known->second.first_s && stretch.first_s <= known->second.last_s) stretches.push_back(stretches_[i]);
+      }
+    }
+  }
+  CourseColumns course;
+  for (const Bytes& stretch : stretches) gather_rows(*stretch, track, columns_, course);
+  std::string bytes(40, '\0');
+  bytes[0] = 4;
+  bytes[1] = 1;
+  bytes[2] = columns_.z ? 1 : 0;
+  const auto rows = static_cast<std::uint32_t>(course.time.size());
+  std::memcpy(bytes.data() + 24, &rows, sizeof rows);
+  append_column(bytes, course.time);
+  for (const std::vector<float>& axis : course.position) append_column(bytes, axis);
+  append_column(bytes, course.state);
+  return bytes;
+}
+
+}  // namespace marey::viewer

@@ -1,0 +1,156 @@
+#include "stored_recording.h"
+
+#include <cstring>
+#include <map>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "page_words.h"
+#include "scene.h"
+
+namespace marey::viewer {
+namespace {
+
+RecordingHeader header_in(FrameOfReference::Kind kind) {
+  RecordingHeader header;
+  header.frame.kind = kind;
+  header.rate_hz = 100;
+  return header;
+}
+
+Sample stored_row(int track, const Vector<3>& position) {
+  Sample row;
+  row.track = TrackId{track};
+  row.position = position;
+  row.box = Box{1, 2, 3, 4};
+  return row;
+}
+
+struct SlowCourse {
+  std::vector<double> time;
+  std::vector<float> x, y, z;
+};
+
+TEST(StoredRecording, CoursesAreWhatWasAdded) {
+  std::random_device random;
+  const unsigned seed = random();
+  std::mt19937 dice(seed);
+  for (const auto kind : {FrameOfReference::Kind::space, FrameOfReference::Kind::image}) {
+    StoredRecording stored(header_in(kind), {});
+    std::map<int, SlowCourse> slow;
+    for (int index = 0; index < 700; ++index) {
+      Instant instant;
+      instant.index = index;
+      instant.time = timestamp_from_seconds(index / 100.0);
+      for (int track = 1; track <= 12; ++track) {
+        if (dice() % 3 == 0 || (track == 5 && index < 300)) continue;
+        const Vector<3> at(dice() % 1000, dice() % 1000, kind == FrameOfReference::Kind::space ? dice() % 1000 : 0);
+        instant.samples.push_back(stored_row(track, at));
+        SlowCourse& course = slow[track];
+        course.time.push_back(index / 100.0);
+        course.x.push_back(static_cast<float>(at.x()));
+        course.y.push_back(static_cast<float>(at.y()));
+        course.z.push_back(static_cast<float>(at.z()));
+      }
+      if (dice() % 10 == 0) instant.bodies.push_back({});
+      stored.add(instant);
+    }
+    stored.finish({});
+    for (const auto& [track, course] : slow) {
+      const std::string bytes = stored.course(TrackId{track});
+      const std::size_t n = course.time.size();
+      const bool space = kind == FrameOfReference::Kind::space;
+      ASSERT_EQ(bytes.size(), 40 + n * (space ? 21 : 17)) << "seed " << seed;
+      EXPECT_EQ(std::memcmp(bytes.data() + 40, course.time.data(), 8 * n), 0) << "seed " << seed;
+      EXPECT_EQ(std::memcmp(bytes.data() + 40 + 8 * n, course.x.data(), 4 * n), 0) << "seed " << seed;
+      EXPECT_EQ(std::memcmp(bytes.data() + 40 + 12 * n, course.y.data(), 4 * n), 0) << "seed " << seed;
+      if (space) {
+        EXPECT_EQ(std::memcmp(bytes.data() + 40 + 16 * n, course.z.data(), 4 * n), 0) << "seed " << seed;
+      }
+    }
+    EXPECT_EQ(stored.course(TrackId{99}).size(), 40U);
+    EXPECT_EQ(stored.state().instants, 700);
+    EXPECT_GT(stored.stretch(0)->size(), 40U);
+    EXPECT_EQ(stored.stretch(1000), nullptr);
+  }
+}
+
+TEST(StoredRecording, MayBeAskedWhileItGrows) {
+  StoredRecording stored(header_in(FrameOfReference::Kind::space), {});
+  std::jthread asks([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      const RecordingState state = stored.state();
+      std::int64_t instants = 0;
+      for (std::size_t i = 0; i < state.stretches.size(); ++i) instants += state.stretches[i].instants;
+      EXPECT_EQ(instants, state.instants);
+      stored.course(TrackId{1});
+    }
+  });
+  for (int index = 0; index < 5000; ++index) {
+    Instant instant;
+    instant.index = index;
+    instant.time = timestamp_from_seconds(index / 100.0);
+    instant.samples.push_back(stored_row(1, {1, 2, 3}));
+    stored.add(instant);
+  }
+  stored.finish({"one warning"});
+  EXPECT_TRUE(stored.state().complete);
+  EXPECT_EQ(stored.state().warnings.size(), 1U);
+}
+
+TEST(StoredRecording, AFewThatAreFarOffDoNotStretchTheScene) {
+  StoredRecording stored(header_in(FrameOfReference::Kind::space), {});
+  std::mt19937 dice(1);
+  for (int index = 0; index < 3000; ++index) {
+    Instant instant;
+    instant.index = index;
+    const double far = index % 1000 == 7 ? 500 : 1;
+    instant.samples.push_back(stored_row(1, {far * (dice() % 100) / 100.0, 0, 1}));
+    stored.add(instant);
+  }
+  EXPECT_LE(stored.state().extent->high.x(), 1);
+  EXPECT_GE(stored.state().extent->high.x(), 0.9);
+}
+
+RecordingState state_between(const Vector<3>& low, const Vector<3>& high) {
+  RecordingState state;
+  state.extent = Extent{low, high};
+  return state;
+}
+
+TEST(Scene, APitchIsDrawnWherePeopleMoveOnOne) {
+  const RecordingHeader header = header_in(FrameOfReference::Kind::user_ground);
+  const auto text = [&](const Vector<3>& low, const Vector<3>& high, const GroundChoice& choice) {
+    return scene_text(header, state_between(low, high), choice, false);
+  };
+  EXPECT_NE(text({2, 3, 0}, {101, 66, 0}, {}).find(R"("pitch":{"length":105.0,"width":68.0,"x":0.0,"y":0.0})"), std::string::npos);
+  EXPECT_NE(text({-50, -30, 0}, {50, 31, 0}, {}).find(R"("x":-52.5,"y":-34.0})"), std::string::npos);
+  EXPECT_NE(text({-9, -9, 0}, {12, 12, 0}, {}).find(R"("pitch":null)"), std::string::npos);
+  EXPECT_NE(text({-9, -9, 0}, {12, 12, 0}, {.pitch = geometry::PitchSize{40, 20}}).find(R"("pitch":{"length":40.0)"),
+            std::string::npos);
+}
+
+TEST(Scene, NamesFromOutsideStayText) {
+  RecordingHeader header = header_in(FrameOfReference::Kind::space);
+  header.name = "a\"b\\\xff</script>\n";
+  const std::string text = scene_text(header, RecordingState{}, {}, false);
+  EXPECT_NE(text.find(R"("name":"a\"b\\)"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\xff'), std::string::npos);
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+}
+
+TEST(PageWords, TakeNumbersAndNothingElse) {
+  std::string_view line = "  film 12 640x";
+  EXPECT_EQ(next_word(line), "film");
+  EXPECT_EQ(whole_in(next_word(line), 0, 100), 12);
+  EXPECT_EQ(whole_in(next_word(line), 0, 1000), std::nullopt);
+  EXPECT_EQ(next_word(line), "");
+  for (const char* wrong : {"", "-1", "101", "1e2", "99999999999999999999", "+5", "0x1"})
+    EXPECT_EQ(whole_in(wrong, 0, 100), std::nullopt) << wrong;
+}
+
+}  // namespace
+}  // namespace marey::viewer

@@ -1,0 +1,55 @@
+// What goes to the page in bytes: numbers in columns, so that the page lays arrays over them and copies nothing. Little-endian.
+//
+// A header of 40 bytes: uint8 kind, uint8 version (1), uint16 flags, uint32 sequence, uint64 capture time (ns, by the recording's
+// clock), uint64 send time (ns, by the server's steady clock; 0 in what is stored), then four uint32.
+//
+// Kinds 1 (a stretch of a recording; sequence is its first instant's place, from 0) and 2 (one live instant; sequence counts them).
+// The four are the numbers of instants n, rows r, poses p, and 0. Then the columns
+//   float64 time[n] (s);  uint32 index[n], row_end[n], pose_end[n];  int32 track[r];  float32 x[r], y[r], with flag 1 z[r];
+//   with flag 2 float32 left[r], top[r], width[r], height[r];  int32 body[p];  float32 px[p], py[p], pz[p], qx[p], qy[p], qz[p],
+//   qw[p]; uint8 state[r]: provenance (0 measured, 1 filled, 2 predicted, 3 solved), and 8 where the row has a box;  uint8
+//   tracked[p].
+//
+// Kind 3 is a camera's picture; sequence is its frame. The four are camera, the numbers of points n and of boxes b, and
+// width | height << 16 of the camera's pictures (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: nobody's),
+// float32 left[b], top[b], width[b], height[b], int32 track[b], all px of the camera; the rest is a JPEG, or nothing where there is
+// no picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/core/instant.h"
+
+namespace marey::viewer {
+
+/// Which optional columns a recording's stretches have.
+struct WireColumns {
+  bool z = false;
+  bool boxes = false;
+};
+
+/// Kind 1.
+std::string wire_of(std::span<const Instant> instants, std::uint32_t first, const WireColumns& columns);
+/// Kind 2.
+std::string wire_of(const Instant& instant, std::uint32_t sequence, const WireColumns& columns, std::uint64_t sent_ns);
+
+/// What is drawn over a camera's picture.
+struct WirePicture {
+  CameraId camera{};
+  std::int64_t frame = 0;
+  Timestamp time{};
+  std::uint64_t sent_ns = 0;
+  cv::Size size;                     ///< px, of the camera's pictures
+  std::span<const SeenPoint> seen;   ///< those of other cameras are passed over
+  std::span<const BoxInView> boxes;  ///< likewise
+  std::string_view jpeg;
+};
+/// Kind 3.
+std::string wire_of(const WirePicture& picture);
+
+}  // namespace marey::viewer
