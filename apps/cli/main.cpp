@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_calibrate(root);
   add_convert(root);
   add_info(root);
+  add_play(root);
   add_reconstruct(root);
   add_experiment(root);
   return program.run(argc, argv);
