@@ -14,6 +14,7 @@ void add_convert(Command& program);
 void add_info(Command& program);
 void add_edit(Command& program);
 void add_view(Command& program);
+void add_play(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_info(root);
   add_edit(root);
   add_view(root);
+  add_play(root);
   add_reconstruct(root);
   add_experiment(root);
   return program.run(argc, argv);

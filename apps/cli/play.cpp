@@ -1,0 +1,91 @@
+#include "marey/pipeline/play.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "pitch_size.h"
+#include "run_hooks.h"
+#include "stream_options.h"
+
+namespace marey::cli {
+namespace {
+
+struct PlayCommand {
+  std::string recording;
+  std::string size = "105x68";
+  format::ReadOptions read;
+  pipeline::PlayOptions how;
+  StreamArguments streams;
+  bool json = false;
+  bool quiet = false;
+};
+
+void report(const PlayCommand& command, const pipeline::PlaySummary& done, const stream::Streams& streams) {
+  warn(done.warnings);
+  if (command.json) {
+    print({{"recording", command.recording},
+           {"instants", done.instants},
+           {"left_out", done.left_out},
+           {"skipped", done.skipped},
+           {"rounds", done.rounds},
+           {"seconds", done.seconds},
+           {"stopped", done.stopped},
+           {"streams", json_of(streams)}});
+  } else if (!command.quiet) {
+    fmt::print(stderr, "{}: {} instants in {:.1f} s", command.recording, done.instants, done.seconds);
+    if (command.how.loop) fmt::print(stderr, ", {} rounds", done.rounds);
+    if (done.left_out > 0) fmt::print(stderr, ", {} left out by --rate", done.left_out);
+    if (done.skipped > 0) fmt::print(stderr, ", {} skipped because this machine was late", done.skipped);
+    fmt::print(stderr, "\n");
+    tell_streams(streams);
+  }
+  // To end it is the only way where it loops.
+  if (done.stopped && !command.how.loop) throw EndWith{kInterrupted};
+}
+
+void run(PlayCommand& command) {
+  command.read.pitch = parse_pitch_size(command.size);
+  if (command.streams.streams.empty()) command.streams.streams = {"json"};
+  const auto open = [&]() -> std::unique_ptr<RecordingReader> { return format::open_recording(command.recording, command.read); };
+  open();  // what cannot be read is told before a port is taken
+  const stream::Streams streams = open_streams(command.streams, command.quiet);
+  const auto sinks = streams.sinks();
+  const pipeline::PlaySummary done = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::play(open, sinks, command.how, &streams.clock(), hooks); });
+  report(command, done, streams);
+}
+
+}  // namespace
+
+void add_play(Command& program) {
+  auto options = std::make_shared<PlayCommand>();
+  pipeline::PlayOptions& how = options->how;
+  Command command = program.subcommand("play", "Play a recording in real time, as if it were captured now, to whoever listens");
+  command.input_file("RECORDING", options->recording, "known by its content: " + format::names_of_read(format::kRecordings))
+      .required();
+  command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
+  command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
+  command.number("--rate", how.rate_hz, "Hz", kRates, "at most so many instants a second of the recording");
+  add_stream_options(command, options->streams);
+  command.group("The recording");
+  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice("--from-up", options->read.up, kAxes,
+                 "the axis that is up in a file of points; streams have z up, or what they want");
+  command.number("--recorded-rate", options->read.rate_hz, "Hz", kRates, "frames a second, where the file does not say");
+  command.input_file("--metadata", options->read.metadata, "of TRACAB, EPTS or DFL, where it is not beside it under a like name");
+  command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m, where a match does not say").check(parse_pitch_size);
+  command.group("");
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace marey::cli

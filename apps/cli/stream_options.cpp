@@ -1,0 +1,55 @@
+#include "stream_options.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace marey::cli {
+
+void add_stream_options(Command& command, StreamArguments& arguments) {
+  command.group("Streams");
+  command
+      .texts("--stream", arguments.streams,
+             fmt::format("WIRE[:HOST[:PORT]], once for each: {}; this host alone where no HOST is named", stream::wire_names(", ")))
+      .check([](const std::string& text) { stream::parse_target(text); });
+  command.flag("--allow-control", arguments.allow_control, "clients of qtm may take control: start and stop a recording");
+  command.group("");
+}
+
+stream::Streams open_streams(const StreamArguments& arguments, bool quiet, std::function<bool(bool on)> record) {
+  stream::Streams streams(arguments.streams, {.allow_control = arguments.allow_control, .record = std::move(record)});
+  if (quiet) return streams;
+  for (const stream::WireReport& report : streams.reports())
+    fmt::print(stderr, "marey: {} {} {}\n", report.wire, report.listens ? "at" : "to", report.where);
+  return streams;
+}
+
+void tell_streams(const stream::Streams& streams) {
+  for (const stream::WireReport& report : streams.reports()) {
+    fmt::print(stderr, "{}\n", to_string(report));
+    for (const std::string& note : report.notes) fmt::print(stderr, "marey: warning: {}: {}\n", report.wire, note);
+  }
+}
+
+Json json_of(const stream::Streams& streams) {
+  Json all = Json::array();
+  for (const stream::WireReport& report : streams.reports()) {
+    Json told({{"wire", report.wire},
+               {"address", report.where},
+               {"frames", report.frames},
+               {"clients", report.clients},
+               {"sent", report.sent},
+               {"dropped", report.dropped},
+               {"refused", report.refused},
+               {"sent_off", report.sent_off},
+               {"notes", report.notes}});
+    if (report.sending.count() > 0) {
+      told["p50_ms"] = 1e3 * report.sending.quantile(0.5);
+      told["p99_ms"] = 1e3 * report.sending.quantile(0.99);
+    }
+    all.push_back(std::move(told));
+  }
+  return all;
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "marey/stream/streams.h"
+
+#include "command_line.h"
+#include "json_value.h"
+
+namespace marey::cli {
+
+/// `--stream` and `--allow-control`, for every command whose results others may listen to.
+struct StreamArguments {
+  std::vector<std::string> streams;
+  bool allow_control = false;
+};
+
+void add_stream_options(Command& command, StreamArguments& arguments);
+
+/// Opens the wires, and says on standard error where each is, but for `quiet`. `record` starts and stops a recording, where there
+/// is one to be had. Their sinks are `streams.sinks()`.
+stream::Streams open_streams(const StreamArguments& arguments, bool quiet, std::function<bool(bool on)> record = {});
+
+/// What came of them, a line each on standard error.
+void tell_streams(const stream::Streams& streams);
+/// The same for `--json`.
+Json json_of(const stream::Streams& streams);
+
+}  // namespace marey::cli

@@ -1,0 +1,63 @@
+// What one client of the Qualisys protocol says and is answered, without a socket.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "marey/stream/qtm_packets.h"
+#include "marey/stream/qtm_parameters.h"
+#include "marey/stream/server.h"
+
+namespace marey::stream {
+
+/// What all clients share.
+struct QtmState {
+  const RecordingHeader* header = nullptr;
+  const Cast* cast = nullptr;
+  bool allow_control = false;
+  std::function<bool(bool on)> record;  ///< may be empty
+  const void* master = nullptr;         ///< the session in control
+  std::optional<Instant> newest;        ///< the last moment that was sent
+  QtmEvent last_event = QtmEvent::connected;
+};
+
+class QtmSession : public Session {
+ public:
+  QtmSession(QtmState& state, Address client) : state_(&state), client_(client) {}
+  ~QtmSession() override;
+
+  void joined(Outbox& out) override;
+  std::size_t received(std::string_view bytes, Outbox& out) override;
+  /// The packets that answer a command, mostly one.
+  std::vector<std::string> answer(std::string_view command);
+
+  /// What it streams; nothing while it does not.
+  const std::optional<QtmStreamRequest>& streaming() const { return streaming_; }
+  /// Whether this moment is due to it; then it counts as given.
+  bool is_due(const Instant& instant);
+  /// Over UDP, where to.
+  std::optional<Address> datagrams_to() const;
+
+ private:
+  std::vector<std::string> answer_known(const std::vector<std::string>& words);
+  std::string version(const std::vector<std::string>& words);
+  std::string parameters(const std::vector<std::string>& words) const;
+  std::string current_frame(const std::vector<std::string>& words) const;
+  std::string stream(const std::vector<std::string>& words);
+  std::string control(const std::vector<std::string>& words);
+  std::string as_master(const std::vector<std::string>& words);
+
+  QtmState* state_;
+  Address client_;
+  int minor_ = 1;
+  bool closing_ = false;
+  std::optional<QtmStreamRequest> streaming_;
+  std::int64_t seen_ = 0;
+  std::optional<Timestamp> due_;
+};
+
+}  // namespace marey::stream
