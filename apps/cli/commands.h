@@ -15,6 +15,8 @@ void add_info(Command& program);
 void add_edit(Command& program);
 void add_view(Command& program);
 void add_play(Command& program);
+void add_live(Command& program);
+void add_cameras(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
   add_view(root);
   add_play(root);
   add_reconstruct(root);
+  add_live(root);
+  add_cameras(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

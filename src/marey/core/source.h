@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/frame.h"
+#include "marey/core/frame_set.h"
 
 namespace marey {
 
@@ -34,19 +35,34 @@ class Source {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
+/// How a live camera is, and what became of its frames so far.
+struct LiveReport {
+  bool connected = false;
+  std::string trouble;           ///< why it is not, or what went wrong last, one sentence; empty where nothing did
+  std::int64_t connections = 0;  ///< how often it was opened
+  std::int64_t received = 0;     ///< frames that came
+  std::int64_t lost = 0;         ///< frames that it took and that never came, by the gaps in its own numbers
+  std::int64_t damaged = 0;      ///< frames that came in part, could not be decoded, or had another size than the first
+  std::int64_t overrun = 0;      ///< frames let go because more had come than the few that are kept
+};
+
 /// A camera that does not wait for its reader.
 class LiveSource {
  public:
   virtual ~LiveSource() = default;
 
-  virtual const SourceInfo& info() const = 0;
+  /// Size and rate are known once it was connected, not before.
+  virtual SourceInfo info() const = 0;
 
   /// What has come since the last call, of that the last few, in order; their times are by the run's clock. Never waits.
-  virtual std::vector<Frame> arrived() = 0;
-  /// How many frames were let go, because more had come than the few that are kept.
-  virtual std::int64_t overrun() const = 0;
+  virtual std::vector<CameraFrame> arrived() = 0;
+  /// Whether it is there now. One that is not is looked for again, without end.
+  virtual bool connected() const { return true; }
+  /// Pictures of another size are not taken from now on.
+  virtual void take_only(cv::Size /*size*/) {}
   /// Whether nothing will come any more.
   virtual bool ended() const = 0;
+  virtual LiveReport report() const { return {}; }
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 

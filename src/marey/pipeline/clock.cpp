@@ -10,7 +10,6 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kInStep = 0.02;    // of a frame: what moves no marker by more than noise
 constexpr double kFarthest = 60;    // px that a detection may move in a frame and still be found again
 constexpr int kDetectedAtOnce = 4;  // frames that a camera that detects is asked for
 
@@ -51,7 +50,8 @@ Clock::Clock(std::vector<Feed> feeds, const ClockOptions& options)
     rate_hz_ = feeds_.front().rate_hz();
   } else {
     for (const Feed& feed : feeds_)
-      rate_hz_ = std::max(rate_hz_, feed.info().rate_hz.value_or(feed.has_pictures() ? kUsualRate : 0));
+      rate_hz_ = std::max(rate_hz_, feed.info().rate_hz.value_or(feed.has_pictures() && !options_.live ? kUsualRate : 0));
+    if (options_.live && rate_hz_ <= 0) rate_hz_ = kUsualRate;
   }
 }
 

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -36,6 +37,7 @@ struct ClockOptions {
   Pace pace = Pace::first_camera;
   bool interpolate = false;
   std::optional<source::LivePolicy> live = {};  ///< the feeds are live cameras; the pace is even
+  std::function<void()> waiting = {};           ///< called now and then while live cameras are waited for
 };
 
 /// Moments and frames that a live run let go.
@@ -70,6 +72,8 @@ class Clock {
   std::int64_t missed(std::size_t number) const { return lanes_[number].missed; }
   /// Nothing where the cameras are not live.
   std::optional<LiveDrops> drops() const;
+  /// How each camera is now.
+  std::vector<FeedState> states() const;
   const StageTimes& decoding() const { return decoding_; }
   const StageTimes& detecting() const { return detecting_; }
   std::vector<std::string> warnings() const;
@@ -82,7 +86,8 @@ class Clock {
     std::int64_t frames = 0, missed = 0;
   };
 
-  static constexpr double kHalf = 0.505;  // of a frame: a camera's frame that is nearer belongs to the moment
+  static constexpr double kHalf = 0.505;   // of a frame: a camera's frame that is nearer belongs to the moment
+  static constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
 
   bool begin();
   void fill(Timestamp until);
@@ -90,7 +95,6 @@ class Clock {
   std::optional<CameraFrame> take(std::size_t number, Timestamp now);
   std::optional<Timestamp> next_moment();
   bool all_over(Timestamp now) const;
-  std::vector<FeedState> states() const;
 
   // live_clock.cpp
   std::optional<FrameSet> next_live();
@@ -103,6 +107,7 @@ class Clock {
   std::optional<std::int64_t> ready() const;
   void let_go_before(std::int64_t index);
   void forget_before(Timestamp now);
+  void follow(const FrameSet& set);
 
   ClockOptions options_;
   std::vector<Feed> feeds_;
@@ -114,6 +119,7 @@ class Clock {
   std::stop_token stop_ = StopScope::current();
   Timestamp live_begin_{};
   LiveDrops drops_;
+  std::vector<double> off_;  // follow's
   StageTimes decoding_, detecting_;
 };
 

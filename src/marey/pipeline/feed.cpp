@@ -13,6 +13,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
+#include "marey/core/source_name.h"
 #include "marey/format/observations.h"
 #include "marey/format/tracks/detections.h"
 #include "marey/pipeline/stopwatch.h"
@@ -165,6 +166,8 @@ class Feed::Observations final : public Input {
 namespace {
 
 std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions& options) {
+  if (!scheme_of(camera.source).empty())
+    throw Error("its source {} is live; run marey live, or name a recording in its place", shown_source(camera.source));
   auto source = source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : options.rate_hz);
   if (!camera.region) return source;
   const cv::Rect region = within(*camera.region, source->info().size, camera.source);
@@ -205,7 +208,7 @@ Feed::Feed(Feed&&) noexcept = default;
 Feed& Feed::operator=(Feed&&) noexcept = default;
 
 const SourceInfo& Feed::info() const {
-  return live_ != nullptr ? live_->info() : input_->info();
+  return live_ != nullptr ? live_info_ : input_->info();
 }
 
 double Feed::rate_hz() const {
@@ -222,7 +225,18 @@ Feed Feed::absent(const RigCamera& camera, CameraId id) {
 
 Feed Feed::live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source) {
   Feed feed(camera, id, {}, nullptr);
-  fit_to_size(feed.camera_, source->info().size);
+  feed.live_info_ = source->info();
+  cv::Size& size = feed.live_info_.size;
+  if (size.empty() && camera.size && !camera.region) source->take_only(*camera.size);
+  try {
+    if (camera.region && !size.empty()) within(*camera.region, size, feed.live_info_.name);
+    if (camera.region) size = camera.region->size();
+    if (!size.empty()) fit_to_size(feed.camera_, size);
+  } catch (const Error& error) {
+    throw Error("{}", said_of(camera, error.what()));
+  }
+  if (size.empty() && camera.size) size = *camera.size;
+  if (camera.rate_hz) feed.live_info_.rate_hz = camera.rate_hz;
   feed.live_ = std::move(source);
   return feed;
 }
@@ -245,7 +259,7 @@ std::optional<CameraFrame> Feed::next() {
 CameraFrame Feed::taken_in(CameraFrame given) {
   given.frame.camera = id_;
   given.frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
-  if (detector_ == nullptr) return given;
+  if (detector_ == nullptr || given.detections) return given;
   const Stopwatch detecting;
   given.detections = detector_->detect(given.frame, {}).detections;
   given.detect_s = detecting.seconds();
@@ -254,13 +268,24 @@ CameraFrame Feed::taken_in(CameraFrame given) {
 
 std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy) {
   std::vector<CameraFrame> frames;
-  for (Frame& frame : live_->arrived()) frames.push_back(taken_in({.frame = std::move(frame), .detections = {}}));
+  for (CameraFrame& given : live_->arrived()) {
+    Picture& picture = given.frame.picture;
+    if (camera_.region && !picture.empty()) {
+      if ((*camera_.region & cv::Rect({}, picture.size())) != *camera_.region) continue;
+      picture = picture.part(*camera_.region);
+    }
+    frames.push_back(taken_in(std::move(given)));
+  }
   if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
   return frames;
 }
 
+/// Who says itself that it is gone is believed at once.
 FeedState Feed::state(Timestamp begin, const source::LivePolicy& policy) const {
-  return live_->ended() ? FeedState::ended : health_.at(policy.time->now(), begin, policy);
+  if (live_->ended()) return FeedState::ended;
+  const FeedState state = health_.at(policy.time->now(), begin, policy);
+  const bool gives = state == FeedState::live || state == FeedState::back;
+  return gives && !live_->connected() ? FeedState::stalled : state;
 }
 
 /// A file rounds its times, to milliseconds often: a camera that keeps its rate is believed more.

@@ -43,7 +43,8 @@ class Feed {
 
   /// A camera that gives nothing.
   static Feed absent(const RigCamera& camera, CameraId id);
-  /// A camera that does not wait for its reader: `arrived` is asked, not `next`.
+  /// A camera that does not wait for its reader: `arrived` is asked, not `next`. Where it is not connected yet, the rig's size and
+  /// rate are believed. Throws Error where its pictures do not fit the rig.
   static Feed live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source);
   bool is_live() const { return live_ != nullptr; }
 
@@ -56,8 +57,9 @@ class Feed {
   std::optional<CameraFrame> next();
   /// Of a live camera, what has come since the last call, in order; never waits for it.
   std::vector<CameraFrame> arrived(const source::LivePolicy& policy);
-  /// Of a live camera, how many frames were let go because they were not asked for in time.
-  std::int64_t overrun() const { return live_ != nullptr ? live_->overrun() : 0; }
+  /// Of a live camera: whether it is there, and what became of its frames.
+  bool is_connected() const { return live_ == nullptr || live_->connected(); }
+  LiveReport report() const { return live_ != nullptr ? live_->report() : LiveReport{}; }
 
   FeedState state() const { return state_; }
   bool has_ended() const { return live_ != nullptr ? live_->ended() : state_ == FeedState::ended; }
@@ -96,6 +98,7 @@ class Feed {
   std::unique_ptr<Life> life_;
   std::unique_ptr<Input> input_;
   std::unique_ptr<LiveSource> live_;  // then there is no input
+  SourceInfo live_info_;
   source::FeedHealth health_;
   std::unique_ptr<detect::Detector> detector_;
   std::optional<double> first_s_;

@@ -11,6 +11,7 @@ namespace marey::pipeline {
 namespace {
 
 constexpr std::size_t kKept = 16;  // frames of a camera that wait for their moments
+constexpr double kFollow = 0.05;   // of what the moments are off the frames, each time
 
 bool is_waited_for(FeedState state) {
   return state == FeedState::connecting || state == FeedState::live || state == FeedState::back;
@@ -35,9 +36,11 @@ std::optional<FrameSet> Clock::next_live() {
       }
       next_ = *index + 1;
       forget_before(set.time);
+      follow(set);
       return set;
     }
     if (over) return std::nullopt;
+    if (options_.waiting) options_.waiting();
     options_.live->time->wait();
   }
 }
@@ -73,6 +76,19 @@ Timestamp Clock::moment(std::int64_t index) const {
   return *start_ + duration_from_seconds(static_cast<double>(index) / rate_hz_);
 }
 
+/// Cameras in step that are faster than they say, or slower, would slip from one moment into the next by and by, not all at the
+/// same time: the moments follow them.
+void Clock::follow(const FrameSet& set) {
+  off_.clear();
+  for (const auto& camera : set.cameras) {
+    if (camera) off_.push_back(seconds(camera->frame.time - set.time));
+  }
+  if (off_.empty()) return;
+  std::nth_element(off_.begin(), off_.begin() + static_cast<std::ptrdiff_t>(off_.size() / 2), off_.end());
+  const double off = off_[off_.size() / 2];
+  if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kFollow * off);
+}
+
 /// The moment that the newest frame belongs to.
 std::int64_t Clock::last_moment() const {
   std::int64_t last = next_ - 1;
@@ -97,7 +113,7 @@ bool Clock::is_whole(std::int64_t index) const {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     const auto& waiting = lanes_[i].waiting;
     const bool passed = !waiting.empty() && waiting.back().frame.time > now;
-    if (is_waited_for(states[i]) && !passed && !has_frame_of(lanes_[i], now)) return false;
+    if (is_waited_for(states[i]) && feeds_[i].is_connected() && !passed && !has_frame_of(lanes_[i], now)) return false;
   }
   return true;
 }
@@ -143,7 +159,7 @@ void Clock::forget_before(Timestamp now) {
 std::optional<LiveDrops> Clock::drops() const {
   if (!options_.live) return std::nullopt;
   LiveDrops all = drops_;
-  for (const Feed& feed : feeds_) all.overrun += feed.overrun();
+  for (const Feed& feed : feeds_) all.overrun += feed.report().overrun;
   return all;
 }
 

@@ -5,14 +5,12 @@
 #include <deque>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "marey/pipeline/clock.h"
-#include "marey/source/live_source.h"
 
 namespace marey::pipeline {
 namespace {
@@ -48,13 +46,13 @@ class FakeCamera final : public LiveSource {
     }
   }
 
-  const SourceInfo& info() const override { return info_; }
-  std::vector<Frame> arrived() override {
-    std::vector<Frame> frames;
-    for (; !coming_.empty() && coming_.front().first <= time_->now(); coming_.pop_front()) frames.push_back(coming_.front().second);
+  SourceInfo info() const override { return info_; }
+  std::vector<CameraFrame> arrived() override {
+    std::vector<CameraFrame> frames;
+    for (; !coming_.empty() && coming_.front().first <= time_->now(); coming_.pop_front())
+      frames.push_back({.frame = coming_.front().second, .detections = {}});
     return frames;
   }
-  std::int64_t overrun() const override { return 0; }
   bool ended() const override { return coming_.empty(); }
 
  private:
@@ -206,34 +204,6 @@ TEST_F(LiveClockTest, EndsWhereItIsAskedTo) {
   const StopScope scope(source.get_token());
   Clock clock = this->clock();
   EXPECT_FALSE(clock.next());
-}
-
-TEST(ReadLive, KeepsTheLastFewAndCountsTheRest) {
-  class Burst final : public Source {
-   public:
-    const SourceInfo& info() const override { return info_; }
-    std::optional<Frame> next() override {
-      if (next_ == 10) return std::nullopt;
-      Frame frame;
-      frame.index = next_++;
-      frame.time = timestamp_from_seconds(7 + static_cast<double>(frame.index) / kRate);
-      return frame;
-    }
-
-   private:
-    SourceInfo info_;
-    std::int64_t next_ = 0;
-  };
-  const auto time = std::make_shared<FakeTime>();
-  time->pass(3);
-  const auto live = source::read_live(std::make_unique<Burst>(), time, 4);
-  while (!live->ended()) std::this_thread::yield();
-  const auto frames = live->arrived();
-  ASSERT_EQ(frames.size(), 4u);
-  EXPECT_EQ(frames.front().index, 6);
-  EXPECT_NEAR(seconds(frames.back().time), 3 + 9 / kRate, 1e-6) << "by the run's clock, from when the first came";
-  EXPECT_EQ(live->overrun(), 6);
-  EXPECT_TRUE(live->arrived().empty());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "marey/pipeline/simulation_files.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/reconstruct/learned_noise.h"
+#include "marey/reconstruct/own_time.h"
 #include "marey/reconstruct/set_labels.h"
 #include "marey/track/gap_filler.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
 constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
+constexpr double kInStep = 0.02;          // of a frame: what moves no marker by more than noise
 
 /// What still waited for the end of gaps when the cameras had ended.
 class Waiting final : public InstantSource {
@@ -37,6 +39,7 @@ class MarkersInSpace final : public Stage {
       : options_(options),
         noise_(options.noise_px),
         labels_(options.set),
+        own_time_(cameras_of(rig)),
         filler_(frames_in(options.fill_s, rate_hz), frames_in(std::min(options.predict_s, options.fill_s), rate_hz)) {
     header_.name = "the rig";
     header_.made_by.program = "marey reconstruct";
@@ -53,8 +56,9 @@ class MarkersInSpace final : public Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const Stopwatch chain;
+    expect(frames.time);
     see(frames);
-    const reconstruct::Correspondences& found = correspond(frames);
+    const reconstruct::Correspondences& found = correspond();
     corresponding_.add(chain.seconds());
     const Stopwatch tracking;
     points_.clear();
@@ -64,15 +68,16 @@ class MarkersInSpace final : public Stage {
     const auto tracks = tracker_->step(frames.time, points_);
     labels_.give(tracks);
     tracking_.add(tracking.seconds());
-    filler_.add(instant_of(frames, found, tracks), tracks);
-    known_.clear();
-    while (auto instant = filler_.next()) known_.push_back(std::move(*instant));
+    tell(instant_of(frames, found, tracks), tracks);
     ++frames_;
     chain_.add(chain.seconds());
     return known_;
   }
 
-  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override { return std::make_unique<Waiting>(filler_); }
+  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+    if (options_.live) return nullptr;
+    return std::make_unique<Waiting>(filler_);
+  }
 
   void report(Summary& summary) const override {
     summary.figures["noise_px"] = noise_.px();
@@ -93,6 +98,12 @@ class MarkersInSpace final : public Stage {
   }
 
  private:
+  static std::vector<std::optional<Camera>> cameras_of(const Rig& rig) {
+    std::vector<std::optional<Camera>> cameras;
+    for (const RigCamera& camera : rig.cameras) cameras.push_back(camera.camera());
+    return cameras;
+  }
+
   static int frames_in(double duration, double rate_hz) { return static_cast<int>(std::lround(duration * rate_hz)); }
 
   void choose_cameras(const Rig& rig) {
@@ -114,24 +125,36 @@ class MarkersInSpace final : public Stage {
     corresponder_.emplace(std::move(cameras), correspond, std::move(ids));
   }
 
+  void expect(Timestamp now) {
+    expected_.clear();
+    for (const Track<3>& track : tracker_->expected(now)) {
+      if (track.covariance.trace() < 3 * kSurePrediction * kSurePrediction) expected_.push_back(track);
+    }
+  }
+
   void see(const FrameSet& frames) {
     seen_.clear();
     for (std::size_t c = 0; c < frames.cameras.size(); ++c) {
       if (!frames.cameras[c] || !calibrated_[c]) continue;
+      const auto first = std::ssize(seen_);
       for (const Detection& detection : *frames.cameras[c]->detections) {
         Observation<2> blob = observation_of(detection);
         if (blob.covariance.trace() > 2 * kVaguest * kVaguest) continue;
         blob.camera = CameraId{static_cast<int>(c)};
         seen_.push_back(blob);
       }
+      if (options_.live)
+        bring_to(frames.time, *frames.cameras[c], CameraId{static_cast<int>(c)},
+                 std::span(seen_).subspan(static_cast<std::size_t>(first)));
     }
   }
 
-  const reconstruct::Correspondences& correspond(const FrameSet& frames) {
-    expected_.clear();
-    for (const Track<3>& track : tracker_->expected(frames.time)) {
-      if (track.covariance.trace() < 3 * kSurePrediction * kSurePrediction) expected_.push_back(track);
-    }
+  void bring_to(Timestamp now, const CameraFrame& given, CameraId camera, std::span<Observation<2>> blobs) {
+    const bool in_step = std::abs(seconds(given.frame.time - now)) <= kInStep / header_.rate_hz;
+    own_time_.bring(camera, in_step ? now : given.frame.time, now, blobs, expected_);
+  }
+
+  const reconstruct::Correspondences& correspond() {
     const reconstruct::Correspondences* found = &corresponder_->match(seen_, expected_);
     if (noise_.learn(*found)) {
       corresponder_->set_noise(noise_.px());
@@ -144,6 +167,40 @@ class MarkersInSpace final : public Stage {
       if (reason) ++missed_[*reason];
     }
     return *found;
+  }
+
+  void tell(Instant instant, std::span<const Track<3>> tracks) {
+    known_.clear();
+    if (options_.live) {
+      predict(instant, tracks);
+      known_.push_back(std::move(instant));
+      return;
+    }
+    filler_.add(std::move(instant), tracks);
+    while (auto waited = filler_.next()) known_.push_back(std::move(*waited));
+  }
+
+  /// Markers that were seen a moment ago are told where they are expected.
+  void predict(Instant& instant, std::span<const Track<3>> tracks) {
+    for (const Track<3>& track : tracks) {
+      if (!track.confirmed) continue;
+      if (track.observation) {
+        last_seen_[track.id] = instant.time;
+        continue;
+      }
+      const auto seen = last_seen_.find(track.id);
+      if (seen == last_seen_.end()) continue;
+      if (seconds(instant.time - seen->second) > options_.predict_s) {
+        last_seen_.erase(seen);
+        continue;
+      }
+      Sample& sample = instant.samples.emplace_back();
+      sample.track = track.id;
+      sample.position = track.position;
+      sample.covariance = track.covariance;
+      sample.provenance = Provenance::predicted;
+    }
+    std::sort(instant.samples.begin(), instant.samples.end(), [](const Sample& a, const Sample& b) { return a.track < b.track; });
   }
 
   Instant instant_of(const FrameSet& frames, const reconstruct::Correspondences& found, std::span<const Track<3>> tracks) {
@@ -191,10 +248,12 @@ class MarkersInSpace final : public Stage {
   std::vector<bool> calibrated_;  // by camera of the rig
   reconstruct::LearnedNoise noise_;
   reconstruct::SetLabels labels_;
+  reconstruct::OwnTime own_time_;
   track::GapFiller filler_;
   std::optional<reconstruct::Corresponder> corresponder_;
   std::unique_ptr<track::Tracker<3>> tracker_;
   std::map<TrackId, std::string> names_;
+  std::map<TrackId, Timestamp> last_seen_;  // where `live`
   StageTimes corresponding_, tracking_, chain_;
   std::vector<std::string> warnings_;
   std::map<reconstruct::NoPoint, std::int64_t> missed_;

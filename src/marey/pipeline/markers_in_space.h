@@ -26,6 +26,9 @@ struct MarkersInSpaceOptions {
   std::optional<double> rate_hz;  ///< of sources and observations of which nobody says it
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is reported as it was expected; ≤ fill_s
+  /// Every instant is told as it comes, and no gap is filled; its first `predict_s` are told as they are expected. What a camera
+  /// saw beside the moment is brought to it by the markers' motion.
+  bool live = false;
 };
 
 /// `rig` as its feeds are. Instants wait for as long as the longest gap that is filled; memory does not grow with the recording.

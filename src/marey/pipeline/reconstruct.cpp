@@ -40,7 +40,7 @@ Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInS
   for (Feed& feed : feeds) {
     if (feed.has_pictures()) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.markers));
   }
-  return Clock(std::move(feeds), {.pace = ClockOptions::Pace::even, .interpolate = true});
+  return Clock(std::move(feeds), {.pace = ClockOptions::Pace::even, .interpolate = !options.live});
 }
 
 void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {

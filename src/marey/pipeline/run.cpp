@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/source_name.h"
 #include "marey/format/input_hash.h"
 
 namespace marey::pipeline {
@@ -63,7 +64,7 @@ RecordingHeader signed_header(RecordingHeader header, const Clock& clock, const 
   header.made_by.program += " " MAREY_VERSION;
   header.made_by.options = hooks.options;
   for (const Feed& feed : clock.feeds()) {
-    if (!feed.info().name.empty()) header.made_by.inputs.push_back(format::input_of(feed.info().name));
+    if (!feed.info().name.empty()) header.made_by.inputs.push_back(format::input_of(shown_source(feed.info().name)));
   }
   return header;
 }
@@ -161,6 +162,8 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   if (hooks.stop.stop_requested() && summary.stopped && summary.samples == 0)
     throw Stopped("stopped before anything was tracked; nothing was written");
   sinks.finish();
+  for (std::string& trouble : sinks.troubles()) summary.warnings.push_back(std::move(trouble));
+  summary.sink_failed = sinks.failed();
   counter.finish();
   summary.rate_hz = clock.rate_hz();
   if (const auto drops = clock.drops()) {

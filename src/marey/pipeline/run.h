@@ -54,6 +54,7 @@ struct Summary {
   std::vector<std::string> notes;     ///< what was found out beside, one sentence each
   std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
   bool stopped = false;               ///< before the end, because a hook said so
+  bool sink_failed = false;           ///< of a live run: a warning names it
 };
 
 /// Instants, one after the other.
@@ -85,7 +86,12 @@ class Stage {
 /// before its queue is full. One that fails is closed and named: the run then ends, after the others have finished what there was.
 class Sinks {
  public:
-  Sinks();
+  /// What happens where a sink is slower than the run.
+  enum class Slow {
+    waited_for,   ///< the run waits; one that fails ends it
+    passed_over,  ///< it is given no more before it has caught up, and that is counted; one that fails is closed, the run goes on
+  };
+  explicit Sinks(Slow slow = Slow::waited_for);
   ~Sinks();
   Sinks(Sinks&&) noexcept;
   Sinks& operator=(Sinks&&) noexcept;
@@ -94,15 +100,19 @@ class Sinks {
   void begin(const RecordingHeader& header);
   bool want_pictures() const;
   bool want_boxes() const;
-  /// Whether all still take what they are given.
+  /// Whether the run may go on: that all still take what they are given, where they are waited for.
   bool write(Instant instant);
+  /// Of sinks that are passed over: what they missed, and which of them failed, one sentence each.
+  std::vector<std::string> troubles() const;
+  bool failed() const;
   /// Drops those that want pictures: they leave nothing behind. Returns their names.
   std::vector<std::string> drop_pictures();
-  /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed.
+  /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed and is no trouble().
   void finish();
 
  private:
   class Lane;
+  Slow slow_;
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/concurrent_queue.h>
 
 #include "marey/core/error.h"
@@ -14,7 +15,8 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr int kWaiting = 8;  // instants, with their pictures
+constexpr int kWaiting = 8;        // instants, with their pictures
+constexpr int kWaitingLive = 256;  // without them: what is live is not held up by a disk that is busy for a second
 
 }  // namespace
 
@@ -30,8 +32,9 @@ class Sinks::Lane {
     writer_.join();
   }
 
-  Sink::Wants begin(const RecordingHeader& header) {
+  Sink::Wants begin(const RecordingHeader& header, Slow slow) {
     wants_ = sink_->begin(header);
+    if (slow == Slow::passed_over && !wants_.pictures) queue_.set_capacity(kWaitingLive);
     writer_ = std::thread([this] { write_all(); });
     return wants_;
   }
@@ -40,6 +43,14 @@ class Sinks::Lane {
   const std::string& name() const { return name_; }
   bool failed() const { return failed_; }
   void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
+  /// Only where there is room.
+  void offer(const std::shared_ptr<const Instant>& instant) { passed_over_ += failed_ || queue_.try_push(instant) ? 0 : 1; }
+
+  /// Nothing where there is none.
+  std::string trouble() const {
+    if (failed_) return message_of_failure();
+    return passed_over_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, passed_over_) : "";
+  }
 
   /// Waits until all that was given is written.
   void drain() {
@@ -67,6 +78,14 @@ class Sinks::Lane {
     attempt([&] { sink_->finish(); });
   }
 
+  std::string message_of_failure() const {
+    try {
+      std::rethrow_exception(failure_);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  }
+
   /// A sink that fails is closed at once: nothing half-written stays.
   template <typename Do>
   void attempt(const Do& what) {
@@ -84,11 +103,12 @@ class Sinks::Lane {
   Sink::Wants wants_;
   tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
   std::atomic<bool> failed_ = false, given_up_ = false;
-  std::exception_ptr failure_;
+  std::exception_ptr failure_;  // before failed_
+  std::int64_t passed_over_ = 0;
   std::thread writer_;
 };
 
-Sinks::Sinks() = default;
+Sinks::Sinks(Slow slow) : slow_(slow) {}
 Sinks::~Sinks() = default;
 Sinks::Sinks(Sinks&&) noexcept = default;
 Sinks& Sinks::operator=(Sinks&&) noexcept = default;
@@ -98,7 +118,7 @@ void Sinks::add(std::unique_ptr<Sink> sink) {
 }
 
 void Sinks::begin(const RecordingHeader& header) {
-  for (const auto& lane : lanes_) lane->begin(header);
+  for (const auto& lane : lanes_) lane->begin(header, slow_);
 }
 
 bool Sinks::want_pictures() const {
@@ -113,10 +133,26 @@ bool Sinks::write(Instant instant) {
   const auto shared = std::make_shared<const Instant>(std::move(instant));
   bool all = true;
   for (const auto& lane : lanes_) {
-    lane->give(shared);
-    all = all && !lane->failed();
+    if (slow_ == Slow::passed_over) {
+      lane->offer(shared);
+    } else {
+      lane->give(shared);
+      all = all && !lane->failed();
+    }
   }
   return all;
+}
+
+std::vector<std::string> Sinks::troubles() const {
+  std::vector<std::string> all;
+  for (const auto& lane : lanes_) {
+    if (std::string trouble = lane->trouble(); slow_ == Slow::passed_over && !trouble.empty()) all.push_back(std::move(trouble));
+  }
+  return all;
+}
+
+bool Sinks::failed() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->failed(); });
 }
 
 std::vector<std::string> Sinks::drop_pictures() {
@@ -131,6 +167,7 @@ std::vector<std::string> Sinks::drop_pictures() {
 
 void Sinks::finish() {
   for (const auto& lane : lanes_) lane->drain();
+  if (slow_ == Slow::passed_over) return;
   for (const auto& lane : lanes_) lane->rethrow();
 }
 

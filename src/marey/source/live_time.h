@@ -12,8 +12,10 @@ class LiveTime {
  public:
   virtual ~LiveTime() = default;
   virtual Timestamp now() = 0;
-  /// For a short while, a few milliseconds at most.
+  /// For a short while, a few milliseconds at most, or until `wake`.
   virtual void wait() = 0;
+  /// A frame has come: who waits need not wait longer. From any thread.
+  virtual void wake() {}
 };
 
 /// Counts from now on.

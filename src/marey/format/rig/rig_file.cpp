@@ -13,6 +13,7 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
+#include "marey/core/source_name.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
@@ -101,12 +102,6 @@ std::optional<Rigid3> read_pose(const Section& section) {
   return Rigid3{*rotation, {(*translation)[0], (*translation)[1], (*translation)[2]}};
 }
 
-/// Sources lie beside the rig file. What names a protocol ("rtsp://…") is no path.
-std::string beside(const std::string& folder, const std::string& source) {
-  if (folder.empty() || source.empty() || source.find("://") != std::string::npos) return source;
-  return (std::filesystem::path(folder) / source).lexically_normal().string();
-}
-
 void check_name(const Section& section, const std::string& name) {
   if (name.empty()) section.problem("name", "its name is missing or empty; add name = \"…\"");
   if (std::any_of(name.begin(), name.end(), [](char c) {
@@ -123,8 +118,8 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   section.only({"name", "source", "detections", "region", "rate", "offset_s", "size", "model", "focal", "principal", "distortion",
                 "rotation", "translation", "ground_from_image", "rms_px"});
   check_name(section, camera.name);
-  camera.source = beside(folder, section.text("source").value_or(""));
-  camera.detections = beside(folder, section.text("detections").value_or(""));
+  camera.source = source_beside(folder, section.text("source").value_or(""));
+  camera.detections = source_beside(folder, section.text("detections").value_or(""));
   if (!camera.source.empty() && !camera.detections.empty()) {
     section.problem("detections", "it has both a source and detections; keep one of them");
   }

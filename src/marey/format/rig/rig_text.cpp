@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "marey/core/source_name.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 
@@ -58,7 +60,9 @@ std::string in_quotes(std::string_view text) {
 /// `source` as it is found from `folder`, where it has a relative path or lies below it.
 std::string seen_from(const std::string& folder, const std::string& source) {
   namespace fs = std::filesystem;
-  if (folder.empty() || source.find("://") != std::string::npos) return source;
+  constexpr std::string_view kPlayed = "play:";
+  if (source.starts_with(kPlayed)) return std::string(kPlayed) + seen_from(folder, source.substr(kPlayed.size()));
+  if (folder.empty() || !scheme_of(source).empty() || source.find("://") != std::string::npos) return source;
   const fs::path path(source), base = fs::absolute(folder).lexically_normal();
   const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(base / "");
   const bool below = !relative.empty() && *relative.begin() != "..";

@@ -69,7 +69,7 @@ struct RoomScene::Parts {
   std::vector<Vector<3>> points(double t) const;
   bool covered(int marker, double t) const;
   bool sees(int index, double t, const Vector<3>& point, const BodyPose& pose, Vector<2>& pixel) const;
-  std::vector<RoomBlob> blobs(int index, std::int64_t frame) const;
+  std::vector<RoomBlob> blobs(int index, double t, std::uint64_t draw) const;
   void merge(std::vector<RoomBlob>& blobs, std::span<const double> far) const;
 };
 
@@ -151,11 +151,10 @@ void RoomScene::Parts::merge(std::vector<RoomBlob>& blobs, std::span<const doubl
   blobs = std::move(result);
 }
 
-std::vector<RoomBlob> RoomScene::Parts::blobs(int index, std::int64_t frame) const {
-  const double t = static_cast<double>(frame) / options.rate_hz + rig.cameras[static_cast<std::size_t>(index)].offset_s.value_or(0);
+std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t draw) const {
   const std::vector<Vector<3>> places = points(t);
   const BodyPose at = has_body() ? pose(t) : BodyPose{};
-  Random random(mixed(options.seed, static_cast<std::uint64_t>(frame), static_cast<std::uint64_t>(index)));
+  Random random(mixed(options.seed, draw, static_cast<std::uint64_t>(index)));
   std::vector<RoomBlob> result;
   std::vector<double> far;
   for (int marker = 0; marker < std::ssize(places); ++marker) {
@@ -262,8 +261,15 @@ RoomFrame RoomScene::frame(std::int64_t index) const {
   frame.index = index;
   frame.time_s = static_cast<double>(index) / parts_->options.rate_hz;
   frame.points = parts_->points(frame.time_s);
-  for (int camera = 0; camera < parts_->options.cameras; ++camera) frame.seen.push_back(parts_->blobs(camera, index));
+  for (int camera = 0; camera < parts_->options.cameras; ++camera) {
+    const double offset = parts_->rig.cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
+    frame.seen.push_back(seen_by(camera, frame.time_s + offset, static_cast<std::uint64_t>(index)));
+  }
   return frame;
+}
+
+std::vector<RoomBlob> RoomScene::seen_by(int camera, double time_s, std::uint64_t draw) const {
+  return parts_->blobs(camera, time_s, draw);
 }
 
 }  // namespace marey::simulate::room

@@ -103,6 +103,9 @@ class RoomScene {
   /// Which of `points` (of the same time) that camera could see: in its picture, not hidden, not covered.
   std::vector<bool> visible(int camera, double time_s, std::span<const Vector<3>> points) const;
   RoomFrame frame(std::int64_t index) const;
+  /// What one camera sees at a time by the rig's clock, whenever its frames are; noise, what is missed and ghosts are drawn by
+  /// `draw`. With a frame's own time and its index that is the frame's `seen`.
+  std::vector<RoomBlob> seen_by(int camera, double time_s, std::uint64_t draw) const;
 
   struct Parts;
 

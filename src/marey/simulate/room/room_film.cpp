@@ -29,26 +29,16 @@ class RoomFilm : public Source {
 
   std::optional<Frame> next() override {
     if (next_ >= scene_.options().frames) return std::nullopt;
-    const RoomFrame frame = scene_.frame(next_++);
-    return Frame{CameraId{static_cast<int>(index_)}, frame.index, timestamp_from_seconds(frame.time_s), Picture(render(frame))};
+    const std::int64_t index = next_++;
+    const double time_s = static_cast<double>(index) / scene_.options().rate_hz;
+    const double offset = scene_.rig().cameras[index_].offset_s.value_or(0);
+    const auto draw = static_cast<std::uint64_t>(index);
+    const std::vector<RoomBlob> seen = scene_.seen_by(static_cast<int>(index_), time_s + offset, draw);
+    const Picture picture(draw_room(scene_, index_, time_s, seen, draw, options_));
+    return Frame{CameraId{static_cast<int>(index_)}, index, timestamp_from_seconds(time_s), picture};
   }
 
  private:
-  cv::Mat render(const RoomFrame& frame) const {
-    const RigCamera& camera = scene_.rig_at(frame.time_s).cameras[index_];
-    const Vector<3> centre = camera.camera()->centre();
-    std::vector<markers::Disc> discs;
-    for (const RoomBlob& blob : frame.seen[index_]) {
-      const double distance = blob.marker ? (frame.points[static_cast<std::size_t>(*blob.marker)] - centre).norm() : kGhostDistance;
-      const double radius = options_.marker_radius * geometry::focal_of(*camera.lens).x() / distance;
-      discs.push_back({blob.pixel, std::max(kSmallestRadius, radius)});
-    }
-    cv::Mat image(*camera.size, CV_32FC1, cv::Scalar(kGround));
-    markers::draw_discs(image, discs);
-    const auto seed = scene_.options().seed * 1000003u + static_cast<std::uint64_t>(frame.index) * 64 + index_;
-    return markers::expose(image, options_.picture_noise, seed);
-  }
-
   RoomScene scene_;
   std::size_t index_;
   RoomFilmOptions options_;
@@ -60,6 +50,22 @@ class RoomFilm : public Source {
 
 std::unique_ptr<Source> film_room(const RoomOptions& room, std::size_t index, const RoomFilmOptions& options) {
   return std::make_unique<RoomFilm>(room, index, options);
+}
+
+cv::Mat draw_room(const RoomScene& scene, std::size_t index, double time_s, const std::vector<RoomBlob>& seen, std::uint64_t draw,
+                  const RoomFilmOptions& options) {
+  const RigCamera& camera = scene.rig_at(time_s).cameras[index];
+  const Vector<3> centre = camera.camera()->centre();
+  const std::vector<Vector<3>> points = scene.points(time_s);
+  std::vector<markers::Disc> discs;
+  for (const RoomBlob& blob : seen) {
+    const double distance = blob.marker ? (points[static_cast<std::size_t>(*blob.marker)] - centre).norm() : kGhostDistance;
+    const double radius = options.marker_radius * geometry::focal_of(*camera.lens).x() / distance;
+    discs.push_back({blob.pixel, std::max(kSmallestRadius, radius)});
+  }
+  cv::Mat image(*camera.size, CV_32FC1, cv::Scalar(kGround));
+  markers::draw_discs(image, discs);
+  return markers::expose(image, options.picture_noise, scene.options().seed * 1000003u + draw * 64 + index);
 }
 
 std::vector<int> cameras_that_see(const RoomScene& scene, const RoomFrame& frame) {

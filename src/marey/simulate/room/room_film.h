@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
+
+#include <opencv2/core/mat.hpp>
 
 #include "marey/core/source.h"
 #include "marey/simulate/room/room.h"
@@ -15,6 +18,10 @@ struct RoomFilmOptions {
 
 /// What camera `index` of a room films: grey frames with the markers as discs at their exact places, the pixels bring the noise.
 std::unique_ptr<Source> film_room(const RoomOptions& room, std::size_t index, const RoomFilmOptions& options = {});
+
+/// The picture of what camera `index` sees (RoomScene::seen_by) at a time by the rig's clock; `draw` is that of the noise.
+cv::Mat draw_room(const RoomScene& scene, std::size_t index, double time_s, const std::vector<RoomBlob>& seen, std::uint64_t draw,
+                  const RoomFilmOptions& options = {});
 
 /// By how many cameras each marker can be seen in a frame, in the order of the labels.
 std::vector<int> cameras_that_see(const RoomScene& scene, const RoomFrame& frame);

@@ -1,0 +1,199 @@
+#include "marey/pipeline/live.h"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "marey/core/rig_sources.h"
+#include "marey/core/source_name.h"
+#include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/live_feeds.h"
+
+#include "blob_options.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "live_screen.h"
+#include "people_options.h"
+#include "rig_inputs.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+using pipeline::LiveTargets;
+constexpr std::array<std::pair<const char*, LiveTargets>, 2> kLiveTargets{
+    {{"markers", LiveTargets::markers}, {"people", LiveTargets::people}}};
+
+struct LiveCommand {
+  std::vector<std::string> sources;
+  LiveTargets targets = LiveTargets::markers;
+  bool ground = false;
+  std::string out, labels;
+  bool armed = false;
+  std::optional<double> for_s;
+  double preroll_s = 5, late_s = 0.05, patience_s = 3;
+  detect::markers::MarkerOptions markers;
+  PeopleFlags people;
+  bool json = false, quiet = false;
+};
+
+bool is_rig(const std::string& source) {
+  return scheme_of(source).empty() && source.ends_with(".toml");
+}
+
+/// A rig file with CAMERA=SOURCE after it, or sources alone.
+Rig rig_of(const LiveCommand& command) {
+  if (!is_rig(command.sources.front())) return pipeline::rig_of_sources(command.sources);
+  return rig_of(RigAndSources{command.sources.front(), {command.sources.begin() + 1, command.sources.end()}});
+}
+
+/// Wires, viewers and what else takes what runs: a line here for each.
+std::vector<std::unique_ptr<Sink>> live_sinks(const LiveCommand& /*command*/) {
+  std::vector<std::unique_ptr<Sink>> sinks;
+  return sinks;
+}
+
+Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
+  const pipeline::LiveDrops& drops = summary.last.drops;
+  Json json = {{"job", to_string(summary.job)},
+               {"seconds", summary.seconds},
+               {"rate_hz", summary.rate_hz},
+               {"instants", summary.frames},
+               {"targets", summary.tracks},
+               {"samples", summary.samples},
+               {"take", summary.recorded ? Json(command.out) : Json()},
+               {"warnings", summary.warnings}};
+  json["dropped"] = {{"overtaken", drops.overtaken},
+                     {"incomplete", drops.incomplete},
+                     {"empty", drops.empty},
+                     {"late_frames", drops.late_frames},
+                     {"overrun", drops.overrun}};
+  for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
+    const pipeline::LiveStatus::Camera& camera = summary.last.cameras[i];
+    Json& told = json["cameras"][camera.name];
+    told = {{"state", pipeline::to_string(camera.state)},
+            {"frames", camera.frames},
+            {"lost", camera.lost},
+            {"damaged", camera.damaged},
+            {"overrun", camera.overrun},
+            {"connections", camera.connections}};
+    if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
+  }
+  for (const pipeline::Summary::StepTime& step : summary.steps)
+    json["stages"][step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
+  return json;
+}
+
+void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command) {
+  fmt::print(stderr, "{}: {} instants in {:.1f} s at {:g} Hz; {} targets\n", to_string(summary.job), summary.frames,
+             summary.seconds, summary.rate_hz, summary.tracks);
+  for (const pipeline::LiveStatus::Camera& camera : summary.last.cameras) {
+    fmt::print(stderr, "  {:<12} {:>7} frames, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.frames, camera.lost,
+               camera.damaged, camera.overrun,
+               camera.connections > 1 ? fmt::format("; connected {} times", camera.connections) : "");
+  }
+  const pipeline::LiveDrops& drops = summary.last.drops;
+  fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
+             drops.empty, drops.late_frames);
+  for (const pipeline::Summary::StepTime& step : summary.steps) {
+    fmt::print(stderr, "  {:<18} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
+  }
+  if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
+}
+
+pipeline::LiveOptions options_of(const LiveCommand& command) {
+  pipeline::LiveOptions options;
+  options.targets = command.targets;
+  options.ground = command.ground;
+  options.space.markers = options.markers.markers = command.markers;
+  options.space.predict_s = 0.1;
+  if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
+  options.people = people_options(command.people, {}, true);
+  options.on_ground.detector = detector_options(command.people);
+  options.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
+  options.policy.late_s = command.late_s;
+  options.patience_s = command.patience_s;
+  options.take = command.out;
+  options.preroll_s = command.preroll_s;
+  options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
+  options.sinks = live_sinks(command);
+  return options;
+}
+
+/// Ends by a signal, by a key, or when the time is over.
+struct LiveEnd {
+  std::stop_source source;
+  std::stop_callback<std::function<void()>> by_signal{stop_by_signals(), [this] { source.request_stop(); }};
+};
+
+void run(const LiveCommand& command) {
+  const Rig rig = rig_of(command);
+  pipeline::LiveOptions options = options_of(command);
+  LiveEnd end;
+  LiveScreen screen(command.quiet);
+  const auto recording = options.recording;
+  Keys keys([&](char key) {
+    if (key == 'q') end.source.request_stop();
+    if (key == 'r' && !command.out.empty()) recording->toggle();
+  });
+  options.begun = [&](pipeline::LiveJob job, const Rig& fed) { screen.begun(job, fed, keys.listens(), !command.out.empty()); };
+  options.status = [&](const pipeline::LiveStatus& status) {
+    screen.show(status);
+    if (command.for_s && status.seconds >= *command.for_s) end.source.request_stop();
+  };
+  const Hooks hooks{.progress = {}, .stop = end.source.get_token(), .options = given_options()};
+  const pipeline::LiveSummary summary = [&] {
+    const StopScope scope(hooks.stop);
+    return pipeline::live(rig, std::move(options), hooks);
+  }();
+  warn(summary.warnings);
+  if (command.json) {
+    print(as_json(summary, command));
+  } else if (!command.quiet) {
+    print_live(summary, command);
+  }
+  if (summary.sink_failed) throw EndWith{1};
+}
+
+}  // namespace
+
+void add_live(Command& program) {
+  auto options = std::make_shared<LiveCommand>();
+  Command command = program.subcommand("live", "Track what live cameras see, while they see it");
+  std::string forms;
+  for (const auto& kind : pipeline::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
+  command
+      .texts(
+          "SOURCES", options->sources,
+          "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a film that is played; " +
+              forms)
+      .required();
+  command.choice("--targets", options->targets, kLiveTargets, "what is followed");
+  command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
+  command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
+  command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");
+  command.number("--preroll", options->preroll_s, "s", closed(0, 60), "of what came before r was pressed");
+  command.number("--for", options->for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C, or q)");
+  command.number("--late", options->late_s, "s", closed(0.001, 1), "a moment waits so long for its cameras' frames");
+  command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
+  command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
+  command.number("--widest", options->markers.widest, "px", closed(2, 200),
+                 "markers are no wider and may lie on anything that is; else they lie on a plain ground");
+  add_blob_options(command, options->markers);
+  command.reports(options->json, options->quiet);
+  command.runs([options] {
+    if (options->ground) options->targets = LiveTargets::people;
+    if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
+    run(*options);
+  });
+}
+
+}  // namespace marey::cli

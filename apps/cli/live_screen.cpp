@@ -1,0 +1,125 @@
+#include "live_screen.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "marey/core/text_safety.h"
+
+namespace marey::cli {
+namespace {
+
+constexpr int kPoll = 100;  // ms
+
+bool is_silent(FeedState state) {
+  return state == FeedState::stalled || state == FeedState::lost || state == FeedState::connecting;
+}
+
+int columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 120;
+}
+
+}  // namespace
+
+/// Letters come one by one and are not shown; Ctrl-C stays what it is.
+struct Keys::Terminal {
+  Terminal() {
+    tcgetattr(STDIN_FILENO, &before);
+    termios now = before;
+    now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    now.c_cc[VMIN] = 0;
+    now.c_cc[VTIME] = 0;
+    tcsetattr(STDIN_FILENO, TCSANOW, &now);
+  }
+  ~Terminal() { tcsetattr(STDIN_FILENO, TCSANOW, &before); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  termios before{};
+};
+
+Keys::Keys(std::function<void(char)> pressed) {
+  // A program in the background that touches the terminal would be stopped.
+  if (isatty(STDIN_FILENO) == 0 || tcgetpgrp(STDIN_FILENO) != getpgrp()) return;
+  terminal_ = std::make_unique<Terminal>();
+  reader_ = std::jthread([pressed = std::move(pressed)](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      pollfd waited{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+      if (poll(&waited, 1, kPoll) <= 0) continue;
+      char key = 0;
+      if (read(STDIN_FILENO, &key, 1) != 1) return;
+      pressed(key);
+    }
+  });
+}
+
+Keys::~Keys() {
+  if (!reader_.joinable()) return;
+  reader_.request_stop();
+  reader_.join();
+}
+
+LiveScreen::LiveScreen(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+LiveScreen::~LiveScreen() {
+  if (shown_) fmt::print(stderr, "\r\x1b[K");
+}
+
+void LiveScreen::say(const std::string& sentence) {
+  if (quiet_) return;
+  fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", sentence);
+  shown_ = false;
+}
+
+void LiveScreen::begun(pipeline::LiveJob job, const Rig& rig, bool keys, bool records) {
+  say(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
+                  job == pipeline::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
+  if (keys) say(records ? "r: record, or pause; q: end" : "q: end");
+}
+
+void LiveScreen::show(const pipeline::LiveStatus& status) {
+  states_.resize(status.cameras.size(), FeedState::live);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const auto& camera = status.cameras[i];
+    if (states_[i] == camera.state) continue;
+    const bool told = is_silent(camera.state) || is_silent(states_[i]);
+    states_[i] = camera.state;
+    const std::string why = is_silent(camera.state) && !camera.trouble.empty() ? ": " + camera.trouble : "";
+    if (told) say(fmt::format("camera \"{}\" is {}{}", camera.name, pipeline::to_string(camera.state), why));
+  }
+  for (const std::string& trouble : status.troubles) {
+    if (std::find(troubles_.begin(), troubles_.end(), trouble.substr(0, trouble.find(':'))) != troubles_.end()) continue;
+    troubles_.push_back(trouble.substr(0, trouble.find(':')));
+    say("marey: warning: " + trouble);
+  }
+  if (quiet_ || !terminal_) return;
+  fmt::print(stderr, "\r\x1b[K{}", line(status));
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+/// "12.4 s  cam1 100 Hz 40  cam2 lost | 40 targets | dropped 3 | 4.1 / 9.8 ms | REC"
+std::string LiveScreen::line(const pipeline::LiveStatus& status) const {
+  std::string text = fmt::format("{:.0f} s ", status.seconds);
+  for (const auto& camera : status.cameras) {
+    const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
+    text += is_silent(camera.state) || camera.state == FeedState::ended
+                ? fmt::format(" {} {}", camera.name, pipeline::to_string(camera.state))
+                : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
+    if (gone > 0) text += fmt::format(" -{}", gone);
+  }
+  const pipeline::LiveDrops& drops = status.drops;
+  text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);
+  if (status.latency_median_s)
+    text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
+  if (status.recording) text += " | REC";
+  return text.substr(0, static_cast<std::size_t>(std::max(20, columns() - 1)));
+}
+
+}  // namespace marey::cli

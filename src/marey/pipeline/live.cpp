@@ -1,0 +1,168 @@
+#include "marey/pipeline/live.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/preview.h"
+
+namespace marey::pipeline {
+namespace {
+
+/// A job's stage, watched.
+class Watched final : public Stage {
+ public:
+  Watched(std::unique_ptr<Stage> stage, LiveMonitor& monitor, source::LiveTime& time)
+      : stage_(std::move(stage)), monitor_(monitor), time_(time) {}
+
+  RecordingHeader header() const override {
+    RecordingHeader header = stage_->header();
+    header.made_by.program = "marey live";
+    return header;
+  }
+  void want_boxes() override { stage_->want_boxes(); }
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const Timestamp given = time_.now();
+    const std::span<const Instant> known = stage_->step(frames);
+    monitor_.saw(frames, known, given, time_.now());
+    return known;
+  }
+  std::unique_ptr<InstantSource> finish(const Hooks& hooks) override { return stage_->finish(hooks); }
+  void report(Summary& summary) const override { stage_->report(summary); }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  LiveMonitor& monitor_;
+  source::LiveTime& time_;
+};
+
+Rig rig_as_fed(const Rig& rig, const std::vector<Feed>& feeds) {
+  Rig fed = rig;
+  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
+  return fed;
+}
+
+bool feeds_find(LiveJob job, LiveTargets targets) {
+  return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
+}
+
+std::unique_ptr<Stage> stage_of(LiveJob job, const std::vector<Feed>& feeds, const Rig& rig, double rate_hz, LiveOptions& options) {
+  switch (job) {
+    case LiveJob::markers_in_space:
+      options.space.live = true;
+      return markers_in_space(rig, rate_hz, options.space);
+    case LiveJob::markers_in_picture:
+      options.markers.live = true;
+      return markers_in_picture(feeds.front(), options.markers);
+    case LiveJob::people_in_picture:
+      options.people.live = true;
+      return people_in_picture(feeds.front(), options.people);
+    case LiveJob::people_on_ground:
+      options.on_ground.live = true;
+      return people_on_ground(feeds, rig, options.on_ground);
+    case LiveJob::preview:
+      break;
+  }
+  const detect::DetectorOptions people = options.people.detector, markers = options.space.markers;
+  return preview(feeds, rig, rate_hz, options.targets == LiveTargets::people ? people : markers);
+}
+
+Sinks sinks_of(LiveOptions& options) {
+  Sinks sinks(Sinks::Slow::passed_over);
+  if (!options.take.empty()) sinks.add(std::make_unique<Recorder>(options.take, options.recording, options.preroll_s));
+  for (std::unique_ptr<Sink>& sink : options.sinks) sinks.add(std::move(sink));
+  return sinks;
+}
+
+/// Why there is nothing, by what the cameras say.
+std::string nothing_came(const LiveStatus& status) {
+  std::string why = "no camera gave a frame";
+  for (const LiveStatus::Camera& camera : status.cameras) {
+    if (!camera.trouble.empty()) why += fmt::format("\n  camera \"{}\": {}", camera.name, camera.trouble);
+  }
+  return why;
+}
+
+void report_cameras_live(LiveSummary& summary, const Clock& clock, const LiveMonitor& monitor) {
+  summary.last = monitor.status();
+  if (summary.cameras.empty()) {
+    for (std::size_t i = 0; i < clock.feeds().size(); ++i)
+      summary.cameras.push_back({.name = clock.feeds()[i].camera().name, .frames = clock.frames(i), .missed = clock.missed(i)});
+  }
+  const auto step = [](const char* name, const StageTimes& times) {
+    return Summary::StepTime{name, times.count(), times.quantile(0.5), times.quantile(0.99)};
+  };
+  if (clock.detecting().count() > 0 && clock.detecting().quantile(0.99) > 0)
+    summary.steps.insert(summary.steps.begin(), step("detect", clock.detecting()));
+  for (Summary::StepTime& each : monitor.steps()) summary.steps.push_back(std::move(each));
+}
+
+}  // namespace
+
+std::string_view to_string(LiveJob job) {
+  switch (job) {
+    case LiveJob::markers_in_picture:
+      return "markers in a picture";
+    case LiveJob::markers_in_space:
+      return "markers in space";
+    case LiveJob::people_in_picture:
+      return "people in a picture";
+    case LiveJob::people_on_ground:
+      return "people on the ground";
+    case LiveJob::preview:
+      break;
+  }
+  return "a preview";
+}
+
+LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
+  if (ground) return LiveJob::people_on_ground;
+  if (rig.cameras.size() == 1) return targets == LiveTargets::people ? LiveJob::people_in_picture : LiveJob::markers_in_picture;
+  const auto calibrated =
+      std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
+  return targets == LiveTargets::markers && calibrated >= 2 ? LiveJob::markers_in_space : LiveJob::preview;
+}
+
+LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
+  if (options.policy.time == nullptr) options.policy.time = source::steady_time();
+  if (options.recording == nullptr) options.recording = std::make_shared<RecordSwitch>(true);
+  const StopScope scope(hooks.stop);
+  std::vector<Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s);
+  const Rig fed = rig_as_fed(rig, feeds);
+  LiveSummary summary;
+  summary.job = live_job(fed, options.targets, options.ground);
+  if (feeds_find(summary.job, options.targets)) {
+    for (Feed& feed : feeds) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.space.markers));
+  }
+  LiveMonitor monitor(options.policy.time, options.status);
+  monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
+  ClockOptions how{.live = options.policy, .waiting = [&] { monitor.tick(); }};
+  const std::vector<Feed>& watched = feeds;
+  double rate_hz = 0;
+  for (const Feed& feed : watched) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
+  if (rate_hz <= 0) rate_hz = kUsualRate;
+  auto stage = stage_of(summary.job, feeds, fed, rate_hz, options);
+  Clock clock(std::move(feeds), how);
+  Sinks sinks = sinks_of(options);
+  monitor.watch(clock, sinks);
+  if (options.begun) options.begun(summary.job, fed);
+  Watched stages(std::move(stage), monitor, *options.policy.time);
+  Hooks own = hooks;
+  own.stop = {};  // the clock ends by itself when it is asked to: that is how a live run ends
+  try {
+    static_cast<Summary&>(summary) = run(stages, clock, sinks, own);
+  } catch (const Error&) {
+    if (monitor.status().instants == 0 && !sinks.failed()) throw Error("{}", nothing_came(monitor.status()));
+    throw;
+  }
+  std::error_code ignored;
+  summary.recorded = !options.take.empty() && std::filesystem::exists(options.take, ignored);
+  report_cameras_live(summary, clock, monitor);
+  return summary;
+}
+
+}  // namespace marey::pipeline

@@ -1,0 +1,46 @@
+// What a kind of live camera must bring: how it is connected, and how it gives frames while it is. Everything that all kinds share
+// (the thread, the endless retry, the clock, what is counted) is in live_camera.h.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "marey/core/frame_set.h"
+#include "marey/core/source.h"
+#include "marey/source/live_time.h"
+
+namespace marey::source::live {
+
+/// A frame as its camera gave it. When it was taken is told by `taken`, else by `device_time`, else it is when it came.
+struct Shot {
+  CameraFrame given;                          ///< its picture or its detections; index and time are not looked at
+  std::optional<Timestamp> taken = {};        ///< by the run's clock
+  std::optional<Duration> device_time = {};   ///< by the camera's own clock, from any origin
+  std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it leaves out was lost on the way
+};
+
+enum class Came {
+  frame,    ///< the shot is filled
+  nothing,  ///< yet
+  damaged,  ///< a frame that came in part, or could not be decoded
+  end,      ///< of all frames, for good: of a film that is played
+};
+
+/// A camera while it is connected.
+class Connection {
+ public:
+  virtual ~Connection() = default;
+
+  /// Valid until the next call of `next`; an empty size where only pictures will tell it.
+  virtual const SourceInfo& info() const = 0;
+  /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error where the camera is gone.
+  virtual Came next(Shot& shot) = 0;
+};
+
+/// Connects the camera, or throws Error where it is not there. It may take a few seconds, and ends early where `stop` says so.
+using Connect = std::function<std::unique_ptr<Connection>(LiveTime& time, const std::stop_token& stop)>;
+
+}  // namespace marey::source::live

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "marey/core/source.h"
+#include "marey/source/live/connection.h"
+
+namespace marey::source::live {
+
+/// Gives a source's frames when their times have come, as if they were taken now; `begin` is when its time is 0. Frames that
+/// nobody could take in time (their decoding takes too long) are left out, and count as lost.
+struct PlayOptions {
+  std::function<Timestamp()> begin;  ///< asked once, when it is connected; several cameras' is one
+  bool loop = false;                 ///< from the beginning again, without end
+};
+
+Connect play(std::function<std::unique_ptr<Source>()> open, const PlayOptions& options);
+
+/// Waits until `due` or for kStopSlice, whichever is sooner; whether it is due.
+bool wait_until_due(Timestamp due, LiveTime& time, const std::stop_token& stop);
+
+}  // namespace marey::source::live
