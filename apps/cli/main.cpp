@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   add_convert(root);
   add_info(root);
   add_reconstruct(root);
+  add_solve(root);
   add_experiment(root);
   return program.run(argc, argv);
 }
