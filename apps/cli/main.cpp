@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   add_reconstruct(root);
   add_live(root);
   add_cameras(root);
+  add_solve(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

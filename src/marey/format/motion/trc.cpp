@@ -47,7 +47,8 @@ class TrcHead : private WideTableHead {
     table_.unit_m = unit.value_or(0.001);
   }
 
-  /// A name stands over the first of its three columns; in some files the names stand side by side instead.
+  /// A name stands over the first of its three columns; in some files the names stand side by side instead, in others tabs are
+  /// doubled: where there are as many names as the file says it has markers, they follow each other whatever lies between.
   void names() {
     std::vector<std::string_view> fields = line("the names of its markers");
     if (fields.size() < 2) fail("has no names of markers where Frame# and Time should stand");
@@ -57,6 +58,7 @@ class TrcHead : private WideTableHead {
     while (!fields.empty() && fields.back().empty()) fields.pop_back();
     const auto named =
         static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [](auto field) { return !field.empty(); }));
+    if (markers_ && static_cast<std::int64_t>(named) == *markers_) std::erase_if(fields, [](auto field) { return field.empty(); });
     const bool side_by_side = named > 1 && named == fields.size();
     const std::size_t step = side_by_side ? 1 : 3;
     for (std::size_t i = 0; i < fields.size(); i += step) add_marker(unquoted(fields[i]), 2 + 3 * info_.tracks.size());

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "marey/core/error.h"
+#include "marey/format/register.h"
+#include "marey/pipeline/solve_skeleton.h"
+
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+struct SolveCommand {
+  std::string recording, skeleton, names;
+  std::vector<std::string> outputs;
+  pipeline::SolveOptions options;
+  bool json = false;
+  bool quiet = false;
+};
+
+using pipeline::SolveSummary;
+
+std::string joined(const std::vector<std::string>& names, std::size_t most) {
+  const auto shown = std::span(names).first(std::min(most, names.size()));
+  return fmt::format("{}{}", fmt::join(shown, ", "), names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
+}
+
+/// How well markers that are right lie, in words: OpenSim's own advice is 20 mm RMS.
+const char* verdict(double rms_m) {
+  if (rms_m < 0.010) return "good";
+  return rms_m < 0.020 ? "fair" : "poor: is the skeleton scaled to this person, and are the labels right?";
+}
+
+void print_worst(const SolveSummary& summary) {
+  std::vector<SolveSummary::Marker> by_rms = summary.markers;
+  std::stable_sort(by_rms.begin(), by_rms.end(), [](const auto& a, const auto& b) { return a.rms_m > b.rms_m; });
+  by_rms.resize(std::min<std::size_t>(3, by_rms.size()));
+  std::vector<std::string> said;
+  for (const SolveSummary::Marker& marker : by_rms) said.push_back(fmt::format("{} {:.1f} mm", marker.label, 1000 * marker.rms_m));
+  fmt::print(stderr, "worst markers: {}\n", fmt::join(said, ", "));
+}
+
+void print_solved(const SolveSummary& summary, const std::vector<std::string>& outputs) {
+  fmt::print(stderr, "{}: {} markers in {} frames ({:.1f} s at {:g} Hz)\n",
+             summary.skeleton.empty() ? "skeleton" : summary.skeleton, summary.markers.size(), summary.frames, summary.seconds,
+             summary.rate_hz);
+  fmt::print(stderr, "markers lie {:.2f} mm RMS from where the skeleton has them (worst {:.1f} mm): {}\n", 1000 * summary.rms_m,
+             1000 * summary.worst_m, verdict(summary.rms_m));
+  print_worst(summary);
+  std::vector<std::string> hidden;
+  for (const SolveSummary::Coordinate& coordinate : summary.coordinates) {
+    if (coordinate.observed < 0.5) hidden.push_back(coordinate.name);
+  }
+  if (!hidden.empty()) fmt::print(stderr, "not observed, no marker shows them to 10°: {}\n", joined(hidden, 12));
+  if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
+  if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
+  if (!summary.not_recorded.empty())
+    fmt::print(stderr, "the skeleton's markers that are not in the recording: {}\n", joined(summary.not_recorded, 8));
+  if (!summary.not_known.empty()) fmt::print(stderr, "labels that the skeleton does not have: {}\n", joined(summary.not_known, 8));
+  for (const std::string& path : outputs) fmt::print(stderr, "written: {}\n", path);
+}
+
+Json as_json(const SolveSummary& summary, const std::vector<std::string>& outputs) {
+  Json markers = Json::array(), coordinates = Json::array();
+  for (const SolveSummary::Marker& m : summary.markers)
+    markers.push_back({{"label", m.label}, {"seen", m.seen}, {"rms_mm", 1000 * m.rms_m}, {"worst_mm", 1000 * m.worst_m}});
+  for (const SolveSummary::Coordinate& c : summary.coordinates) {
+    const double unit = c.turns ? 180 / std::numbers::pi : 1;
+    coordinates.push_back({{"name", c.name},
+                           {"unit", c.turns ? "deg" : "m"},
+                           {"lowest", c.lowest * unit},
+                           {"highest", c.highest * unit},
+                           {"deviation", c.deviation * unit},
+                           {"observed", c.observed}});
+  }
+  return {{"skeleton", summary.skeleton},
+          {"frames", summary.frames},
+          {"frames_without_markers", summary.empty},
+          {"rate_hz", summary.rate_hz},
+          {"seconds", summary.seconds},
+          {"rms_mm", 1000 * summary.rms_m},
+          {"worst_mm", 1000 * summary.worst_m},
+          {"starts", summary.starts},
+          {"markers", markers},
+          {"coordinates", coordinates},
+          {"not_recorded", summary.not_recorded},
+          {"not_known", summary.not_known},
+          {"outputs", outputs},
+          {"warnings", summary.warnings}};
+}
+
+void run(SolveCommand& command) {
+  if (!command.names.empty()) command.options.bvh.names = format::skeleton::bvh_names(command.names);
+  const SolveSummary summary = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::solve_skeleton(command.recording, command.skeleton, command.outputs, command.options, hooks);
+  });
+  warn(summary.warnings);
+  if (summary.stopped) {
+    fmt::print(stderr, "marey: stopped after {} frames; nothing was written\n", summary.frames);
+    throw EndWith{kInterrupted};
+  }
+  if (command.json) {
+    print(as_json(summary, command.outputs));
+  } else if (!command.quiet) {
+    print_solved(summary, command.outputs);
+  }
+}
+
+void add_file_options(Command& command, SolveCommand& options) {
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kBvhAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
+      {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
+  command.choice("--up", options.options.up, kAxes,
+                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else z");
+  command.group("BVH");
+  command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
+                 "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
+  command.choice("--skeleton-up", options.options.read_skeleton.up, kBvhAxes, "the axis that is up in a BVH or ASF skeleton");
+  command.number("--bvh-unit", options.options.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
+  command.choice("--bvh-up", options.options.bvh.up, kBvhAxes, "the axis that is up in it");
+  command.choice("--bvh-order", options.options.bvh.order, kOrders, "of its turns");
+  command.text("--bvh-names", options.names, "what its joints are called: mixamo or motionbuilder; left out: as in the skeleton")
+      .check([](const std::string& name) { format::skeleton::bvh_names(name); });
+  command.group("");
+}
+
+}  // namespace
+
+void add_solve(Command& program) {
+  auto options = std::make_shared<SolveCommand>();
+  Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers in space");
+  command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
+      .required();
+  command.input_file("--skeleton", options->skeleton, "OpenSim's .osim, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)")
+      .required();
+  command
+      .texts("-o,--output", options->outputs,
+             "what to write, may be given often: .mot or .sto (angles), .bvh (bones), or the recording with its bodies: .marey, "
+             ".c3d, ...")
+      .required()
+      .check(pipeline::check_skeleton_output);
+  command.also_writes([options] { return options->outputs; });
+  command.texts("--leave-out", options->options.leave_out, "a marker that is not used, by its label; may be given often");
+  add_file_options(command, *options);
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace marey::cli

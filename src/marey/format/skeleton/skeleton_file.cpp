@@ -1,0 +1,27 @@
+#include "marey/format/skeleton/skeleton_file.h"
+
+#include "marey/core/error.h"
+#include "marey/format/read_file.h"
+
+namespace marey::format::skeleton {
+
+Matrix<3> z_up_from(UpAxis up) {
+  Matrix<3> turn = Matrix<3>::Identity();
+  if (up == UpAxis::y) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return turn;
+}
+
+SkeletonFile read_skeleton(const std::string& path, const SkeletonOptions& options) {
+  const Beginning beginning = beginning_of(path);
+  if (beginning.folder) throw Error("{}: is a folder; a skeleton's file is wanted", path);
+  std::string text = read_file(path);
+  const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const std::string_view from_first = first == std::string::npos ? std::string_view() : std::string_view(text).substr(first);
+  if (from_first.starts_with("HIERARCHY")) return parse_bvh(text, path, options);
+  if (from_first.starts_with('<')) return parse_osim(text, path);
+  if (text.find(":bonedata") != std::string::npos) return parse_asf(text, path, options);
+  if (text.find('\0') == std::string::npos && text.find("[[segment]]") != std::string::npos) return parse_toml(text, path);
+  throw Error("{}: is no skeleton that Marey knows: OpenSim's .osim, .bvh, .asf, or a skeleton.toml with [[segment]] tables", path);
+}
+
+}  // namespace marey::format::skeleton

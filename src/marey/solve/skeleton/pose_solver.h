@@ -1,0 +1,124 @@
+// Inverse kinematics: the pose of a skeleton in which its markers lie nearest to where they were seen.
+//
+// Each frame minimises Σ w ρ(|p(x) − m|) / σ² + |x − predicted|² / P + limits over the free coordinates x, by Levenberg–Marquardt
+// from the predicted pose. ρ is Geman and McClure's, so that a swapped marker does not drag a limb along; the prediction (constant
+// velocity) holds what no marker shows, and is so weak beside a marker that it does not bias what is seen. Derivatives are the
+// skeleton's own: a turn about axis a through c moves p by a × (p − c). The normal equations are gathered over the tree (of every
+// segment's markers only weight, sum and second moment count, as of a rigid body's mass: Featherstone's composite bodies), so that
+// an iteration costs the sum of the depths of the coordinates, and the solution of one small system.
+//
+// The posterior deviation of a coordinate is what this frame's markers alone say of it, given the residuals there are; a forearm's
+// turn with one marker has none. Beyond `not_observed_rad` it counts as not observed.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "marey/solve/skeleton/articulation.h"
+
+namespace marey::solve::skeleton {
+
+struct PoseOptions {
+  double marker_sigma_m = 0.005;          ///< of a marker, at first; then as the residuals are
+  double robust_m = 0.05;                 ///< residuals beyond count less and less; at least 6 σ
+  double acceleration_rad_s2 = 300;       ///< of a joint: how far the prediction may be off
+  double acceleration_m_s2 = 30;          ///< of a root
+  double hidden_rad_s = 5;                ///< what an angle that no marker shows may turn
+  double decay_s = 0.1;                   ///< within which an angle that no marker shows comes to rest
+  double limit_rad = 0.005;               ///< how far a limit gives way to one σ of a marker
+  double not_observed_rad = 0.174532925;  ///< 10°
+  double not_observed_m = 0.1;
+  int max_iterations = 30;
+  double lost_m = 0.12;  ///< RMS beyond which it starts anew
+};
+
+/// A skeleton at one instant.
+struct SolvedPose {
+  std::vector<double> coordinates;  ///< rad, m; angles go on over ±π
+  std::vector<double> deviations;   ///< of each coordinate; 0 where it is locked
+  std::vector<bool> observed;       ///< of each coordinate
+  std::vector<Rigid3> world_from_segment;
+  std::vector<std::optional<double>> residuals;  ///< m, of each of the skeleton's markers that was seen
+  int seen = 0;
+  double rms_m = 0;  ///< of the residuals
+  int iterations = 0;
+  bool started = false;  ///< without a prediction: the first, or it was lost before
+};
+
+/// What one frame says of the step from a pose, for those who solve many frames at once: A, b of A·x = b.
+struct PoseEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  double cost = 0;  ///< Σ w ρ / σ²
+};
+
+class PoseSolver {
+ public:
+  /// The skeleton must outlive it. Throws Error where it has no markers or nothing that moves.
+  explicit PoseSolver(const Skeleton& skeleton, const PoseOptions& options = {});
+
+  /// One instant later by `seconds`; `seen` has a place for each of the skeleton's markers that was seen, m in the world. Valid
+  /// until the next call. Nothing is allocated after the first.
+  const SolvedPose& step(double seconds, std::span<const std::optional<Vector<3>>> seen);
+  /// The next step starts without a prediction.
+  void forget() { known_ = false; }
+  /// The next step starts from here.
+  void start_from(std::vector<double> coordinates);
+  const SolvedPose& pose() const { return pose_; }
+  double marker_sigma_m() const { return sigma_m_; }
+
+  Articulation& articulation() { return articulation_; }
+  const SkeletonState& state() const { return state_; }
+  /// Linearises the markers at a state.
+  void linearise(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen, PoseEquations& equations);
+
+ private:
+  using Seen = std::span<const std::optional<Vector<3>>>;
+  /// Of a segment and all that hang on it: what its markers weigh.
+  struct Moments {
+    double weight = 0;
+    Vector<3> sum = Vector<3>::Zero();
+    Matrix<3> second = Matrix<3>::Zero();
+    Vector<3> pull = Vector<3>::Zero(), torque = Vector<3>::Zero();
+  };
+
+  void predict(double seconds);
+  double evaluate(const SkeletonState& state, Seen seen);
+  double gather_markers(Seen seen);
+  void gather(PoseEquations& equations);
+  double prior_cost(const SkeletonState& state);
+  void add_prior(const SkeletonState& state);
+  double limit_cost(const SkeletonState& state) const;
+  void add_limits(const SkeletonState& state);
+  double minimise(Seen seen, int most);
+  void cold_start(Seen seen);
+  std::vector<SkeletonState> starts(Seen seen);
+  std::optional<Rigid3> root_from(Seen seen, bool root_alone, const SkeletonState& rest);
+  double rms_of(Seen seen);
+  void learn_noise(Seen seen);
+  void judge(Seen seen);
+  void learn_velocity(double seconds);
+
+  Articulation articulation_;
+  PoseOptions options_;
+  bool known_ = false;
+  bool rested_ = false;
+  double sigma_m_, robust_m_;
+  SkeletonState state_, predicted_, trial_, last_;
+  Eigen::VectorXd velocity_, variance_, prior_information_, step_, difference_;
+  std::vector<bool> dof_observed_;
+  Eigen::VectorXd dof_deviation_;
+  std::vector<Moments> moments_;
+  PoseEquations equations_;
+  Eigen::MatrixXd damped_, covariance_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  SolvedPose pose_;
+  int iterations_ = 0;
+};
+
+}  // namespace marey::solve::skeleton
