@@ -12,6 +12,9 @@ void add_measure(Command& program);
 void add_reconstruct(Command& program);
 void add_convert(Command& program);
 void add_info(Command& program);
+void add_batch(Command& program);
+void add_doctor(Command& program);
+void add_completion(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
   add_convert(root);
   add_info(root);
   add_reconstruct(root);
+  add_batch(root);
+  add_doctor(root);
+  add_completion(root);
   add_experiment(root);
   return program.run(argc, argv);
 }
