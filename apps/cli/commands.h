@@ -18,6 +18,9 @@ void add_view(Command& program);
 void add_play(Command& program);
 void add_live(Command& program);
 void add_cameras(Command& program);
+void add_batch(Command& program);
+void add_doctor(Command& program);
+void add_completion(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

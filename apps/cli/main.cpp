@@ -24,6 +24,9 @@ int main(int argc, char** argv) {
   add_live(root);
   add_cameras(root);
   add_solve(root);
+  add_batch(root);
+  add_doctor(root);
+  add_completion(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

@@ -63,6 +63,7 @@ class Command {
  public:
   struct Declared;
   explicit Command(Declared& declared) : declared_(&declared) {}
+  friend struct DeclaredOf;
 
   Command subcommand(const std::string& name, const std::string& meaning);
   /// What is declared after it stands below this title in the help.
@@ -181,6 +182,9 @@ class Program {
   struct Parser;
   std::unique_ptr<Parser> parser_;
 };
+
+/// "0.1.0 (commit 0123456789ab)".
+std::string version_text();
 
 /// The options that the running command was given, without their dashes; not those that name files.
 const std::map<std::string, std::string>& given_options();

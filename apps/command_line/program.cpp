@@ -127,12 +127,19 @@ const std::map<std::string, std::string>& given_options() {
   return asked_for;
 }
 
+extern const char* const kCommit;  // of the repository; empty where the source lies in none
+
+std::string version_text() {
+  const std::string commit = kCommit;
+  return commit.empty() ? MAREY_VERSION : fmt::format("{} (commit {})", MAREY_VERSION, commit);
+}
+
 Program::Program(const std::string& name, const std::string& meaning) : parser_(std::make_unique<Parser>()) {
   parser_->app.name(name);
   parser_->app.description(meaning);
   parser_->app.formatter(std::make_shared<HelpText>());
   parser_->app.require_subcommand(0, 1);
-  parser_->app.set_version_flag("--version", name + " " MAREY_VERSION);
+  parser_->app.set_version_flag("--version", name + " " + version_text());
   parser_->program.app = &parser_->app;
 }
 

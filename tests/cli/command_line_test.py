@@ -143,7 +143,7 @@ class CommandLine(unittest.TestCase):
             self.assertNotIn("cannot write to file", done.stderr)
 
     def test_help_for_a_newcomer(self):
-        self.assertRegex(self.marey("--version").stdout, r"^marey \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.marey("--version").stdout, r"^marey \d+\.\d+\.\d+( \(commit [0-9a-f]{12}(, changed since)?\))?\n$")
         listed = self.marey(code=2).stderr
         for command in COMMANDS:
             self.assertIn(command.split()[0], listed)

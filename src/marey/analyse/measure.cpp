@@ -9,17 +9,17 @@
 namespace marey::analyse {
 namespace {
 
-/// How often `fast(i)` holds without a break for at least `least` steps.
+/// Where `fast(i)` holds without a break for at least `least` steps: the first, and one past the last.
 template <typename Fast>
-int bouts(std::size_t count, double least, Fast&& fast) {
-  int found = 0;
+std::vector<std::pair<std::size_t, std::size_t>> bouts(std::size_t count, double least, Fast&& fast) {
+  std::vector<std::pair<std::size_t, std::size_t>> found;
   std::size_t length = 0;
   for (std::size_t i = 0; i <= count; ++i) {
     if (i < count && fast(i)) {
       ++length;
       continue;
     }
-    found += length > 0 && static_cast<double>(length) >= least;
+    if (length > 0 && static_cast<double>(length) >= least) found.emplace_back(i - length, i);
     length = 0;
   }
   return found;
@@ -60,11 +60,16 @@ void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& pe
   }
   person.seconds += path.seconds();
   const std::size_t count = path.place.size();
-  person.sprints += bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return fast(i) >= options.sprint_mps; });
+  const auto time = [&](std::size_t i) { return path.start_s + path.step_s * static_cast<double>(i); };
+  for (const auto& [first, end] :
+       bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return fast(i) >= options.sprint_mps; }))
+    person.sprint_times.emplace_back(time(first), time(end - 1));
+  person.sprints = static_cast<int>(person.sprint_times.size());
   const double effort = options.effort_s / path.step_s;
   const auto change = [&](std::size_t i) { return along(path.acceleration[i], path.velocity[i]); };
-  person.accelerations += bouts(count, effort, [&](std::size_t i) { return change(i) >= options.effort_mps2; });
-  person.decelerations += bouts(count, effort, [&](std::size_t i) { return change(i) <= -options.effort_mps2; });
+  const auto count_of = [&](const auto& fast_enough) { return static_cast<int>(bouts(count, effort, fast_enough).size()); };
+  person.accelerations += count_of([&](std::size_t i) { return change(i) >= options.effort_mps2; });
+  person.decelerations += count_of([&](std::size_t i) { return change(i) <= -options.effort_mps2; });
 }
 
 /// Area of the convex hull (Andrew's monotone chain), m².

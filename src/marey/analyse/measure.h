@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "marey/analyse/smooth_path.h"
@@ -39,6 +40,7 @@ struct PersonMeasure {
   double mean_mps = 0;
   double top_mps = 0;
   int sprints = 0;
+  std::vector<std::pair<double, double>> sprint_times;  ///< s: when each began and ended
   int accelerations = 0, decelerations = 0;
   std::vector<double> zone_s, zone_m;  ///< one more than borders
   Vector<2> average_place = Vector<2>::Zero();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <span>
 
 #include <fmt/format.h>
@@ -17,13 +18,8 @@ namespace {
 constexpr double kPitchMargin = 3;     // m round the pitch
 constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
 
-const char* const kStyle = R"(
-body { font: 15px/1.4 system-ui, sans-serif; margin: 2em auto; max-width: 70em; color: #222; padding: 0 1em }
-table { border-collapse: collapse; margin: 1em 0 } th, td { padding: .25em .8em; text-align: right; border-bottom: 1px solid #ddd }
-th:nth-child(-n+2), td:nth-child(-n+2) { text-align: left } th { background: #f4f4f4 }
-svg { width: 100%; height: auto } details { margin: .5em 0 } summary { cursor: pointer; font-weight: bold }
-.two { display: grid; grid-template-columns: 1fr 1fr; gap: 1em } h2 { margin-top: 1.5em }
-)";
+constexpr double kTerritoryCell = 5;  // m
+constexpr double kTerritory = 0.5;    // of a team's time on the pitch is spent in its territory
 
 class ReportPage {
  public:
@@ -32,12 +28,11 @@ class ReportPage {
   }
 
   std::string write() {
-    add("<!doctype html>\n<html lang=\"en\"><head><meta "
-        "charset=\"utf-8\"><title>{0}</title><style>{1}</style></head><body><h1>{0}</h1>",
-        escaped(report_.title), kStyle);
+    Page page(report_.title);
+    add_people(page);
+    for (const PageTable& table : report_.tables) page.add(table);
     define_lines();
-    write_people();
-    for (const MatchReport::Table& table : report_.tables) write_table(table);
+    write_territories();
     add("<h2>Where everybody went</h2>");
     open_pitch();
     const double opacity = opacity_of(report_.people, 0.25);
@@ -45,8 +40,8 @@ class ReportPage {
     close_pitch();
     add("<h2>One by one</h2>");
     for (const MatchReport::Person& person : report_.people) write_person(person);
-    add("</body></html>");
-    return std::move(text_);
+    page.add_html(text_);
+    return page.html();
   }
 
  private:
@@ -56,26 +51,71 @@ class ReportPage {
     text_ += '\n';
   }
 
-  void write_people() {
-    MatchReport::Table table{"People", {"name", "team"}, {}};
+  void add_people(Page& page) const {
+    PageTable table{"People", {"no.", "name", "team"}, {}, 3};
     table.head.insert(table.head.end(), report_.columns.begin(), report_.columns.end());
     for (const MatchReport::Person& person : report_.people) {
-      auto& row = table.rows.emplace_back(std::vector{person.name, person.team});
+      auto& row = table.rows.emplace_back(std::vector{std::to_string(person.number), person.name, person.team});
       row.insert(row.end(), person.cells.begin(), person.cells.end());
     }
-    write_table(table);
+    page.add(table);
   }
 
-  void write_table(const MatchReport::Table& table) {
-    add("<h2>{}</h2><table><tr>", escaped(table.title));
-    for (const std::string& cell : table.head) add("<th>{}</th>", escaped(cell));
-    add("</tr>");
-    for (const auto& row : table.rows) {
-      add("<tr>");
-      for (const std::string& cell : row) add("<td>{}</td>", escaped(cell));
-      add("</tr>");
+  /// Seconds that a team's people were in each cell, by rows.
+  std::vector<double> territory_seconds(const std::string& team, const MatchReport::Period& period, int columns, int rows) const {
+    std::vector<double> seconds(static_cast<std::size_t>(columns * rows), 0);
+    for (const MatchReport::Person& person : report_.people) {
+      if (person.team != team) continue;
+      for (std::size_t p = 0; p < person.paths.size(); ++p) {
+        const auto& path = person.paths[p];
+        const auto& times = person.speeds[p];
+        for (std::size_t i = 1; i < std::min(path.size(), times.size()); ++i) {
+          if (times[i].first < period.begin_s || times[i].first > period.end_s) continue;
+          const Vector<2> at = (path[i] - report_.corner) / kTerritoryCell;
+          const int column = static_cast<int>(std::floor(at.x())), row = static_cast<int>(std::floor(at.y()));
+          if (column >= 0 && row >= 0 && column < columns && row < rows)
+            seconds[static_cast<std::size_t>(row) * columns + column] += times[i].first - times[i - 1].first;
+        }
+      }
     }
-    add("</table>");
+    return seconds;
+  }
+
+  /// A team's half of its time on the smallest part of the pitch; halves side by side.
+  void write_territories() {
+    if (teams_.size() > 8 || (teams_.size() == 1 && teams_.begin()->first.empty())) return;
+    std::vector<MatchReport::Period> periods = report_.periods;
+    if (periods.empty()) periods.push_back({"the whole of it", -1e300, 1e300});
+    add("<h2>Territories</h2><p>The smallest part of the pitch on which a team spent half of its time.</p>");
+    for (const auto& [team, number] : teams_) {
+      if (team.empty()) continue;
+      add("<h3>{}</h3><div class=\"two\">", escaped(team));
+      for (const MatchReport::Period& period : periods) write_territory(team, period);
+      add("</div>");
+    }
+  }
+
+  void write_territory(const std::string& team, const MatchReport::Period& period) {
+    const int columns = static_cast<int>(std::ceil(report_.pitch.length / kTerritoryCell));
+    const int rows = static_cast<int>(std::ceil(report_.pitch.width / kTerritoryCell));
+    const std::vector<double> seconds = territory_seconds(team, period, columns, rows);
+    const std::vector<bool> full = fullest_cells(seconds, kTerritory);
+    const double most = *std::max_element(seconds.begin(), seconds.end());
+    double area = 0;
+    add("<figure>");
+    open_pitch();
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const std::size_t cell = static_cast<std::size_t>(row) * columns + column;
+        if (!full[cell]) continue;
+        area += kTerritoryCell * kTerritoryCell;
+        add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="{3}" fill-opacity="{4:.2f}"/>)",
+            report_.corner.x() + column * kTerritoryCell, report_.corner.y() + row * kTerritoryCell, kTerritoryCell,
+            team_colour(team), 0.35 + 0.55 * seconds[cell] / most);
+      }
+    }
+    close_pitch();
+    add("<figcaption>{}: {:.0f} m²</figcaption></figure>", escaped(period.name), area);
   }
 
   void open_pitch() {
@@ -105,6 +145,11 @@ class ReportPage {
   std::string colour(const MatchReport::Person& person) const {
     const Colour c = person.appearance ? colour_of(*person.appearance) : colour_of(teams_.at(person.team));
     return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
+  }
+
+  std::string team_colour(const std::string& team) const {
+    return colour(
+        *std::find_if(report_.people.begin(), report_.people.end(), [&](const auto& person) { return person.team == team; }));
   }
 
   static std::size_t step_of(std::size_t points) {
@@ -161,13 +206,19 @@ class ReportPage {
     const auto y = [&](double speed) { return height - bottom - (height - bottom) * speed / fastest; };
     add(R"(<svg viewBox="-2 -4 {} {}" font-size="3.2" font-family="sans-serif">)", width + 4, height + 6);
     for (double speed = 0; speed <= fastest; speed += 2) {
-      add(R"(<line x1="{0}" x2="{1}" y1="{2:.2f}" y2="{2:.2f}" stroke="#ddd" stroke-width="0.2"/>)", left, width, y(speed));
-      add(R"(<text x="{}" y="{:.2f}" text-anchor="end">{:g}</text>)", left - 1, y(speed) + 1, speed);
+      add(R"(<line class="grid" x1="{0}" x2="{1}" y1="{2:.2f}" y2="{2:.2f}" stroke-width="0.2"/>)", left, width, y(speed));
+      add(R"(<text class="axis" x="{}" y="{:.2f}" text-anchor="end">{:g}</text>)", left - 1, y(speed) + 1, speed);
     }
-    add(R"(<text x="{}" y="{}">m/s over {:.0f} s</text>)", left, height - 1, end - begin);
+    add(R"(<text class="axis" x="{}" y="{}">m/s over {:.0f} s; {} sprints are marked</text>)", left, height - 1, end - begin,
+        person.sprints.size());
+    for (const auto& [from, to] : person.sprints) {
+      constexpr double narrowest = 0.3;
+      add(R"(<rect class="sprint" x="{:.2f}" y="0" width="{:.2f}" height="{:.2f}"><title>{:.1f} s to {:.1f} s</title></rect>)",
+          x(from), std::max(narrowest, x(to) - x(from)), y(0), from, to);
+    }
     for (const auto& path : person.speeds) {
       const std::size_t step = step_of(path.size());
-      fmt::format_to(std::back_inserter(text_), R"(<polyline fill="none" stroke="#222" stroke-width="0.4" points=")");
+      fmt::format_to(std::back_inserter(text_), R"(<polyline class="speed" fill="none" stroke-width="0.4" points=")");
       for (std::size_t i = 0; i < path.size(); i += step)
         fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(path[i].first), y(path[i].second));
       text_ += "\"/>\n";
@@ -176,7 +227,9 @@ class ReportPage {
   }
 
   void write_person(const MatchReport::Person& person) {
-    add("<details><summary>{} {}</summary><div class=\"two\"><div>", escaped(person.name), escaped(person.team));
+    const std::string own = std::to_string(person.number);
+    add("<details><summary>{}{} {}</summary><div class=\"two\"><div>", person.name == own ? "" : own + " · ", escaped(person.name),
+        escaped(person.team));
     open_pitch();
     draw_heat(person);
     draw_paths(person, 0.3, opacity_of({&person, 1}, 0.3));
@@ -192,6 +245,21 @@ class ReportPage {
 };
 
 }  // namespace
+
+std::vector<bool> fullest_cells(const std::vector<double>& seconds, double share) {
+  std::vector<std::size_t> order(seconds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
+  const double wanted = share * std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  std::vector<bool> full(seconds.size(), false);
+  double sum = 0;
+  for (const std::size_t cell : order) {
+    if (sum >= wanted) break;
+    full[cell] = true;
+    sum += seconds[cell];
+  }
+  return full;
+}
 
 std::string to_html(const MatchReport& report) {
   return ReportPage(report).write();

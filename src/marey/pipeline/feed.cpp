@@ -166,9 +166,10 @@ class Feed::Observations final : public Input {
 namespace {
 
 std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions& options) {
-  if (!scheme_of(camera.source).empty())
+  if (!options.open && !scheme_of(camera.source).empty())
     throw Error("its source {} is live; run marey live, or name a recording in its place", shown_source(camera.source));
-  auto source = source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : options.rate_hz);
+  auto source =
+      options.open ? options.open() : source::open_source(camera.source, camera.rate_hz ? camera.rate_hz : options.rate_hz);
   if (!camera.region) return source;
   const cv::Rect region = within(*camera.region, source->info().size, camera.source);
   return source::crop(std::move(source), region);
@@ -297,6 +298,7 @@ double Feed::steady(double time) {
 
 bool Feed::can_rewind() const {
   if (is_live()) return false;
+  if (options_.open) return options_.opens_again;
   const std::string& path = camera_.source.empty() ? camera_.detections : camera_.source;
   std::error_code ignored;
   // A pattern of names is no file of that name, and can be read again like a folder.

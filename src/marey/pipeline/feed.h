@@ -2,6 +2,7 @@
 // observations that several cameras share), its region, rate, offset and size are honoured here, and nowhere else.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -22,6 +23,9 @@ struct FeedOptions {
   bool steady_times = false;                    ///< the camera keeps its rate: times that its file has rounded are put right
   int ahead = 8;                                ///< frames that are decoded ahead, on a thread of its own; 0: none
   std::stop_token stop = StopScope::current();  ///< ends the waiting for a camera that is silent
+  /// Opens pictures that another program holds, in place of the camera's `source`, which then only says what they are called.
+  std::function<std::unique_ptr<Source>()> open = {};
+  bool opens_again = false;  ///< `open` may be called often, and begins anew each time
 };
 
 class Feed {

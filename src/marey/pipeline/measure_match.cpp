@@ -1,5 +1,6 @@
 #include "marey/pipeline/measure_match.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -39,6 +40,8 @@ std::optional<Appearance> shirt_of(const std::string& team) {
 
 draw::MatchReport::Person page_of(const analyse::PersonMeasure& person, const std::map<std::string, int>& uses) {
   draw::MatchReport::Person page;
+  page.number = person.id;
+  page.sprints = person.sprint_times;
   page.name = name_of(person, uses);
   page.team = person.team;
   page.appearance = shirt_of(person.team);
@@ -77,14 +80,29 @@ std::string measurement_csv(const analyse::Measurement& measured, const analyse:
   return text;
 }
 
-void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options, const std::string& title,
-                  const std::string& folder) {
+/// The halves, as the file tells them.
+std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMatch& match) {
+  std::vector<draw::MatchReport::Period> periods;
+  const auto time_of = [&](std::int32_t frame) {
+    const auto& instants = match.recording.instants();
+    const auto at = std::lower_bound(instants.begin(), instants.end(), frame,
+                                     [](const auto& moment, auto index) { return moment.index < index; });
+    return instants.empty() ? 0.0 : seconds((at == instants.end() ? instants.back() : *at).time);
+  };
+  for (const format::match::GroundPeriod& period : match.periods)
+    periods.push_back({fmt::format("half {}", period.number), time_of(period.first_frame), time_of(period.last_frame)});
+  return periods;
+}
+
+void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options,
+                  const format::match::GroundMatch& match, const std::string& title, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error("{}: this folder cannot be made ({})", folder, error.message());
   draw::MatchReport report;
   report.title = title;
   report.pitch = options.pitch;
+  report.periods = periods_of(match);
   report.columns = {"distance, m", "mean, m/s", "top, m/s", "sprints", "accelerations", "decelerations"};
   for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
     report.columns.push_back(fmt::format("m at {} m/s", zone_name(options.zones, zone)));
@@ -92,8 +110,9 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
   for (const analyse::PersonMeasure& person : measured.people) ++uses[person.label];
   for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person, uses));
   if (!measured.teams.empty()) {
-    draw::MatchReport::Table& table = report.tables.emplace_back();
+    draw::PageTable& table = report.tables.emplace_back();
     table.title = "Teams";
+    table.bars_from = 2;
     table.head = {"team", "people", "distance, m", "length, m", "width, m", "hull, m²", "middle x, m", "middle y, m"};
     for (const analyse::TeamMeasure& team : measured.teams) {
       table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
@@ -113,11 +132,13 @@ analyse::Measurement measure_match(const std::string& tracks, const MeasureOutpu
                                    const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const format::ReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
-  analyse::Measurement measured = analyse::measure(format::read_match(tracks, reading).recording, options.how);
+  const format::match::GroundMatch match = format::read_match(tracks, reading);
+  analyse::Measurement measured = analyse::measure(match.recording, options.how);
   if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
   WholeFile file(output.figures);
   file.write(measurement_csv(measured, options.how));
-  if (!output.report.empty()) write_report(measured, options.how, std::filesystem::path(tracks).stem().string(), output.report);
+  if (!output.report.empty())
+    write_report(measured, options.how, match, std::filesystem::path(tracks).stem().string(), output.report);
   file.finish();
   return measured;
 }

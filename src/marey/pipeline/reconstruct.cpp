@@ -60,29 +60,33 @@ void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {
   summary.steps.insert(summary.steps.begin(), {step("decode", clock.decoding()), step("detect", clock.detecting())});
 }
 
-Summary record(const Rig& rig, const std::string& observations, const std::string& take, const MarkersInSpaceOptions& options,
-               const Hooks& hooks) {
+}  // namespace
+
+Summary reconstruct(const Rig& rig, const std::string& observations, Sinks& sinks, const MarkersInSpaceOptions& options,
+                    const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
   Clock clock = clock_of(rig, observations, options);
   if (clock.rate_hz() <= 0) throw Error("{}", "not one frame could be read from any camera");
   Rig fitted = rig;
   for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
   const auto stage = markers_in_space(fitted, clock.rate_hz(), options);
-  Sinks sinks;
-  sinks.add(std::make_unique<format::take::TakeWriter>(take));
   Summary summary = run(*stage, clock, sinks, hooks);
   report_cameras(clock, fitted, summary);
   return summary;
 }
 
-}  // namespace
-
 Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out, const MarkersInSpaceOptions& options,
                     const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const format::Format& format = format::format_to_write(out, {}, format::Content::space);
-  if (format.name == "take") return record(rig, observations, out, options, hooks);
+  const auto record = [&](const std::string& take) {
+    Sinks sinks;
+    sinks.add(std::make_unique<format::take::TakeWriter>(take));
+    return reconstruct(rig, observations, sinks, options, hooks);
+  };
+  if (format.name == "take") return record(out);
   const ForAWhile take{out + ".part.marey"};
-  Summary summary = record(rig, observations, take.path, options, hooks);
+  Summary summary = record(take.path);
   const StopScope keeps_what_there_is{{}};  // of a run that was stopped too
   rewrite(take.path, out, format);
   return summary;

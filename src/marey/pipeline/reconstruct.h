@@ -15,5 +15,8 @@ namespace marey::pipeline {
 /// recording. Throws Error where an input cannot be read or the take cannot be written.
 Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out,
                     const MarkersInSpaceOptions& options = {}, const Hooks& hooks = {});
+/// The same, into sinks of the caller's.
+Summary reconstruct(const Rig& rig, const std::string& observations, Sinks& sinks, const MarkersInSpaceOptions& options = {},
+                    const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -65,21 +66,20 @@ Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundO
   return sinks;
 }
 
-GroundSummary run_over(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+/// Sinks of files need the feeds, to know what to draw into; a caller's are there already.
+using SinksFor = std::function<Sinks&(const Rig& rig, const std::vector<Feed>& feeds)>;
+
+GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
   std::vector<Feed> feeds = open_feeds(rig, {.rate_hz = options.rate_hz});
-  Sinks sinks = sinks_of(rig, output, options, feeds);
+  Sinks& sinks = sinks_for(rig, feeds);
   const auto stage = people_on_ground(feeds, rig, options);
   Clock clock(std::move(feeds));
   GroundSummary summary{run(*stage, clock, sinks, hooks), stage->teams()};
   return summary;
 }
 
-}  // namespace
-
-GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
-  const StopScope scope(hooks.stop);
-  check(rig, output, options);
-  if (!lacks_offsets(rig)) return run_over(rig, output, options, hooks);
+GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  if (!lacks_offsets(rig)) return run_over(rig, sinks_for, options, hooks);
   Rig timed = rig;
   RigOffsets offsets;
   if (options.live) {
@@ -93,10 +93,28 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const Peo
     offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
     enter_offsets(timed, offsets);
   }
-  GroundSummary summary = run_over(timed, output, options, hooks);
+  GroundSummary summary = run_over(timed, sinks_for, options, hooks);
   summary.notes = offsets.notes;
   summary.warnings.insert(summary.warnings.begin(), offsets.warnings.begin(), offsets.warnings.end());
   return summary;
+}
+
+}  // namespace
+
+GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  check(rig, output, options);
+  Sinks sinks;
+  const auto to_files = [&](const Rig& timed, const std::vector<Feed>& feeds) -> Sinks& {
+    return sinks = sinks_of(timed, output, options, feeds);
+  };
+  return track_timed(rig, to_files, options, hooks);
+}
+
+GroundSummary track_ground(const Rig& rig, Sinks& sinks, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  check(rig, {}, options);
+  return track_timed(rig, [&](const Rig&, const std::vector<Feed>&) -> Sinks& { return sinks; }, options, hooks);
 }
 
 }  // namespace marey::pipeline

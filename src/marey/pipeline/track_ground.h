@@ -29,5 +29,7 @@ struct GroundSummary : Summary {
 /// behind.
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options = {},
                            const Hooks& hooks = {});
+/// The same, into sinks of the caller's.
+GroundSummary track_ground(const Rig& rig, Sinks& sinks, const PeopleOnGroundOptions& options = {}, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

@@ -1,0 +1,93 @@
+// What is to be done with many recordings, and what came of it: a table with a row a task, and beside it, in a folder of results, a
+// record a task. Whoever runs a task needs nothing else, so that tasks run anywhere, in any order, twice, or again after a node was
+// lost.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace marey::cli {
+
+/// A file that a task reads, as it was when the plan was made.
+struct PlannedInput {
+  std::string path;
+  std::int64_t size = 0;      ///< bytes
+  std::int64_t mtime_ns = 0;  ///< when it was changed last
+  std::string hash;           ///< format/input_hash.h
+
+  bool operator==(const PlannedInput&) const = default;
+};
+
+struct BatchTask {
+  int number = 0;                    ///< from 1
+  std::string name;                  ///< of the recording: unique in the plan
+  std::string job;                   ///< "track", "ground", "reconstruct", "measure"
+  std::vector<PlannedInput> inputs;  ///< the first is the recording; those of a rig follow
+  std::vector<std::string> options;  ///< further words of the command
+  std::string output;                ///< a path
+  int memory_mb = 0;                 ///< that it is expected to take at most at once
+
+  /// What it comes out the same by: the program's version, the job, its options and its inputs' bytes.
+  std::string hash() const;
+};
+
+struct BatchPlan {
+  std::string path;
+  std::vector<BatchTask> tasks;
+
+  std::string results() const;  ///< the folder beside it: PLAN.results
+  std::string record_of(const BatchTask& task) const;
+};
+
+/// What came of a task that was run.
+struct TaskRecord {
+  std::string hash;  ///< the task's, when it was run
+  bool done = false;
+  int exit_code = 0;
+  double seconds = 0;
+  int peak_mb = 0;
+  std::string host;
+  std::string sentence;  ///< why it failed; what the run warned of
+};
+
+/// The jobs that `--do` names.
+const std::vector<std::string>& batch_jobs();
+/// The words of the command that does a job; its input follows.
+std::vector<std::string> words_of_job(const std::string& job);
+
+/// Throws Error with the line where it is no plan.
+BatchPlan read_plan(const std::string& path);
+/// Whole or not at all.
+void write_plan(const BatchPlan& plan);
+
+/// Nothing where the task was never run to an end. Throws Error where there is something else in its place.
+std::optional<TaskRecord> read_record(const std::string& path);
+void write_record(const std::string& path, const TaskRecord& record);
+
+struct PlanRequest {
+  std::string from;  ///< a folder, or a table with a column `input`
+  std::string job = "track";
+  std::vector<std::string> options;
+  std::string ending;  ///< of the results; empty: the job's usual one
+  std::string plan;    ///< the file that is written; what it says of inputs that are as they were is kept
+};
+
+/// Finds the recordings, in the order of their names. Throws Error where there is none, or where two would have one name.
+BatchPlan make_plan(const PlanRequest& request);
+
+/// What differs from the plan, one sentence: the input is gone, or its bytes are others. Looks at size and time of change, and
+/// reads only where they differ. Empty where all is as planned.
+std::string changed_input(const BatchTask& task);
+
+/// MB that the job will take with such an input, from what was measured (docs/batch.md).
+int expected_memory_mb(const std::string& job, const std::vector<std::string>& inputs);
+
+/// The command lines that do all of a plan.
+struct BatchLines {
+  std::string loop, parallel, slurm_array, slurm_reduce;
+};
+BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads);
+
+}  // namespace marey::cli

@@ -1,0 +1,46 @@
+"""Marey turns what cameras see into motion you can measure.
+
+    import marey
+    people = marey.track("street.mp4")
+    people.to_pandas()
+
+Jobs: `track`, `track_ground`, `reconstruct`, `calibrate.wand`, `evaluate`, `live`; files: `read`, `read_rig`. Each job returns a `Recording`.
+Positions are px in a picture (integer coordinates are pixel centres, y down) and m elsewhere (z up); times are s from the beginning.
+What the outside world did wrong is a `marey.Error`, in one sentence; doubts are `marey.Warning`s. While a job runs other threads have Python,
+and Ctrl-C ends it.
+"""
+
+from . import calibrate
+from ._core import Error, version as __version__
+from ._evaluate import Evaluation, evaluate
+from ._files import formats, read, read_rig
+from ._frames import Frames
+from ._instant import Instant
+from ._jobs import Warning, live, reconstruct, threads, track, track_ground
+from ._recording import Recording, Track
+from ._rig import Camera, Rig
+
+Error.__module__ = "marey"
+
+__all__ = [
+    "Camera",
+    "Error",
+    "Evaluation",
+    "Frames",
+    "Instant",
+    "Recording",
+    "Rig",
+    "Track",
+    "Warning",
+    "__version__",
+    "calibrate",
+    "evaluate",
+    "formats",
+    "live",
+    "read",
+    "read_rig",
+    "reconstruct",
+    "threads",
+    "track",
+    "track_ground",
+]

@@ -1,0 +1,30 @@
+#include "marey/core/error.h"
+#include "marey/core/stop.h"
+
+#include "bindings.h"
+
+extern "C" {
+#if MAREY_FFMPEG
+#include <libavutil/log.h>
+#endif
+}
+
+NB_MODULE(_core, module) {
+  using namespace marey::python;
+#if MAREY_FFMPEG
+  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
+#endif
+  module.doc() = "What the package marey is built on; use that.";
+  module.attr("version") = MAREY_VERSION;
+  module.attr("reads_films_itself") = bool(MAREY_FFMPEG);
+  nb::exception<marey::Error>(module, "Error");
+  nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const marey::Stopped& stopped) {
+      PyErr_SetString(PyExc_KeyboardInterrupt, stopped.what());
+    }
+  });
+  bind_recording(module);
+  bind_jobs(module);
+}
