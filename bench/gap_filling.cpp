@@ -57,7 +57,7 @@ void try_hole(const Recording& recording, const std::set<std::string>& labels, T
               std::optional<FillMethod> method, Score& score) {
   Tracks tracks = tracks_of(recording, labels);
   tracks.apply({.kind = edit::Operation::Kind::remove, .tracks = {marker}, .frames = hole});
-  const auto fills = edit::decide_fills(tracks, marker, hole, {.method = method, .longest_s = 2});
+  const auto fills = edit::decide_fills(tracks, marker, hole, {.method = method, .longest_s = 2, .within_m = 1000});
   if (fills.empty()) return;
   const TrackColumns& truth = *recording.find(marker);
   double squares = 0;

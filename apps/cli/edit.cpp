@@ -202,11 +202,11 @@ void add_edit(Command& program) {
   auto options = std::make_shared<EditCommand>();
   Command command = program.subcommand("edit", "Change a take without changing what was recorded: each edit can be undone");
   command.input_file("TAKE", options->take, "a take (.marey); nothing recorded in it is changed").required();
-  command.texts(
-      "EDIT", options->edits,
-      "done in this order, all or none: \"rename A B\", \"swap A B 120:180\", \"split A 300 [NAME]\", \"join A B\", "
-      "\"delete A [120:180]\", \"fill all|A [120:180] [spline|rigid|pattern] [longest=1]\", \"filter all|A [6|auto] [120:180]\"; "
-      "frames are counted from 0");
+  command.texts("EDIT", options->edits,
+                "done in this order, all or none: \"rename A B\", \"swap A B 120:180\", \"split A 300 [NAME]\", \"join A B\", "
+                "\"delete A [120:180]\", \"fill all|A [120:180] [spline|rigid|pattern] [longest=1] [within=50]\", \"filter all|A "
+                "[6|auto] [120:180]\"; "
+                "frames are counted from 0");
   command.input_file("--script", options->script, "edits, one a line, done before those on the command line; # begins a remark");
   command.flag("--undo", options->undo, "let the last edit not count");
   command.flag("--redo", options->redo, "let it count again");

@@ -20,6 +20,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
+#include "live_outputs.h"
 #include "live_screen.h"
 #include "people_options.h"
 #include "rig_inputs.h"
@@ -42,6 +43,7 @@ struct LiveCommand {
   double preroll_s = 5, late_s = 0.05, patience_s = 3;
   detect::markers::MarkerOptions markers;
   PeopleFlags people;
+  LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
 
@@ -53,12 +55,6 @@ bool is_rig(const std::string& source) {
 Rig rig_of(const LiveCommand& command) {
   if (!is_rig(command.sources.front())) return pipeline::rig_of_sources(command.sources);
   return rig_of(RigAndSources{command.sources.front(), {command.sources.begin() + 1, command.sources.end()}});
-}
-
-/// Wires, viewers and what else takes what runs: a line here for each.
-std::vector<std::unique_ptr<Sink>> live_sinks(const LiveCommand& /*command*/) {
-  std::vector<std::unique_ptr<Sink>> sinks;
-  return sinks;
 }
 
 Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
@@ -124,7 +120,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.take = command.out;
   options.preroll_s = command.preroll_s;
   options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
-  options.sinks = live_sinks(command);
+  options.policy.time = source::steady_time();
   return options;
 }
 
@@ -137,6 +133,8 @@ struct LiveEnd {
 void run(const LiveCommand& command) {
   const Rig rig = rig_of(command);
   pipeline::LiveOptions options = options_of(command);
+  LiveOutputs outputs(command.outputs, options.policy.time, options.recording, command.quiet);
+  options.sinks = outputs.sinks();
   LiveEnd end;
   LiveScreen screen(command.quiet);
   const auto recording = options.recording;
@@ -147,6 +145,7 @@ void run(const LiveCommand& command) {
   options.begun = [&](pipeline::LiveJob job, const Rig& fed) { screen.begun(job, fed, keys.listens(), !command.out.empty()); };
   options.status = [&](const pipeline::LiveStatus& status) {
     screen.show(status);
+    outputs.report(status);
     if (command.for_s && status.seconds >= *command.for_s) end.source.request_stop();
   };
   const Hooks hooks{.progress = {}, .stop = end.source.get_token(), .options = given_options()};
@@ -156,9 +155,12 @@ void run(const LiveCommand& command) {
   }();
   warn(summary.warnings);
   if (command.json) {
-    print(as_json(summary, command));
+    Json told = as_json(summary, command);
+    told["streams"] = json_of(outputs.streams());
+    print(told);
   } else if (!command.quiet) {
     print_live(summary, command);
+    tell_streams(outputs.streams());
   }
   if (summary.sink_failed) throw EndWith{1};
 }
@@ -188,8 +190,10 @@ void add_live(Command& program) {
   command.number("--widest", options->markers.widest, "px", closed(2, 200),
                  "markers are no wider and may lie on anything that is; else they lie on a plain ground");
   add_blob_options(command, options->markers);
+  add_live_outputs(command, options->outputs);
   command.reports(options->json, options->quiet);
   command.runs([options] {
+    options->outputs.take = options->out;
     if (options->ground) options->targets = LiveTargets::people;
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     run(*options);

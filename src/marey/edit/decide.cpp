@@ -94,11 +94,14 @@ Operation decide(const Request& request, Tracks& tracks) {
   }
   if (request.kind == Kind::fill) {
     for (const TrackId track : operation.tracks) {
-      const auto fills = decide_fills(tracks, track, request.frames, {.method = request.method, .longest_s = request.longest_s});
+      const auto fills = decide_fills(tracks, track, request.frames,
+                                      {.method = request.method, .longest_s = request.longest_s, .within_m = request.within_m});
       operation.gaps.insert(operation.gaps.end(), fills.begin(), fills.end());
     }
     operation.tracks.clear();
-    if (operation.gaps.empty()) throw Error("fill: there is no gap of up to {:g} s that could be filled", request.longest_s);
+    if (operation.gaps.empty())
+      throw Error("fill: there is no gap of up to {:g} s that can be filled to within {:g} mm", request.longest_s,
+                  1e3 * request.within_m);
   }
   return operation;
 }

@@ -126,7 +126,7 @@ TEST(Edit, WhatCannotBeDoneIsSaid) {
   EXPECT_EQ(error_of(recording, "rename #7 B"), "there is no track #7");
   EXPECT_EQ(error_of(recording, "rename \"A B"), "a name begins with \" and does not end");
   EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is no cut-off; it is in Hz, above 0, or auto");
-  EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap of up to 1 s that could be filled");
+  EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap of up to 1 s that can be filled to within 50 mm");
   EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill and filter are known");
 }
 

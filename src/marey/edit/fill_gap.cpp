@@ -166,7 +166,8 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
     const auto &from = moments[static_cast<std::size_t>(gap.first)], &to = moments[static_cast<std::size_t>(gap.last)];
     if (frames && !(frames->holds(from.index) && frames->holds(to.index))) continue;
     if (seconds(to.time - from.time) > options.longest_s) continue;
-    if (auto fill = decide(tracks, track, gap, markers, options.method)) fills.push_back(std::move(*fill));
+    auto fill = decide(tracks, track, gap, markers, options.method);
+    if (fill && fill->expected_m <= options.within_m) fills.push_back(std::move(*fill));
   }
   return fills;
 }

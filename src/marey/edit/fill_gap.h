@@ -13,6 +13,7 @@ namespace marey::edit {
 struct FillOptions {
   std::optional<FillMethod> method = {};  ///< nothing: the one that did best
   double longest_s = 1;                   ///< longer gaps stay open
+  double within_m = 0.05;                 ///< so do gaps whose fill is expected to be farther off
 };
 
 /// The gaps of a track between its first and its last place, within `frames`, that can be filled, and how. What other tracks have

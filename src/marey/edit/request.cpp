@@ -117,11 +117,22 @@ std::optional<FillMethod> method_in(const Word& word) {
   return word.quoted ? std::nullopt : method_named(word.text);
 }
 
-std::optional<double> longest_in(const Word& word) {
-  if (!word.text.starts_with("longest=")) return std::nullopt;
-  const auto value = number_in<double>(std::string_view(word.text).substr(8));
-  if (!value || !(*value > 0 && *value <= 60)) throw Error("fill: {} is none; longest is from 0 to 60 s", word.text);
+/// "NAME=NUMBER".
+std::optional<double> setting_in(const Word& word, std::string_view name, double most, std::string_view unit) {
+  if (word.quoted || !word.text.starts_with(name) || word.text.size() <= name.size() || word.text[name.size()] != '=')
+    return std::nullopt;
+  const auto value = number_in<double>(std::string_view(word.text).substr(name.size() + 1));
+  if (!value || !(*value > 0 && *value <= most))
+    throw Error("fill: {} is none; {} is above 0, up to {:g} {}", word.text, name, most, unit);
   return value;
+}
+
+std::optional<double> longest_in(const Word& word) {
+  return setting_in(word, "longest", 60, "s");
+}
+
+std::optional<double> within_in(const Word& word) {
+  return setting_in(word, "within", 1000, "mm");
 }
 
 std::optional<double> cutoff_in(const Word& word) {
@@ -149,6 +160,8 @@ void read_fill(Reader& words, Request& request) {
       request.method = method;
     } else if (const auto longest = words.next(longest_in)) {
       request.longest_s = *longest;
+    } else if (const auto within = words.next(within_in)) {
+      request.within_m = *within / 1000;
     } else {
       break;
     }

@@ -1,6 +1,6 @@
 // An edit as a person writes it: a word, the tracks it is done to, frames where it is not done to all of them.
 //   rename LKNE LKneeOuter        swap LKNE RKNE 120:180       split LKNE 300 [NAME]       join LKNE LKNE2
-//   delete LKNE,RKNE [120:180]    fill all|LKNE [120:180] [spline|rigid|pattern] [longest=0.5]
+//   delete LKNE,RKNE [120:180]    fill all|LKNE [120:180] [spline|rigid|pattern] [longest=0.5] [within=20]
 //   filter all|LKNE [6|auto] [120:180]
 // Tracks are named by their labels, or #12 by their numbers; names with blanks or commas stand in double quotes. Frames are counted
 // from 0, both ends included; `120:` is from there on, `:180` up to there.
@@ -22,6 +22,7 @@ struct Request {
   std::string label = {};                 ///< of rename and split
   std::optional<FillMethod> method = {};  ///< of fill; nothing: the one that does best
   double longest_s = 1;                   ///< of fill
+  double within_m = 0.05;                 ///< of fill
   std::optional<double> cutoff_hz = {};   ///< of filter; nothing: what residual analysis proposes for each track
 };
 
