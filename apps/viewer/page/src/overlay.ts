@@ -1,6 +1,6 @@
 // Text over a view: labels that do not cover each other, and who is under the pointer.
 import type { Colours } from "./colours";
-import type { State } from "./state";
+import { TYPEFACE, type State } from "./state";
 
 export interface Mark {
   id: number;
@@ -80,7 +80,7 @@ export class Overlay {
     for (const m of marks) taken.add({ left: m.x - m.radius, right: m.x + m.radius, top: m.y - m.radius, bottom: m.y + m.radius });
     const chosen = (m: Mark) => state.selected.has(m.id) || state.hover === m.id;
     const order = marks.filter((m) => m.text !== "" && (every || chosen(m))).sort((a, b) => Number(chosen(b)) - Number(chosen(a)) || a.depth - b.depth);
-    draw.font = `500 11.5px ${getComputedStyle(document.body).fontFamily}`;
+    draw.font = `500 11.5px ${TYPEFACE}`;
     draw.textBaseline = "middle";
     for (const mark of order) {
       const width = this.text_width(mark.text) + 6;

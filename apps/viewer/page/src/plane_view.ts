@@ -4,7 +4,7 @@ import type { Colours } from "./colours";
 import { time_of, type Moment, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
-import type { State } from "./state";
+import { TYPEFACE, type State } from "./state";
 import { moments_back, type View } from "./view";
 
 const TRAIL_STEPS = 120;
@@ -195,7 +195,7 @@ export class PlaneView implements View {
     const step = [0.5, 1, 2, 5, 10, 20, 50, 100].find((s) => s * this.scale > 34) ?? 200;
     draw.strokeStyle = this.state.dark ? "#222933" : "#dde1e6";
     draw.fillStyle = this.state.dark ? "#5f6b78" : "#8a949f";
-    draw.font = `10px ${getComputedStyle(document.body).fontFamily}`;
+    draw.font = `10px ${TYPEFACE}`;
     draw.lineWidth = 1;
     draw.beginPath();
     const texts: [string, number, number][] = [];
@@ -271,7 +271,7 @@ export class PlaneView implements View {
       draw.strokeStyle = selected ? (this.state.dark ? "#fff" : "#111") : seen ? "rgba(10,14,18,.55)" : this.colours.css(id);
       draw.stroke();
       if (inside) {
-        draw.font = `600 ${Math.round(Math.min(11, radius))}px ${getComputedStyle(document.body).fontFamily}`;
+        draw.font = `600 ${Math.round(Math.min(11, radius))}px ${TYPEFACE}`;
         draw.fillStyle = seen && this.colours.is_light(id) ? "#10151a" : "#fff";
         if (!seen && !this.state.dark) draw.fillStyle = "#222";
         draw.fillText(name, x, y + 0.5);
@@ -320,7 +320,7 @@ export class PlaneView implements View {
 
   private name_box(name: string, id: number, left: number, top: number, alpha: number): void {
     const draw = this.overlay.draw;
-    draw.font = `600 11px ${getComputedStyle(document.body).fontFamily}`;
+    draw.font = `600 11px ${TYPEFACE}`;
     draw.textBaseline = "middle";
     const width = draw.measureText(name).width + 8;
     const up = Math.max(1, top - 16);

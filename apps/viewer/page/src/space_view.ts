@@ -8,7 +8,7 @@ import type { Colours } from "./colours";
 import { time_of, type Moment, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
-import type { State } from "./state";
+import { TYPEFACE, type State } from "./state";
 import { moments_back, type View } from "./view";
 
 const TRAIL_STEPS = 90;
@@ -295,7 +295,7 @@ export class SpaceView implements View {
 
   private name_cameras(): void {
     const { draw, width, height } = this.overlay;
-    draw.font = `10.5px ${getComputedStyle(document.body).fontFamily}`;
+    draw.font = `10.5px ${TYPEFACE}`;
     draw.textAlign = "center";
     draw.fillStyle = this.state.dark ? "#7d93ab" : "#5d7388";
     for (const { name, at } of this.camera_names) {

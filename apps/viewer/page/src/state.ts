@@ -3,6 +3,14 @@
 export type Speed = number;
 export const SPEEDS: Speed[] = [0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
 
+/** Sets a text where it is another one: what stays costs no layout. */
+export function put(place: Element, text: string): void {
+  if (place.textContent !== text) place.textContent = text;
+}
+
+/** The page's typeface, for canvases. */
+export const TYPEFACE = 'Inter, system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Liberation Sans", sans-serif';
+
 export class State {
   time = 0;
   playing = false;

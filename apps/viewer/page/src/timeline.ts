@@ -1,6 +1,6 @@
 // Play, pause, step, speed, and the strip on which time is scrubbed.
 import type { Motion } from "./motion";
-import { SPEEDS, type State } from "./state";
+import { put, SPEEDS, type State } from "./state";
 
 const two = (n: number) => String(n).padStart(2, "0");
 export function clock(seconds: number): string {
@@ -20,6 +20,8 @@ export class Timeline {
   private to_live = document.querySelector<HTMLButtonElement>("#live")!;
   private shape: Path2D | null = null;
   private shaped_for = "";
+  private ran: boolean | null = null;
+  private style = getComputedStyle(this.strip);
 
   constructor(private state: State, private motion: () => Motion, step: (by: number) => void) {
     for (const value of SPEEDS) this.speed.add(new Option(`${value < 0.1 ? "1/20" : value < 0.25 ? "1/10" : value === 0.25 ? "¼" : value === 0.5 ? "½" : value}×`, `${value}`));
@@ -72,12 +74,15 @@ export class Timeline {
     const live = motion.scene.kind === "live";
     const running = live ? state.following : state.playing;
     this.play.classList.toggle("running", running);
-    this.play.title = running ? "Pause (space)" : "Play (space)";
-    this.play.setAttribute("aria-label", running ? "Pause" : "Play");
+    if (this.ran !== running) {
+      this.ran = running;
+      this.play.title = running ? "Pause (space)" : "Play (space)";
+      this.play.setAttribute("aria-label", running ? "Pause" : "Play");
+    }
     this.to_live.hidden = !live || state.following;
     this.speed.hidden = live;
-    this.now.textContent = live ? clock(state.time - motion.last) : clock(state.time - motion.first);
-    this.total.textContent = live ? (state.following ? "live" : "behind") : clock(motion.last - motion.first);
+    put(this.now, live ? clock(state.time - motion.last) : clock(state.time - motion.first));
+    put(this.total, live ? (state.following ? "live" : "behind") : clock(motion.last - motion.first));
     this.draw_strip(motion);
   }
 
@@ -101,7 +106,7 @@ export class Timeline {
     const draw = this.strip.getContext("2d")!;
     draw.setTransform(ratio, 0, 0, ratio, 0, 0);
     draw.clearRect(0, 0, width, height);
-    const style = getComputedStyle(this.strip);
+    const { style } = this;
     const span = Math.max(1e-9, motion.last - motion.first);
     const at = (time: number) => ((time - motion.first) / span) * width;
     const list = motion.density();

@@ -1,0 +1,255 @@
+// The viewer's page in Chromium: loaded, looked at, every control used. viewer_page.mjs PAGE_FOLDER FOLDER SCENARIO ADDRESS
+// Screenshots are left in FOLDER. Exits 1 with the first thing that is not as it should be.
+import assert from "node:assert/strict";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+
+const [, , page_folder, folder, scenario, address] = process.argv;
+const { chromium } = createRequire(join(page_folder, "package.json"))("playwright-core");
+const phone = scenario.includes("phone");
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+const page = await browser.newPage({ viewport: phone ? { width: 390, height: 844 } : { width: 1280, height: 800 }, hasTouch: phone, colorScheme: "dark" });
+const wrong = [];
+page.on("pageerror", (error) => wrong.push(error.message));
+page.on("console", (message) => message.type() === "error" && wrong.push(message.text()));
+
+const sleep = (ms) => page.waitForTimeout(ms);
+const text = (selector) => page.textContent(selector);
+const time = async () => Number(await page.evaluate(() => document.body.dataset.time));
+const has = (selector, name) => page.evaluate(([s, n]) => document.querySelector(s).classList.contains(n), [selector, name]);
+const until = (what, condition, argument) => page.waitForFunction(condition, argument, { timeout: 15000 }).catch(() => assert.fail(what));
+
+/** How many colours a part of the page has, and its pixels as a digest. */
+async function look(selector) {
+  const png = (await page.locator(selector).first().screenshot()).toString("base64");
+  return page.evaluate(async (data) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const draw = canvas.getContext("2d");
+    draw.drawImage(image, 0, 0);
+    const pixels = new Uint32Array(draw.getImageData(0, 0, image.width, image.height).data.buffer);
+    let digest = 7;
+    for (const pixel of pixels) digest = (Math.imul(digest, 31) + pixel) | 0;
+    return { colours: new Set(pixels).size, digest };
+  }, png);
+}
+async function changes(what, act) {
+  const before = await look("#stage");
+  await act();
+  await sleep(350);
+  assert.notDeepEqual(await look("#stage"), before, `${what} changes nothing in the view`);
+}
+
+/** Nothing that can be pressed is cut off or covered by another one. */
+async function check_layout() {
+  const faults = await page.evaluate(() => {
+    const shown = [...document.querySelectorAll("header button, nav button, footer button, footer select, footer canvas, #tabs button")].filter((e) => e.offsetParent && !e.hidden);
+    const areas = shown.map((e) => [e.id || e.textContent, e.getBoundingClientRect()]);
+    const list = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than the window"] : [];
+    for (const [name, a] of areas) {
+      if (a.left < 0 || a.right > innerWidth + 0.5 || a.top < 0 || a.bottom > innerHeight + 0.5) list.push(`${name} is cut off`);
+      if (a.width < 18 || a.height < 18) list.push(`${name} is too small to press`);
+      for (const [other, b] of areas)
+        if (name < other && a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1) list.push(`${name} and ${other} overlap`);
+    }
+    return list;
+  });
+  assert.deepEqual(faults, []);
+}
+
+async function play_and_scrub() {
+  const begin = await time();
+  await page.click("#play");
+  await until("it does not play", (t) => Number(document.body.dataset.time) > t + 0.2, begin);
+  await page.click("#play");
+  await sleep(200);
+  const paused = await time();
+  await sleep(300);
+  assert.equal(await time(), paused, "it plays on");
+  await page.click("#forth");
+  await sleep(200);
+  const next = await time();
+  assert(next > paused, "no step on");
+  await page.click("#back");
+  await sleep(200);
+  assert((await time()) < next, "no step back");
+  const strip = await page.locator("#strip").boundingBox();
+  await page.mouse.click(strip.x + strip.width / 2, strip.y + strip.height / 2);
+  await sleep(200);
+  const middle = await time();
+  await page.keyboard.press("End");
+  await sleep(200);
+  const end = await time();
+  await page.keyboard.press("Home");
+  await sleep(200);
+  const first = await time();
+  assert(Math.abs(middle - (first + end) / 2) < 0.05 * (end - first), `the strip's middle is ${middle} of ${first} to ${end}`);
+  await page.selectOption("#speed", "4");
+  await page.keyboard.press(" ");
+  await until("four times as fast does not play", (t) => Number(document.body.dataset.time) > t + 0.4, first);
+  await page.keyboard.press(" ");
+  await page.keyboard.press("ArrowDown");
+  assert.equal(await page.inputValue("#speed"), "2");
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Home");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowRight");
+  await sleep(200);
+  assert((await time()) > first + 0.9);
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("Shift+ArrowLeft");
+}
+
+async function list_and_plots(space) {
+  const names = page.locator(".row .name");
+  const count = await names.count();
+  assert(count > 3, "the list is empty");
+  await names.nth(0).click();
+  await names.nth(1).click();
+  assert.match(await text("#count"), /2 selected/);
+  await changes("hiding a track", () => page.locator(".row .eye").nth(0).click());
+  assert.match(await text("#count"), /1 hidden/);
+  const name = await names.nth(2).textContent();
+  await page.fill("#filter", name);
+  await sleep(100);
+  assert((await names.count()) < count);
+  await page.fill("#filter", "");
+  await page.click("#by_seen");
+  const percents = (await page.locator(".percent").allTextContents()).map(Number);
+  assert.deepEqual(percents, [...percents].sort((a, b) => a - b));
+  await page.click("#by_name");
+  await page.click('#tabs [data-tab="plot"]');
+  await until("nothing is plotted", (n) => document.querySelectorAll(".uplot canvas").length === n, space ? 3 : 2);
+  assert((await look(".uplot canvas")).colours > 20, "the plot is empty");
+  await page.locator("#coordinates button", { hasText: "speed" }).click();
+  await until("no speed is plotted", (n) => document.querySelectorAll(".uplot canvas").length === n, space ? 4 : 3);
+  await page.locator("#coordinates button", { hasText: "speed" }).click();
+  await sleep(300);
+  const over = await page.locator(".u-over").first().boundingBox();
+  const before = await time();
+  await page.mouse.click(over.x + 0.8 * over.width, over.y + over.height / 2);
+  await sleep(300);
+  assert((await time()) > before, "a click in the plot does not go there");
+  await page.screenshot({ path: join(folder, `${scenario}_plots.png`) });
+  await page.click('#tabs [data-tab="about"]');
+  assert.match(await text("#about"), /Holds/);
+  await page.keyboard.press("m");
+  await page.click("#none");
+  assert.doesNotMatch(await text("#count"), /selected|hidden/);
+  await page.keyboard.press("a");
+  assert.match(await text("#count"), /selected/);
+  await page.keyboard.press("Escape");
+}
+
+async function buttons(space) {
+  await changes("labels", () => page.click("#labels"));
+  await page.keyboard.press("l");
+  await page.keyboard.press("Shift+ArrowRight");
+  await sleep(200);
+  await changes("trails", () => page.keyboard.press("t"));
+  if (space) {
+    for (const id of ["top", "front", "side", "reset"]) await changes(id, () => page.click(`#${id}`));
+    await changes("cameras", () => page.click("#rig"));
+    await page.keyboard.press("c");
+    await changes("the key 1", () => page.keyboard.press("1"));
+    await changes("the key 0", () => page.keyboard.press("0"));
+  }
+  const stage = await page.locator("#stage").boundingBox();
+  await page.mouse.move(stage.x + stage.width / 2, stage.y + stage.height / 2);
+  await changes("the wheel", () => page.mouse.wheel(0, -400));
+  await changes("dragging", async () => {
+    await page.mouse.down();
+    await page.mouse.move(stage.x + stage.width / 2 + 90, stage.y + stage.height / 2 + 30, { steps: 4 });
+    await page.mouse.up();
+  });
+  await page.click("#reset");
+  await changes("light", () => page.click("#theme"));
+  assert(await has("html", "light"));
+  await page.screenshot({ path: join(folder, `${scenario}_light.png`) });
+  await page.keyboard.press("d");
+  await page.keyboard.press("?");
+  assert(await page.isVisible("dialog"));
+  await page.locator("dialog button").click();
+  assert(!(await page.isVisible("dialog")));
+}
+
+/** Over some mark the pointer says so, and a click selects it. */
+async function pick() {
+  const stage = await page.locator("#stage").boundingBox();
+  for (let y = 60; y < stage.height - 20; y += 9) {
+    for (let x = 30; x < stage.width - 20; x += 9) {
+      const found = await page.evaluate(([cx, cy]) => {
+        const view = document.querySelector(".view");
+        view.dispatchEvent(new PointerEvent("pointermove", { clientX: cx, clientY: cy, bubbles: true }));
+        return view.classList.contains("over_mark");
+      }, [stage.x + x, stage.y + y]);
+      if (!found) continue;
+      await page.mouse.click(stage.x + x, stage.y + y);
+      await sleep(150);
+      assert.match(await text("#count"), /1 selected/);
+      await page.keyboard.press("Escape");
+      return;
+    }
+  }
+  assert.fail("nothing in the view can be picked");
+}
+
+async function live() {
+  await until("no picture comes", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
+  if (phone) await page.click("#pictures_tab");
+  await sleep(1500);
+  assert((await look("#cameras canvas")).colours > 10, "a camera's picture is empty");
+  assert.match(await text("#cameras"), /stalled/);
+  assert.match(await text("#cameras"), /7 lost/);
+  await page.click("#record");
+  await until("nothing is recorded", () => document.querySelector("#record").getAttribute("aria-pressed") === "true");
+  await page.keyboard.press("r");
+  await until("recording does not end", () => document.querySelector("#record").getAttribute("aria-pressed") === "false");
+  await page.click("#play");
+  await sleep(300);
+  const paused = await time();
+  await sleep(500);
+  assert.equal(await time(), paused);
+  await page.keyboard.press("ArrowLeft");
+  await sleep(300);
+  assert((await time()) < paused);
+  await page.click("#live");
+  await until("it does not go on", (t) => Number(document.body.dataset.time) > t, paused);
+  const figure = page.locator("#cameras figure").first();
+  const small = (await figure.boundingBox()).width;
+  await figure.click();
+  if (!phone) assert((await figure.boundingBox()).width > small, "a picture does not grow");
+  await figure.click();
+  await page.keyboard.press("m");
+  await page.locator(".row .name").first().click();
+  await page.keyboard.press("p");
+  await until("nothing is plotted", () => document.querySelectorAll(".uplot canvas").length === 3);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("v");
+  await sleep(2500);
+  console.log(`${scenario}: capture to drawn, 95 % within ${await page.evaluate(() => document.body.dataset.latency)} ms; ${await text("#facts")}`);
+}
+
+await page.goto(address);
+await until("nothing was loaded", () => Number(document.body.dataset.rows) > 0);
+await sleep(700);
+assert(!page.url().includes("token"), "the token stays in the address bar");
+const seen = await look("#stage");
+assert(seen.colours > 30, `the view has ${seen.colours} colours`);
+await page.screenshot({ path: join(folder, `${scenario}.png`) });
+await check_layout();
+const space = scenario.includes("space") || scenario.includes("live");
+if (scenario.includes("live")) {
+  await live();
+} else {
+  await play_and_scrub();
+  await list_and_plots(space);
+  await buttons(space);
+  if (!phone) await pick();
+}
+await check_layout();
+assert.deepEqual(wrong.filter((line) => !line.includes("GPU stall")), []);
+await browser.close();
+console.log(`${scenario}: done`);

@@ -1,0 +1,77 @@
+"""The viewer's page: what is checked in is what its sources give; in Chromium it loads, draws, and every control does something.
+
+    viewer_test.py MAREY LIVE_SCENE [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
+
+Screenshots are left in FOLDER. `npm ci` in apps/viewer/page fetches the packages.
+"""
+import filecmp
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PAGE = ROOT / "apps/viewer/page"
+FILES = ("index.html", "page.js", "page.css")
+
+
+def skip_where_absent():
+    for there, what in (
+        (shutil.which("node"), "Node is not here (Debian's nodejs and npm)"),
+        ((PAGE / "node_modules/playwright-core").is_dir(), "the page's packages are not here: npm ci in apps/viewer/page"),
+        (pathlib.Path("/usr/bin/chromium").exists(), "/usr/bin/chromium is not here (Debian's chromium)"),
+    ):
+        if not there:
+            print(f"skipped: {what}")
+            sys.exit(77)
+
+
+def check_built(folder):
+    subprocess.run(["node", "node_modules/typescript/bin/tsc", "--noEmit"], cwd=PAGE, check=True)
+    built = folder / "built"
+    subprocess.run(["node", "node_modules/vite/bin/vite.js", "build", "--outDir", built, "--emptyOutDir", "--logLevel", "error"], cwd=PAGE, check=True)
+    assert sorted(path.name for path in built.iterdir()) == sorted(FILES), list(built.iterdir())
+    for name in FILES:
+        assert filecmp.cmp(built / name, PAGE / "built" / name, shallow=False), f"{name} is not what the sources give: npm run build in apps/viewer/page"
+    print("the page that is checked in is what its sources give")
+
+
+def make_recordings(marey, folder):
+    def run(*arguments):
+        subprocess.run([marey, *arguments, "-q"], cwd=folder, check=True)
+
+    run("simulate", "room", "--motion", "walk", "--markers", "30", "--frames", "360", "--cameras", "8", "--size", "640", "480", "-o", "walk")
+    run("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--labels", "walk/labels.csv", "-o", "walk.marey")
+    run("simulate", "match", "--cameras", "2", "--seconds", "6", "--boxes", "-o", "match")
+    run("track", "match/rig.toml", "--ground", "-o", "match.csv")
+    run("simulate", "people", "-o", "street", "--frames", "120")
+    run("track", "street/video.mp4", "-o", "street.csv")
+
+
+def look_at(command, folder, scenario):
+    shown = subprocess.Popen([str(part) for part in command], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    try:
+        address = shown.stdout.readline().strip()
+        subprocess.run(["node", pathlib.Path(__file__).with_name("viewer_page.mjs"), PAGE, folder, scenario, address], check=True, timeout=240)
+    finally:
+        shown.terminate()
+        shown.communicate(timeout=10)
+
+
+def main(marey, live_scene, folder):
+    check_built(folder)
+    make_recordings(marey, folder)
+    view = [marey, "view", "--port", "0", "-q"]
+    look_at([*view, "walk.marey"], folder, "space")
+    look_at([*view, "street.csv", "--film", "street/video.mp4"], folder, "image")
+    look_at([*view, "match.csv"], folder, "ground_phone")
+    look_at([live_scene, "walk.marey", "60"], folder, "live")
+
+
+if __name__ == "__main__":
+    skip_where_absent()
+    with tempfile.TemporaryDirectory() as temporary:
+        chosen = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else temporary)
+        chosen.mkdir(exist_ok=True)
+        main(*(str(pathlib.Path(path).resolve()) for path in sys.argv[1:3]), chosen.resolve())
