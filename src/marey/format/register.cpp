@@ -13,6 +13,7 @@
 // clang-format off
 #define MAREY_FORMATS(row) \
   row(format::take, take) \
+  row(format::mcap, mcap) \
   row(format::motion, trc) \
   row(format::motion, motive) \
   row(format::motion, nexus) \

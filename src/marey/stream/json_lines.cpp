@@ -78,8 +78,11 @@ class JsonWire : public WireSink {
     server_.each([](Session& session, Outbox& out) { static_cast<JsonSession&>(session).header_changed(out); });
   }
   void send(const Instant& instant, FrameTimes times) override {
-    const auto line = std::make_shared<const std::string>(json_frame(header(), cast(), instant, times) + "\n");
-    server_.each([&](Session& session, Outbox& out) { static_cast<JsonSession&>(session).frame(line, out); });
+    std::shared_ptr<const std::string> line;  // made where anybody is there
+    server_.each([&](Session& session, Outbox& out) {
+      if (line == nullptr) line = std::make_shared<const std::string>(json_frame(header(), cast(), instant, times) + "\n");
+      static_cast<JsonSession&>(session).frame(line, out);
+    });
   }
   void drain() override { server_.drain(kDrainMs); }
   void fill(WireReport& report) const override { take_counts(report, server_.counts()); }

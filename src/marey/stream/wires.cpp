@@ -16,6 +16,8 @@
   row(natnet_unicast) \
   row(vmc) \
   row(osc) \
+  row(lsl) \
+  row(foxglove) \
   row(json)
 // clang-format on
 

@@ -1,0 +1,132 @@
+// The Foxglove WebSocket: what the Foxglove app and Lichtblick open. Topics as in MCAP files (format/mcap). Both names of the protocol are
+// accepted: they are one protocol, and clients ask for the one or the other.
+#include <array>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/mcap/foxglove_messages.h"
+#include "marey/stream/foxglove_requests.h"
+#include "marey/stream/server.h"
+#include "marey/stream/websocket.h"
+#include "marey/stream/wires.h"
+
+namespace marey::stream {
+namespace {
+
+constexpr int kStatusTicks = 10;  // a second between two sentences
+constexpr std::size_t kMostSubscriptions = 64;
+
+class FoxgloveSession : public Session {
+ public:
+  explicit FoxgloveSession(const std::string& session) : session_(session) {}
+
+  std::size_t received(std::string_view bytes, Outbox& out) override {
+    return socket_.received(
+        bytes, out,
+        [&] {
+          say(foxglove_server_info("Marey", session_), out);
+          say(foxglove_advertisement(), out);
+        },
+        [&](std::string_view text) { take(text, out); });
+  }
+
+  void tick(Outbox& out) override {
+    if (++ticks_ % kStatusTicks != 0 || !socket_.is_open()) return;
+    const std::int64_t lost = out.frames_dropped() - told_;
+    if (lost <= 0) return;
+    told_ = out.frames_dropped();
+    say(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
+  }
+
+  /// `message_of` makes a topic's message where anybody wants it.
+  template <typename MessageOf>
+  void frame(std::uint64_t time_ns, const MessageOf& message_of, Outbox& out) const {
+    for (const auto& [id, topic] : topic_of_) {
+      const std::shared_ptr<const std::string>& message = message_of(topic);
+      if (message->empty()) continue;
+      const std::string head = foxglove_data_head(id, time_ns);
+      out.frame(frame_head(Opcode::binary, head.size() + message->size()) + head, message);
+    }
+  }
+
+ private:
+  static void say(const std::string& text, Outbox& out) { out.answer(frame_head(Opcode::text, text.size()) + text); }
+
+  void take(std::string_view text, Outbox& out) {
+    const auto request = foxglove_request(text);
+    if (!request) return;
+    for (const auto& [id, channel] : request->subscribe) {
+      if (channel < 1 || channel > format::mcap::topics().size() || topic_of_.size() >= kMostSubscriptions) {
+        say(foxglove_status(1, fmt::format("there is no channel {} to subscribe to", channel)), out);
+        continue;
+      }
+      topic_of_[id] = channel - 1;
+    }
+    for (const std::uint32_t id : request->unsubscribe) topic_of_.erase(id);
+  }
+
+  const std::string& session_;
+  WebSocket socket_{{"foxglove.sdk.v1", "foxglove.websocket.v1"}};
+  std::map<std::uint32_t, std::size_t> topic_of_;  // of a subscription
+  int ticks_ = 0;
+  std::int64_t told_ = 0;
+};
+
+class FoxgloveWire : public WireSink {
+ public:
+  FoxgloveWire(const Target& target, StreamOptions options)
+      : WireSink("foxglove", std::move(options)),
+        session_(fmt::format("{}", wall_now_ns())),
+        server_(loop(), target.address("foxglove"), "foxglove", 64, WebSocket::kMostMessage + 64,
+                [this](const Address&) { return std::make_unique<FoxgloveSession>(session_); }) {}
+  ~FoxgloveWire() override { loop().stop(); }
+
+  std::string where() const override { return to_string(server_.address()); }
+
+ protected:
+  void start() override {
+    messages_.begin(header());
+    loop().on_tick([this] { server_.tick(); });
+  }
+
+  void send(const Instant& instant, FrameTimes times) override {
+    messages_.add(instant.named);
+    const std::int64_t wall = wall_now_ns() - steady_now_ns();
+    const format::mcap::MessageTimes stamps{
+        .stamp = times.capture + wall, .capture = times.capture, .solve = times.solve, .send = times.send};
+    std::array<std::shared_ptr<const std::string>, 4> made;
+    const auto message_of = [&](std::size_t topic) -> const std::shared_ptr<const std::string>& {
+      if (made[topic] == nullptr) made[topic] = std::make_shared<const std::string>(messages_.message(topic, instant, stamps));
+      return made[topic];
+    };
+    server_.each([&](Session& session, Outbox& out) {
+      static_cast<FoxgloveSession&>(session).frame(static_cast<std::uint64_t>(stamps.stamp), message_of, out);
+    });
+  }
+
+  void drain() override { server_.drain(kDrainMs); }
+  void fill(WireReport& report) const override { take_counts(report, server_.counts()); }
+
+ private:
+  std::string session_;
+  format::mcap::FoxgloveMessages messages_;
+  Server server_;
+};
+
+}  // namespace
+
+Wire foxglove_wire() {
+  return {.name = "foxglove",
+          .title = "Foxglove WebSocket",
+          .port = 8765,
+          .detail = "`/marey/points` (PointCloud), `/tf` (FrameTransforms), `/marey/scene` (SceneUpdate), protobuf; `/marey/times` (JSON); m, z up",
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
+            return std::make_unique<FoxgloveWire>(target, options);
+          }};
+}
+
+}  // namespace marey::stream

@@ -1,0 +1,98 @@
+#include "marey/stream/foxglove_requests.h"
+
+#include <nlohmann/json.hpp>
+
+#include "marey/core/error.h"
+#include "marey/format/mcap/foxglove_messages.h"
+#include "marey/stream/bytes.h"
+#include "marey/stream/websocket.h"
+
+namespace marey::stream {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostAtOnce = 256;
+constexpr int kMostNesting = 16;
+
+/// The parser goes down by recursion of its own stack, but what it builds is taken apart by ours.
+bool is_nested_beyond(std::string_view text, int most) {
+  int depth = 0, deepest = 0;
+  for (const char c : text) {
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if (c == ']' || c == '}') --depth;
+  }
+  return deepest > most;
+}
+
+template <typename T>
+std::optional<T> whole_in(const json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_number_unsigned()) return std::nullopt;
+  const auto value = found->template get<std::uint64_t>();
+  return value <= std::numeric_limits<T>::max() ? std::optional(static_cast<T>(value)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
+  if (is_nested_beyond(text, kMostNesting)) throw Error("a message that is nested too deep");
+  const json message = json::parse(text, nullptr, false);
+  if (!message.is_object()) throw Error("a message that is no JSON object");
+  const auto op = message.find("op");
+  if (op == message.end() || !op->is_string()) throw Error("a message without its op");
+  FoxgloveRequest request;
+  if (*op == "subscribe") {
+    const auto wanted = message.find("subscriptions");
+    if (wanted == message.end() || !wanted->is_array()) throw Error("a subscription of nothing");
+    if (wanted->size() > kMostAtOnce) throw Error("{} subscriptions at once", wanted->size());
+    for (const json& each : *wanted) {
+      if (!each.is_object()) throw Error("a subscription that is no object");
+      const auto id = whole_in<std::uint32_t>(each, "id");
+      const auto channel = whole_in<std::uint64_t>(each, "channelId");
+      if (!id || !channel) throw Error("a subscription without its numbers");
+      request.subscribe.push_back({*id, *channel});
+    }
+    return request;
+  }
+  if (*op == "unsubscribe") {
+    const auto wanted = message.find("subscriptionIds");
+    if (wanted == message.end() || !wanted->is_array() || wanted->size() > kMostAtOnce) throw Error("an unsubscription of nothing");
+    for (const json& each : *wanted) {
+      if (each.is_number_unsigned() && each.get<std::uint64_t>() <= 0xffffffffu) request.unsubscribe.push_back(each.get<std::uint32_t>());
+    }
+    return request;
+  }
+  return std::nullopt;
+}
+
+std::string foxglove_server_info(std::string_view name, std::string_view session) {
+  return json{{"op", "serverInfo"}, {"name", name}, {"capabilities", json::array()}, {"sessionId", session}}.dump(
+      -1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string foxglove_advertisement() {
+  json channels = json::array();
+  for (std::size_t i = 0; i < format::mcap::topics().size(); ++i) {
+    const format::mcap::Topic& topic = format::mcap::topics()[i];
+    channels.push_back({{"id", i + 1},
+                        {"topic", topic.name},
+                        {"encoding", topic.encoding},
+                        {"schemaName", topic.schema_name},
+                        {"schemaEncoding", topic.schema_encoding},
+                        {"schema", topic.encoding == "protobuf" ? base64(topic.schema) : topic.schema}});
+  }
+  return json{{"op", "advertise"}, {"channels", channels}}.dump();
+}
+
+std::string foxglove_status(int level, std::string_view sentence) {
+  return json{{"op", "status"}, {"level", level}, {"message", sentence}}.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string foxglove_data_head(std::uint32_t subscription, std::uint64_t time_ns) {
+  LittleBytes bytes;
+  bytes.put<std::uint8_t>(std::uint8_t{1}).put<std::uint32_t>(subscription).put<std::uint64_t>(time_ns);
+  return std::move(bytes).str();
+}
+
+}  // namespace marey::stream

@@ -1,0 +1,222 @@
+// Lab Streaming Layer: an outlet of our own, for experiments that record motion beside EEG, eyes and forces (LabRecorder, pylsl, MNE).
+// Found by multicast; listening on this host alone it answers this host's programs alone.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "marey/stream/lsl_messages.h"
+#include "marey/stream/server.h"
+#include "marey/stream/wires.h"
+
+namespace marey::stream {
+namespace {
+
+constexpr std::uint16_t kSearchPort = 16'571, kFirstPort = 16'572;
+constexpr std::array<std::uint32_t, 2> kGroups{0xe00000b7, 0xefffacd7};  // 224.0.0.183, 239.255.172.215
+
+double steady_seconds() {
+  return 1e-9 * static_cast<double>(steady_now_ns());
+}
+
+/// A name for this run of an outlet; a reader that was cut off knows by it whether the outlet is another one.
+std::string new_uid() {
+  std::random_device dice;
+  std::array<std::uint32_t, 4> words{};
+  for (std::uint32_t& word : words) word = dice();
+  return fmt::format("{:08x}-{:04x}-4{:03x}-a{:03x}-{:08x}{:04x}", words[0], words[1] & 0xffff, words[1] >> 16 & 0xfff, words[2] & 0xfff,
+                     words[3], words[2] >> 16);
+}
+
+/// What sessions read. There is no outlet before the first moment: its channels are not known.
+struct LslShared {
+  LslOutlet outlet;
+  bool begun = false;
+};
+
+class LslSession : public Session {
+ public:
+  explicit LslSession(const LslShared& shared) : shared_(shared) {}
+
+  std::size_t received(std::string_view bytes, Outbox& out) override {
+    if (feeding_) return bytes.size();
+    const auto request = lsl_request(bytes);
+    if (!request) return 0;
+    switch (request->kind) {
+      case LslRequest::Kind::short_info: {
+        const std::string info = lsl_info_xml(shared_.outlet, false);
+        if (shared_.begun && lsl_matches(info, request->text)) out.answer(info);
+        out.end();
+        break;
+      }
+      case LslRequest::Kind::full_info:
+        if (shared_.begun) out.answer(lsl_info_xml(shared_.outlet, true));
+        out.end();
+        break;
+      case LslRequest::Kind::feed:
+        feed(*request, out);
+        break;
+    }
+    return request->size;
+  }
+
+  void frame(const std::shared_ptr<const std::string>& sample, Outbox& out) const {
+    if (feeding_) out.frame({}, sample);
+  }
+
+ private:
+  void feed(const LslRequest& request, Outbox& out) {
+    if (!shared_.begun || (!request.text.empty() && request.text != shared_.outlet.uid)) {
+      out.answer("LSL/110 404 Not found\r\n\r\n");
+      out.end();
+      return;
+    }
+    if (request.version < 110 || request.version > 199) {
+      out.answer("LSL/110 505 Version not supported\r\n\r\n");
+      out.end();
+      return;
+    }
+    out.answer(lsl_feed_head(shared_.outlet));
+    feeding_ = true;
+  }
+
+  const LslShared& shared_;
+  bool feeding_ = false;
+};
+
+class LslWire : public WireSink {
+ public:
+  LslWire(const Target& target, StreamOptions options)
+      : WireSink("lsl", std::move(options)),
+        at_(free_port(target.address("lsl"))),
+        server_(loop(), at_, "lsl", 32, 8192, [this](const Address&) { return std::make_unique<LslSession>(shared_); }) {
+    at_ = server_.address();
+    service_ = datagrams_at(at_, "lsl");
+    loop().watch(service_.get(), [this](Loop::Events) { answer_datagrams(service_); });
+    listen_for_searches();
+  }
+  ~LslWire() override { loop().stop(); }
+
+  std::string where() const override { return to_string(at_); }
+
+ protected:
+  bool takes_pixels() const override { return true; }
+  void start() override {
+    shared_ = {};
+    loop().on_tick([this] { server_.tick(); });
+  }
+
+  void send(const Instant& instant, FrameTimes times) override {
+    if (!shared_.begun) begin_outlet();
+    cast().place(instant, scene_);
+    const auto channels = lsl_channels(shared_.outlet.layout, cast(), scene_, instant);
+    const auto sample = std::make_shared<const std::string>(lsl_sample(1e-9 * static_cast<double>(times.capture), channels));
+    server_.each([&](Session& session, Outbox& out) { static_cast<LslSession&>(session).frame(sample, out); });
+  }
+
+  void drain() override { server_.drain(kDrainMs); }
+
+  void fill(WireReport& report) const override {
+    take_counts(report, server_.counts());
+    if (!note_.empty()) report.notes.push_back(note_);
+    if (shared_.begun && cast().labels().size() > shared_.outlet.layout.labels.size()) {
+      report.notes.push_back(fmt::format("{} labels came after the first moment and have no channels; an outlet's are fixed",
+                                         cast().labels().size() - shared_.outlet.layout.labels.size()));
+    }
+  }
+
+ private:
+  /// liblsl looks for an outlet at the first port that is free from 16572 on.
+  static Address free_port(Address wanted) {
+    if (wanted.port != kFirstPort) return wanted;
+    for (std::uint16_t port = kFirstPort; port < kFirstPort + 32; ++port) {
+      Address at{.host = wanted.host, .port = port};
+      try {
+        const Descriptor tcp = listen_at(at, "lsl"), udp = datagrams_at(at, "lsl");
+        return at;
+      } catch (const Error&) {
+        continue;
+      }
+    }
+    return wanted;
+  }
+
+  void begin_outlet() {
+    std::array<char, 256> host{};
+    gethostname(host.data(), host.size() - 1);
+    LslOutlet& outlet = shared_.outlet;
+    outlet.name = "Marey";
+    outlet.uid = new_uid();
+    outlet.source_id = "marey " + header().name;
+    outlet.host = host.data();
+    outlet.rate_hz = header().rate_hz;
+    outlet.created_at = steady_seconds();
+    outlet.port = at_.port;
+    outlet.layout = {.labels = cast().labels(), .bodies = header().bodies, .metric = header().frame.metric(), .flat = header().frame.dimensions() == 2};
+    shared_.begun = outlet.layout.channels() > 0;
+    if (!shared_.begun) note_ = "nothing has a label, and there are no bodies: an outlet has no channels, and is not found";
+  }
+
+  /// Searches go to groups that every program of this host may listen to.
+  void listen_for_searches() {
+    Address any{.host = 0, .port = kSearchPort};
+    try {
+      searches_ = datagrams_at(any, "lsl", true);
+    } catch (const Error& error) {
+      note_ = fmt::format("{}; the outlet is not found by searching", error.what());
+      return;
+    }
+    hosts_ = own_hosts();
+    for (const std::uint32_t group : kGroups) {
+      for (const std::uint32_t host : hosts_) join_group(searches_, group, host);
+    }
+    loop().watch(searches_.get(), [this](Loop::Events) { answer_datagrams(searches_); });
+  }
+
+  bool may_know(const Address& from) const {
+    return !at_.is_loopback() || from.is_loopback() || std::find(hosts_.begin(), hosts_.end(), from.host) != hosts_.end();
+  }
+
+  void answer_datagrams(const Descriptor& socket) {
+    for (int i = 0; i < 64; ++i) {  // then others' turn
+      const auto came = receive(socket, 2048);
+      if (!came) return;
+      const double now = steady_seconds();
+      if (!shared_.begun || !may_know(came->from)) continue;
+      if (const auto answer = lsl_time_answer(came->bytes, now, steady_seconds())) {
+        send_to(service_, came->from, *answer);
+      } else if (const auto search = lsl_search(came->bytes)) {
+        const std::string info = lsl_info_xml(shared_.outlet, false);
+        if (lsl_matches(info, search->query))
+          send_to(service_, {.host = came->from.host, .port = search->port}, search->id + "\r\n" + info);
+      }
+    }
+  }
+
+  LslShared shared_;
+  Address at_;
+  Server server_;
+  Descriptor service_, searches_;
+  std::vector<std::uint32_t> hosts_;
+  Cast::Scene scene_;
+  std::string note_;
+};
+
+}  // namespace
+
+Wire lsl_wire() {
+  return {.name = "lsl",
+          .title = "Lab Streaming Layer, an outlet of type MoCap",
+          .port = kFirstPort,
+          .detail = "one channel a coordinate of every labelled point and every body, times of capture by the steady clock; m (px of pictures), z up; missing is NaN",
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
+            return std::make_unique<LslWire>(target, options);
+          }};
+}
+
+}  // namespace marey::stream

@@ -1,0 +1,65 @@
+// What an outlet of Lab Streaming Layer says: its description, answers to searches, the head of a feed, samples. As liblsl speaks it (protocol
+// 1.10, read in its MIT sources); one outlet of 32-bit floats, type MoCap, with the channels of the xdf wiki's MoCap metadata.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "marey/stream/cast.h"
+
+namespace marey::stream {
+
+/// Which tracks and bodies have channels, fixed when the outlet begins.
+struct LslLayout {
+  std::vector<std::string> labels;  ///< three channels each: x, y, z
+  std::vector<Body> bodies;         ///< seven each: place, and the quaternion A (real), B, C, D
+  bool metric = true;               ///< m; else px
+  bool flat = false;                ///< two channels a label: x, y
+
+  std::size_t channels() const { return labels.size() * (flat ? 2 : 3) + bodies.size() * 7; }
+};
+
+struct LslOutlet {
+  std::string name, uid, source_id, host;
+  double rate_hz = 0;     ///< nominal
+  double created_at = 0;  ///< s of the steady clock
+  std::uint16_t port = 0;
+  LslLayout layout;
+};
+
+/// `<info>` with what a search sees; `full` with all channels.
+std::string lsl_info_xml(const LslOutlet& outlet, bool full);
+/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is none is not met.
+bool lsl_matches(const std::string& info_xml, std::string_view query);
+
+/// "LSL:shortinfo", as a datagram.
+struct LslSearch {
+  std::string query, id;
+  std::uint16_t port = 0;  ///< where the answer goes
+};
+std::optional<LslSearch> lsl_search(std::string_view datagram);
+/// "LSL:timedata": answers with when it came and when it was answered, s; nothing where it is none.
+std::optional<std::string> lsl_time_answer(std::string_view datagram, double came, double answered);
+
+/// A request by TCP: nothing while it is not whole. Throws Error where it is none.
+struct LslRequest {
+  enum class Kind { short_info, full_info, feed };
+  Kind kind = Kind::short_info;
+  std::string text;           ///< a query, or the UID that is asked for
+  int version = 0;            ///< of a feed
+  std::size_t size = 0;       ///< bytes that it took
+};
+std::optional<LslRequest> lsl_request(std::string_view bytes);
+
+/// The head of a feed and its two test samples; or the refusal of another outlet's.
+std::string lsl_feed_head(const LslOutlet& outlet);
+/// A sample at that time, s: one channel each; NaN for what is missing.
+std::string lsl_sample(double time, const std::vector<float>& channels);
+
+/// A moment's channels.
+std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant);
+
+}  // namespace marey::stream
