@@ -11,6 +11,7 @@ find_package(pugixml 1.13 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+pkg_check_modules(ARAVIS IMPORTED_TARGET aravis-0.8)  # machine-vision cameras: may be absent
 if(MAREY_TESTS)
   find_package(GTest REQUIRED)
   find_package(OpenCV 4.6 REQUIRED COMPONENTS imgcodecs)  # reads back what was drawn
