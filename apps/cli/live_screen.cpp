@@ -88,6 +88,8 @@ void LiveScreen::show(const pipeline::LiveStatus& status) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const auto& camera = status.cameras[i];
     if (states_[i] == camera.state) continue;
+    const bool waits = camera.state == FeedState::connecting && camera.trouble.empty();  // as every camera does at first
+    if (waits) continue;
     const bool told = is_silent(camera.state) || is_silent(states_[i]);
     states_[i] = camera.state;
     const std::string why = is_silent(camera.state) && !camera.trouble.empty() ? ": " + camera.trouble : "";

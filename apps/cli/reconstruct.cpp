@@ -106,6 +106,7 @@ void add_reconstruct(Command& program) {
                  "standard deviation of a blob's place and of the calibration (default: learned)");
   command.number("--fill", how.fill_s, "s", closed(0, 10), "the longest gap that is filled");
   command.number("--predict", how.predict_s, "s", closed(0, 10), "write so much of a longer gap as was predicted; at most --fill");
+  command.flag("--live", how.live, "every instant as it comes, as marey live tells it: no gap is filled, nothing waits");
   command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
   command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
   command.number("--widest", how.markers.widest, "px", closed(2, 200),

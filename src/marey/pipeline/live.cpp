@@ -140,7 +140,11 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   }
   LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
-  ClockOptions how{.live = options.policy, .waiting = [&] { monitor.tick(); }};
+  bool begun = false;
+  ClockOptions how{.live = options.policy, .waiting = [&] {
+                     begun = true;
+                     monitor.tick();
+                   }};
   const std::vector<Feed>& watched = feeds;
   double rate_hz = 0;
   for (const Feed& feed : watched) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
@@ -156,7 +160,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   try {
     static_cast<Summary&>(summary) = run(stages, clock, sinks, own);
   } catch (const Error&) {
-    if (monitor.status().instants == 0 && !sinks.failed()) throw Error("{}", nothing_came(monitor.status()));
+    if (begun && monitor.status().instants == 0) throw Error("{}", nothing_came(monitor.status()));
     throw;
   }
   std::error_code ignored;

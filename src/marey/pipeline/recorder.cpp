@@ -29,10 +29,8 @@ void Recorder::write(const Instant& instant) {
   Instant kept = instant;
   kept.frames.clear();
   before_.push_back(std::move(kept));
-  if (!wanted_->on()) {
-    while (instant.time - before_.front().time > preroll_) before_.pop_front();
-    return;
-  }
+  while (instant.time - before_.front().time > preroll_) before_.pop_front();
+  if (!wanted_->on()) return;
   open();
   for (; !before_.empty(); before_.pop_front()) put(std::move(before_.front()));
 }

@@ -63,6 +63,9 @@ RecordingHeader signed_header(RecordingHeader header, const Clock& clock, const 
   if (header.made_by.program.empty()) header.made_by.program = "marey";
   header.made_by.program += " " MAREY_VERSION;
   header.made_by.options = hooks.options;
+  if (header.rig) {
+    for (RigCamera& camera : header.rig->cameras) camera.source = shown_source(camera.source);  // a recording keeps no password
+  }
   for (const Feed& feed : clock.feeds()) {
     if (!feed.info().name.empty()) header.made_by.inputs.push_back(format::input_of(shown_source(feed.info().name)));
   }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kAhead = 0.004;  // s from exposure to the moment
 
-struct Scene {
-  explicit Scene(std::uint64_t seed) : random(seed), camera(room::cameras_round(4)[1]) {
+struct MovingScene {
+  explicit MovingScene(std::uint64_t seed) : random(seed), camera(room::cameras_round(4)[1]) {
     for (int i = 0; i < 12; ++i) {
       Track<3> track;
       track.id = TrackId{i + 1};
@@ -39,7 +39,7 @@ struct Scene {
 TEST(OwnTime, BlobsMoveAsTheMarkersThatAreExpected) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Scene scene(seed);
+    const MovingScene scene(seed);
     OwnTime own({scene.camera});
     for (const double ahead : {kAhead, -kAhead}) {
       auto blobs = scene.seen(ahead);
@@ -51,7 +51,7 @@ TEST(OwnTime, BlobsMoveAsTheMarkersThatAreExpected) {
 }
 
 TEST(OwnTime, WhereNothingIsExpectedTheBlobsOwnMotionCounts) {
-  const Scene scene(3);
+  const MovingScene scene(3);
   OwnTime own({scene.camera}, {.near_px = 12, .farthest_px = 40});
   const std::vector<Track<3>> one{scene.tracks.front()};
   const auto alone = [&](double ahead) {
@@ -67,7 +67,7 @@ TEST(OwnTime, WhereNothingIsExpectedTheBlobsOwnMotionCounts) {
 }
 
 TEST(OwnTime, InStepNothingChanges) {
-  const Scene scene(5);
+  const MovingScene scene(5);
   OwnTime own({scene.camera});
   auto blobs = scene.seen(0.01);
   const auto before = blobs;

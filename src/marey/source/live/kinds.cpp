@@ -1,11 +1,12 @@
 #include "marey/source/live/kinds.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/source/live/gige.h"
 #include "marey/source/live/network_stream.h"
 #include "marey/source/live/played.h"
 #include "marey/source/live/v4l2.h"
@@ -40,11 +41,13 @@ Connect open_v4l2(const Address& address, const Opening& opening) {
 }  // namespace
 
 std::vector<FoundCamera> find_cameras() {
-  return find_v4l2(*system_kernel());
+  std::vector<FoundCamera> found = find_v4l2(*system_kernel());
+  for (FoundCamera& camera : find_gige()) found.push_back(std::move(camera));
+  return found;
 }
 
 std::vector<Kind> camera_kinds() {
-  return {
+  std::vector<Kind> kinds{
       {.schemes = {"v4l2"},
        .form = "v4l2:/dev/video0?size=640x480&rate=30",
        .meaning = "a camera of this computer, as webcams are",
@@ -58,6 +61,8 @@ std::vector<Kind> camera_kinds() {
        .meaning = "a film, or a folder of pictures, in real time",
        .open = open_played},
   };
+  if (auto gige = gige_kind()) kinds.push_back(std::move(*gige));
+  return kinds;
 }
 
 const Kind& kind_of(std::span<const Kind> kinds, const Address& address) {

@@ -19,7 +19,7 @@ namespace {
 struct FakeDelivery {
   int error = 0;  // −errno of DQBUF
   std::uint32_t sequence = 0, flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> bytes = {};
   double age_s = 0.01;
 };
 

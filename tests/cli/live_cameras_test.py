@@ -1,0 +1,240 @@
+"""`marey live` and `marey cameras`: cameras that are simulated, played, on a network and absent; recording; how it ends.
+
+Usage: live_cameras_test.py MAREY [unittest options]. What needs ffmpeg or Aravis's fake camera is left out where that is not installed.
+How fast it is belongs to bench/live; here nothing fails because the machine is busy.
+"""
+import contextlib
+import functools
+import http.server
+import json
+import os
+import pathlib
+import pty
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+MAREY = ""
+ROOM = "sim://room?cameras=4&rate=30&markers=20&blobs"
+
+
+class JpegCamera(http.server.BaseHTTPRequestHandler):
+    """What many network cameras do: one JPEG after the other, without end."""
+    pictures = []
+
+    def do_GET(self):
+        self.send_response(200)
+        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
+        self.end_headers()
+        with contextlib.suppress(OSError):
+            for number in range(1_000_000):
+                picture = self.pictures[number % len(self.pictures)]
+                self.wfile.write(b"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n" % len(picture) + picture + b"\r\n")
+                time.sleep(0.04)
+
+    def log_message(self, *_):
+        pass
+
+
+class LiveCameras(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_live_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def marey(self, *arguments, code=0, within=None):
+        done = subprocess.run([*(within or []), MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=120)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def live(self, *arguments, **more):
+        return json.loads(self.marey("live", *arguments, "--json", "-q", **more).stdout)
+
+    def test_markers_of_a_simulated_room_are_tracked_and_recorded(self):
+        told = self.live(ROOM, "--for", 2, "-o", "take.marey")
+        self.assertEqual(told["job"], "markers in space")
+        self.assertGreater(told["instants"], 15)
+        self.assertGreaterEqual(told["targets"], 10)
+        self.assertEqual(sorted(told["cameras"]), ["cam1", "cam2", "cam3", "cam4"])
+        self.assertIn("capture to instant", told["stages"])
+        info = json.loads(self.marey("info", "take.marey", "--json").stdout)
+        self.assertTrue(info)
+        self.assertEqual(told["take"], "take.marey")
+
+    def test_every_frame_is_used_or_counted(self):
+        told = self.live(ROOM, "--for", 2)
+        dropped = told["dropped"]
+        for name, camera in told["cameras"].items():
+            self.assertEqual(camera["lost"] + camera["damaged"], 0, name)
+            # What came is in an instant, or waited when it ended, or was let go.
+            gone = dropped["overtaken"] + dropped["incomplete"] + dropped["late_frames"] + camera["overrun"]
+            self.assertLessEqual(abs(camera["frames"] - (told["instants"] - camera["missed"]) - gone), 4 + dropped["late_frames"], name)
+
+    def test_a_camera_that_goes_away_costs_only_itself_and_comes_back(self):
+        done = self.marey("live", ROOM + "&away=2,1,2", "--for", 4, "--json")
+        told = json.loads(done.stdout)
+        self.assertEqual(told["cameras"]["cam2"]["connections"], 2)
+        self.assertEqual(told["cameras"]["cam1"]["connections"], 1)
+        self.assertIn('camera "cam2" is stalled: sim://', done.stderr)
+        self.assertIn('camera "cam2" is back', done.stderr)
+        self.assertEqual(told["cameras"]["cam2"]["state"], "live")
+
+    def test_a_camera_that_is_not_there_is_looked_for(self):
+        done = self.marey("live", "sim://room?cameras=1&rate=30", "v4l2:/dev/video63", "--for", 1.5, "--patience", 0.3, "--json")
+        told = json.loads(done.stdout)
+        self.assertEqual(told["job"], "a preview")
+        self.assertEqual(told["cameras"]["cam2"]["state"], "connecting")
+        self.assertIn("no such camera now", done.stderr)
+        self.assertGreater(told["cameras"]["cam1"]["frames"], 10)
+
+    def test_without_any_camera_it_says_why(self):
+        done = self.marey("live", "v4l2:/dev/video63", "--for", 0.5, "--patience", 0.1, "-o", "take.marey", "--armed", code=1)
+        self.assertIn("no camera gave a frame", done.stderr)
+        self.assertIn("/dev/video63", done.stderr)
+        self.assertFalse((self.folder / "take.marey").exists())
+
+    def test_a_film_is_played_in_real_time_and_ends(self):
+        self.marey("simulate", "people", "-o", "film", "--frames", 30, "--size", 192, 144, "-q")
+        begin = time.monotonic()
+        told = self.live("film/video.mp4", "--targets", "people")
+        self.assertGreater(time.monotonic() - begin, 1.0, "30 frames of 25 Hz")
+        self.assertEqual(told["job"], "people in a picture")
+        self.assertEqual(told["cameras"]["cam1"]["state"], "ended")
+        self.assertEqual(told["cameras"]["cam1"]["frames"] + told["cameras"]["cam1"]["lost"], 30)
+        looped = self.live("play:film/video.mp4?loop", "--targets", "people", "--for", 2.5)
+        self.assertGreater(looped["cameras"]["cam1"]["frames"] + looped["cameras"]["cam1"]["lost"], 35)
+
+    def test_a_rig_names_its_cameras(self):
+        self.marey("simulate", "room", "-o", "room", "--cameras", 3, "--frames", 5, "-q")
+        rig = (self.folder / "room/rig.toml").read_text()
+        for number in (1, 2, 3):
+            source = f'name = "cam{number}"\nsource = "sim://room?cameras=3&rate=30&markers=20&blobs&size=1280x1024&camera={number}"'
+            rig = rig.replace(f'name = "cam{number}"', source)
+        rig = "\n".join(line if not line.startswith("rate") else "rate = 30.0" for line in rig.splitlines())
+        (self.folder / "room/live.toml").write_text(rig)
+        told = self.live("room/live.toml", "--for", 2)
+        self.assertEqual(told["job"], "markers in space")
+        self.assertGreater(told["targets"], 0)
+        told = self.live("room/live.toml", "cam2=sim://room?cameras=3&rate=30&blobs&size=1280x1024&camera=1", "--for", 1)
+        self.assertEqual(len(told["cameras"]), 3)
+        self.assertIn("run marey live", self.marey("reconstruct", "room/live.toml", "-o", "x.marey", code=1).stderr)
+        wrong = self.marey("live", "room/live.toml", "cam2=sim://room?cameras=3&rate=30&size=640x480&camera=1", "--for", 1, code=1)
+        self.assertIn("cam2", wrong.stderr)
+
+    def test_ctrl_c_ends_it_whole(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([MAREY, "live", ROOM, "-o", "take.marey", "--json", "-q"], cwd=self.folder, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True) as running:
+                time.sleep(2)
+                running.send_signal(number)
+                told, problems = running.communicate(timeout=30)
+            self.assertEqual(running.returncode, 0, problems)
+            self.assertGreater(json.loads(told)["instants"], 5)
+            self.marey("info", "take.marey")
+            (self.folder / "take.marey").unlink()
+
+    def test_keys_record_and_end_on_a_terminal(self):
+        here, there = pty.openpty()
+        running = subprocess.Popen([MAREY, "live", ROOM, "-o", "take.marey", "--armed", "--preroll", "0.5"], cwd=self.folder, stdin=there,
+                                   stdout=there, stderr=there, start_new_session=True, preexec_fn=functools.partial(take_terminal, there))
+        os.close(there)
+        said = b""
+        plan = [(1.5, b"r"), (3.0, b"q")]
+        begin = time.monotonic()
+        while time.monotonic() - begin < 60:
+            if plan and time.monotonic() - begin > plan[0][0]:
+                os.write(here, plan.pop(0)[1])
+            ready, _, _ = select.select([here], [], [], 0.1)
+            try:
+                said += os.read(here, 65536) if ready else b""
+            except OSError:
+                break  # it has ended
+        self.assertEqual(running.wait(30), 0, said.decode(errors="replace"))
+        os.close(here)
+        self.assertIn(b"REC", said)
+        self.assertIn(b"targets | dropped", said)
+        info = self.marey("info", "take.marey").stdout
+        self.assertIn("frames", info)
+
+    def test_a_take_that_cannot_be_written_is_told(self):
+        self.assertIn("nowhere", self.marey("live", ROOM, "-o", "nowhere/take.marey", "--for", 1, code=1).stderr)
+        self.marey("live", ROOM, "-o", "take.c3d", code=2)
+        self.marey("live", ROOM, "--armed", code=2)
+        self.marey("live", code=2)
+
+    def test_names_that_mean_nothing_are_refused(self):
+        for name, word in (("sim://space", "room, people"), ("sim://room?cameras=900", "whole number"), ("sim://room?colour=red", "no option"),
+                           ("node:left", "reads no node"), ("play:missing.mp4", "no such file"), ("missing.mp4", "no such file"),
+                           ("v4l2:/dev/video0?format=H264", "H264"), ("http://", "names no host")):
+            self.assertIn(word, self.marey("live", name, "--for", 1, code=1).stderr, name)
+
+    def test_cameras_lists_and_writes_no_empty_rig(self):
+        told = json.loads(self.marey("cameras", "--json").stdout)
+        if told["cameras"]:
+            self.skipTest("cameras are plugged in here")
+        self.assertIn("no camera", self.marey("cameras", "-o", "rig.toml", code=1).stderr)
+        self.assertFalse((self.folder / "rig.toml").exists())
+
+    def test_a_network_camera_comes_and_goes(self):
+        if shutil.which("ffmpeg") is None:
+            self.skipTest("ffmpeg is not here")
+        subprocess.run(["ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc=size=160x120:rate=25", "-frames:v", "10", "picture%02d.jpg"],
+                       cwd=self.folder, check=True)
+        JpegCamera.pictures = [path.read_bytes() for path in sorted(self.folder.glob("picture*.jpg"))]
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), JpegCamera)
+        server.daemon_threads = True
+        port = server.server_address[1]
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        told = self.live(f"http://eve:secret@127.0.0.1:{port}/left", "--targets", "people", "--for", 3, "-o", "take.marey")
+        server.shutdown()
+        server.server_close()
+        self.assertGreater(told["cameras"]["cam1"]["frames"], 20)
+        self.assertNotIn("secret", json.dumps(told))
+        self.assertFalse(b"secret" in (self.folder / "take.marey").read_bytes(), "a take holds no password")
+        gone = self.marey("live", f"http://eve:secret@127.0.0.1:{port}/left", "--for", 1, code=1)
+        self.assertIn("cannot be reached", gone.stderr)
+        self.assertNotIn("secret", gone.stderr)
+
+    def test_fake_machine_vision_cameras(self):
+        """Two of Aravis's fake cameras in a network of their own: found, streamed, every frame counted."""
+        if shutil.which("arv-fake-gv-camera-0.8") is None or "gige:" not in self.marey("live", "--help").stdout:
+            self.skipTest("Aravis or its fake camera is not here")
+        script = self.folder / "run.sh"
+        script.write_text(f"""ip link set lo up || exit 77
+arv-fake-gv-camera-0.8 -i 127.0.0.1 -s LEFT & one=$!
+arv-fake-gv-camera-0.8 -i 127.0.0.2 -s RIGHT & two=$!
+sleep 1
+{MAREY} cameras --json -o rig.toml > found.json
+{MAREY} live gige:LEFT gige:RIGHT --for 4 --json -q > live.json
+code=$?
+kill $one $two
+exit $code
+""")
+        done = subprocess.run(["unshare", "-rn", "bash", "run.sh"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        if done.returncode == 77 or "unshare" in done.stderr:
+            self.skipTest(f"no network namespace here: {done.stderr}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads((self.folder / "found.json").read_text())["cameras"]
+        self.assertEqual(sorted(camera["source"] for camera in found), ["gige:LEFT", "gige:RIGHT"])
+        self.assertIn('source = "gige:LEFT"', (self.folder / "rig.toml").read_text())
+        told = json.loads((self.folder / "live.json").read_text())
+        for name, camera in told["cameras"].items():
+            self.assertGreater(camera["frames"], 30, name)
+            self.assertEqual(camera["lost"] + camera["damaged"], 0, name)
+
+
+def take_terminal(file):
+    """The terminal's keys and signals are for the program that runs on it."""
+    import fcntl
+    import termios
+    fcntl.ioctl(file, termios.TIOCSCTTY, 0)
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
