@@ -21,6 +21,7 @@ from ._recording import Recording, Track
 from ._rig import Camera, Rig
 
 Error.__module__ = "marey"
+Error.__doc__ = "The outside world failed: a file, a device, a setting. One sentence: what, where, and what to do."
 
 __all__ = [
     "Camera",

@@ -160,7 +160,7 @@ class Recordings(unittest.TestCase):
 
         model = VelocityModel()
         model.fit(teams["away"])
-        self.assertEqual(float(np.nanmax(model.velocity().velocity)), 0)
+        self.assertEqual(float(np.nanmax(model.velocity().property)), 0)
         with self.assertRaises(marey.Error):
             self.film().to_floodlight()
 
