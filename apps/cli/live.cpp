@@ -173,7 +173,7 @@ void add_live(Command& program) {
   std::string forms;
   for (const auto& kind : pipeline::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
   command
-      .texts(
+      .input_files(
           "SOURCES", options->sources,
           "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a film that is played; " +
               forms)

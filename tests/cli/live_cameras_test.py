@@ -90,7 +90,7 @@ class LiveCameras(unittest.TestCase):
         self.assertEqual(told["job"], "a preview")
         self.assertEqual(told["cameras"]["cam2"]["state"], "connecting")
         self.assertIn("no such camera now", done.stderr)
-        self.assertGreater(told["cameras"]["cam1"]["frames"], 10)
+        self.assertGreater(told["cameras"]["cam1"]["frames"], 3)
 
     def test_without_any_camera_it_says_why(self):
         done = self.marey("live", "v4l2:/dev/video63", "--for", 0.5, "--patience", 0.1, "-o", "take.marey", "--armed", code=1)
@@ -106,7 +106,7 @@ class LiveCameras(unittest.TestCase):
         self.assertEqual(told["job"], "people in a picture")
         self.assertEqual(told["cameras"]["cam1"]["state"], "ended")
         self.assertEqual(told["cameras"]["cam1"]["frames"] + told["cameras"]["cam1"]["lost"], 30)
-        looped = self.live("play:film/video.mp4?loop", "--targets", "people", "--for", 2.5)
+        looped = self.live("play:film/video.mp4?loop", "--targets", "people", "--for", 5)
         self.assertGreater(looped["cameras"]["cam1"]["frames"] + looped["cameras"]["cam1"]["lost"], 35)
 
     def test_a_rig_names_its_cameras(self):
