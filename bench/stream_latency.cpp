@@ -98,7 +98,7 @@ void measure(const std::string& wire, bool with_stalled, int frames) {
   sink->finish();
   shutdown(client.get(), SHUT_RDWR);
   reader.join();
-  std::printf("%-9s %-8s %8.3f %8.3f   %8.3f %8.3f   %6zu of %d, %lld dropped\n", wire.c_str(), with_stalled ? "yes" : "no",
+  std::printf("%-9s %-8s %8.3f %8.3f   %8.3f %8.3f   %6zu of %d, %lld frames dropped\n", wire.c_str(), with_stalled ? "yes" : "no",
               1e3 * report.sending.quantile(0.5), 1e3 * report.sending.quantile(0.99), quantile(ms, 0.5), quantile(ms, 0.99),
               ms.size(), frames, static_cast<long long>(report.dropped));
 }
@@ -108,7 +108,7 @@ void measure(const std::string& wire, bool with_stalled, int frames) {
 int main(int argc, char** argv) {
   const int frames = static_cast<int>(100 * (argc > 1 ? std::strtod(argv[1], nullptr) : 10));
   std::printf("%-9s %-8s %17s   %17s   %s\n", "", "stalled", "to the system, ms", "to a client, ms", "");
-  std::printf("%-9s %-8s %8s %8s   %8s %8s   %s\n", "wire", "beside", "p50", "p99", "p50", "p99", "frames the client had");
+  std::printf("%-9s %-8s %8s %8s   %8s %8s   %s\n", "wire", "beside", "p50", "p99", "p50", "p99", "samples");
   for (const char* wire : {"qtm", "json", "foxglove"}) {
     for (const bool with_stalled : {false, true}) measure(wire, with_stalled, frames);
   }
