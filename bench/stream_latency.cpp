@@ -1,5 +1,5 @@
-// How long a moment of 40 markers takes from the wire's hands to the system, and to a client of this host: at 100 Hz, with and without
-// a second client that reads nothing. Prints a table. Usage: stream_latency [SECONDS]
+// How long a moment of 40 markers takes from the wire's hands to the system, and to a client of this host: at 100 Hz, with and
+// without a second client that reads nothing. Prints a table. Usage: stream_latency [SECONDS]
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -24,10 +25,14 @@ constexpr int kMarkers = 40;
 constexpr auto kPeriod = std::chrono::milliseconds(10);
 
 Instant moment(int k) {
-  Instant instant{.index = k, .time = Timestamp(k * kPeriod)};
+  Instant instant;
+  instant.index = k;
+  instant.time = Timestamp(k * kPeriod);
   for (int m = 1; m <= kMarkers; ++m) {
-    if (k == 0) instant.named.push_back({.id = TrackId(m), .label = "M" + std::to_string(m), .team = {}});
-    instant.samples.push_back({.track = TrackId(m), .position = {0.001 * k, 0.05 * m, 1}});
+    if (k == 0) instant.named.push_back({.id = TrackId(m), .label = fmt::format("M{}", m), .team = {}});
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = TrackId(m);
+    sample.position = {0.001 * k, 0.05 * m, 1};
   }
   return instant;
 }
@@ -35,7 +40,8 @@ Instant moment(int k) {
 /// What makes a client of that wire be sent frames.
 std::string hello(const std::string& wire) {
   const std::string upgrade =
-      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+      "dGhlIHNhbXBsZSBub25jZQ==\r\n"
       "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n";
   if (wire == "qtm") return std::string("\x22\0\0\0\x01\0\0\0streamframes allframes 3d\0", 34);
   if (wire == "foxglove") {  // masked with zeros
@@ -92,9 +98,9 @@ void measure(const std::string& wire, bool with_stalled, int frames) {
   sink->finish();
   shutdown(client.get(), SHUT_RDWR);
   reader.join();
-  std::printf("%-9s %-8s %8.3f %8.3f   %8.3f %8.3f   %6zu of %d, %lld dropped\n", wire.c_str(), with_stalled ? "yes" : "no",
-              1e3 * report.sending.quantile(0.5), 1e3 * report.sending.quantile(0.99), quantile(ms, 0.5), quantile(ms, 0.99), ms.size(), frames,
-              static_cast<long long>(report.dropped));
+  std::printf("%-9s %-8s %8.3f %8.3f   %8.3f %8.3f   %6zu of %d, %lld frames dropped\n", wire.c_str(), with_stalled ? "yes" : "no",
+              1e3 * report.sending.quantile(0.5), 1e3 * report.sending.quantile(0.99), quantile(ms, 0.5), quantile(ms, 0.99),
+              ms.size(), frames, static_cast<long long>(report.dropped));
 }
 
 }  // namespace
@@ -102,7 +108,7 @@ void measure(const std::string& wire, bool with_stalled, int frames) {
 int main(int argc, char** argv) {
   const int frames = static_cast<int>(100 * (argc > 1 ? std::strtod(argv[1], nullptr) : 10));
   std::printf("%-9s %-8s %17s   %17s   %s\n", "", "stalled", "to the system, ms", "to a client, ms", "");
-  std::printf("%-9s %-8s %8s %8s   %8s %8s   %s\n", "wire", "beside", "p50", "p99", "p50", "p99", "frames the client had");
+  std::printf("%-9s %-8s %8s %8s   %8s %8s   %s\n", "wire", "beside", "p50", "p99", "p50", "p99", "samples");
   for (const char* wire : {"qtm", "json", "foxglove"}) {
     for (const bool with_stalled : {false, true}) measure(wire, with_stalled, frames);
   }

@@ -1,5 +1,7 @@
 #include "marey/pipeline/play.h"
 
+#include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +58,7 @@ void run(PlayCommand& command) {
   command.read.pitch = parse_pitch_size(command.size);
   if (command.streams.streams.empty()) command.streams.streams = {"json"};
   const auto open = [&]() -> std::unique_ptr<RecordingReader> { return format::open_recording(command.recording, command.read); };
+  command.how.name = std::filesystem::path(command.recording).filename();
   open();  // what cannot be read is told before a port is taken
   const stream::Streams streams = open_streams(command.streams, command.quiet);
   const auto sinks = streams.sinks();

@@ -15,7 +15,7 @@ import unittest
 
 MAREY = ""
 NUMBER = re.compile(r"^  (?:-\w,)?(--[a-z-]+) (\S.*? in [\[(][^\])]+[\])])(?: x (\d))?", re.MULTILINE)
-COMMANDS = ("track", "evaluate", "measure", "convert", "info", "reconstruct", "simulate markers", "simulate people", "simulate room",
+COMMANDS = ("track", "evaluate", "measure", "convert", "info", "play", "reconstruct", "simulate markers", "simulate people", "simulate room",
             "simulate match", "calibrate lens", "calibrate wand", "calibrate ground", "calibrate board", "calibrate pitch",
             "experiment trackers", "experiment outlines", "experiment hypotheses")
 PLACES = "frame,time,id,x,y\n" + "".join(f"{f},{f / 25:.2f},{i},{10 + i + 0.2 * f:.2f},{20 + i}\n" for f in range(200) for i in (1, 2))
@@ -149,7 +149,7 @@ class CommandLine(unittest.TestCase):
             self.assertIn(command.split()[0], listed)
             asked = self.marey("help", *command.split()).stdout
             self.assertEqual(asked, self.marey(*command.split(), "--help").stdout)
-            self.assertIn("--output" if command not in ("evaluate", "info", "convert", "experiment outlines", "experiment hypotheses")
+            self.assertIn("--output" if command not in ("evaluate", "info", "convert", "play", "experiment outlines", "experiment hypotheses")
                           else "--json", asked)
             for option in ("--json", "--quiet"):
                 self.assertIn(option, asked, command)

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 
 PLAYED, MAREY = "", ""
 HERE = pathlib.Path(__file__).resolve().parent
@@ -175,9 +176,9 @@ def natnetsdk():
         client.new_frame_listener = stamps.append
         assert client.run()
         wait_for(lambda: len(seen) >= 30)
-        client.shutdown()
+    assert {number for number, _, _ in seen} == {1, 1 << 16 | 1, 1 << 16 | 2}, seen  # the body, and the skeleton's bones
     for number, place, _ in seen:
-        assert number == 1 and abs(place[1] - 1.5) < 1e-6, (number, place)
+        assert number != 1 or abs(place[1] - 1.5) < 1e-6, place
     assert stamps
     print(f"natnetsdk: {len(seen)} poses")
 
@@ -396,9 +397,14 @@ def main(client):
     except (ImportError, Skipped) as missing:
         print(f"skipped: {missing}; script/setup --tests installs it")
         return 77
+    except Exception:
+        traceback.print_exc()
+        return 1
     return 0
 
 
 if __name__ == "__main__":
     PLAYED, MAREY = sys.argv[2:4]
-    sys.exit(main(sys.argv[1]))
+    code = main(sys.argv[1])
+    sys.stdout.flush()
+    os._exit(code)  # natnetsdk leaves threads behind that wait for ever

@@ -11,7 +11,13 @@ namespace stream = marey::stream;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = marey::fuzz::text_of(data, size);
-  static const std::string info = stream::lsl_info_xml({.name = "Marey", .uid = "uid-1", .layout = {.labels = {"A"}}}, false);
+  static const std::string info = [] {
+    stream::LslOutlet outlet;
+    outlet.name = "Marey";
+    outlet.uid = "uid-1";
+    outlet.layout.labels = {"A"};
+    return stream::lsl_info_xml(outlet, false);
+  }();
   if (const auto search = stream::lsl_search(text)) {
     check(search->port > 0);
     stream::lsl_matches(info, search->query);

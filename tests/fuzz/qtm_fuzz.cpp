@@ -16,7 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const marey::RecordingHeader header = [] {
     marey::RecordingHeader made;
     made.rate_hz = 100;
-    made.bodies = {{.id = marey::BodyId(1), .label = "a"}, {.id = marey::BodyId(2), .label = "Hips", .skeleton = "s"}};
+    made.bodies.resize(2);
+    made.bodies[0].id = marey::BodyId(1);
+    made.bodies[1].id = marey::BodyId(2);
+    made.bodies[1].skeleton = "s";
     return made;
   }();
   stream::Cast cast;
@@ -25,12 +28,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   state.header = &header;
   state.cast = &cast;
   state.allow_control = true;
-  state.newest = marey::Instant{.index = 1};
+  state.newest.emplace();
   stream::QtmSession session(state, {});
   try {
     while (const auto packet = stream::qtm_received(bytes)) {
       check(packet->size >= 8 && packet->size <= bytes.size());
-      for (const std::string& reply : session.answer(packet->body)) check(*stream::number_at<std::uint32_t>(reply, 0) == reply.size());
+      for (const std::string& reply : session.answer(packet->body))
+        check(*stream::number_at<std::uint32_t>(reply, 0) == reply.size());
       session.is_due(*state.newest);
       bytes.remove_prefix(packet->size);
     }

@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     for (std::size_t at = 0; at < size; at += 37) {
       unread += text.substr(at, 37);
-      while (const std::size_t done = socket.received(unread, out, [] {}, [&](std::string_view message) { messages += message.size(); })) {
+      while (const std::size_t done =
+                 socket.received(unread, out, [] {}, [&](std::string_view message) { messages += message.size(); })) {
         check(done <= unread.size());
         unread.erase(0, done);
       }

@@ -15,6 +15,13 @@ inline Matrix<3> turned_about_z(double angle) {
   return geometry::rotation_from(Vector<3>(0, 0, angle));
 }
 
+inline Sample point_at(int track, const Vector<3>& position) {
+  Sample point;
+  point.track = TrackId(track);
+  point.position = position;
+  return point;
+}
+
 /// "racket" by itself with two markers; "dancer" with Hips, and LeftUpLeg below.
 inline RecordingHeader header_of_moving_bodies() {
   RecordingHeader header;
@@ -23,19 +30,28 @@ inline RecordingHeader header_of_moving_bodies() {
   const BodyMarker corner{.label = "corner", .position = {0.1, 0, 0}}, tip{.label = "tip", .position = {0, 0.2, 0}};
   header.bodies.push_back({.id = BodyId(1), .label = "racket", .skeleton = {}, .parent = {}, .end = {}, .markers = {corner, tip}});
   header.bodies.push_back({.id = BodyId(2), .label = "Hips", .skeleton = "dancer", .parent = {}, .end = {}, .markers = {}});
-  header.bodies.push_back(
-      {.id = BodyId(3), .label = "LeftUpLeg", .skeleton = "dancer", .parent = BodyId(2), .offset = {0.1, 0, -0.1}, .end = {}, .markers = {}});
+  header.bodies.push_back({.id = BodyId(3),
+                           .label = "LeftUpLeg",
+                           .skeleton = "dancer",
+                           .parent = BodyId(2),
+                           .offset = {0.1, 0, -0.1},
+                           .end = {},
+                           .markers = {}});
   return header;
 }
 
 /// Instant k of 100 a second: point 1 "LASI" at (k/1000, 0, 1), point 2 "RASI" missing at every fifth, point 3 without label;
 /// the racket at (0, k/1000, 1.5), turned by k/100 about z, lost at every seventh.
 inline Instant moving_bodies(int k) {
-  Instant instant{.index = k, .time = Timestamp(std::chrono::milliseconds(10 * k))};
+  Instant instant;
+  instant.index = k;
+  instant.time = Timestamp(std::chrono::milliseconds(10 * k));
   if (k == 0) instant.named = {{.id = TrackId(1), .label = "LASI", .team = {}}, {.id = TrackId(2), .label = "RASI", .team = {}}};
-  instant.samples.push_back({.track = TrackId(1), .position = {k / 1000.0, 0, 1}, .residual_m = 0.0005});
-  if (k % 5 != 0) instant.samples.push_back({.track = TrackId(2), .position = {0, 0.25, 1}});
-  instant.samples.push_back({.track = TrackId(3), .position = {1, 2, 3}, .provenance = Provenance::predicted});
+  instant.samples.push_back(point_at(1, {k / 1000.0, 0, 1}));
+  instant.samples.back().residual_m = 0.0005;
+  if (k % 5 != 0) instant.samples.push_back(point_at(2, {0, 0.25, 1}));
+  instant.samples.push_back(point_at(3, {1, 2, 3}));
+  instant.samples.back().provenance = Provenance::predicted;
   const Rigid3 hips{.rotation = turned_about_z(0.3), .translation = {1, 1, 1}};
   const Rigid3 leg = hips * Rigid3{.rotation = turned_about_z(0.2), .translation = {0.1, 0, -0.1}};
   instant.bodies.push_back({.body = BodyId(1),

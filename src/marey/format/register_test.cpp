@@ -60,8 +60,8 @@ TEST(Register, WhatCannotBeWrittenIsRefusedWithWhatCan) {
             "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), .txt (mot); or name a format "
             "with --format");
   EXPECT_EQ(refusal("b.c3d", "", Content::ground),
-            "b.c3d: a C3D file holds points in space, and not people on the ground; these can be written: .marey (take), .csv "
-            "(ground), .json (soccernet), .dat (tracab), .xml (epts), _home.csv (metrica), .txt (mot)");
+            "b.c3d: a C3D file holds points in space, and not people on the ground; these can be written: .marey (take), .mcap "
+            "(mcap), .csv (ground), .json (soccernet), .dat (tracab), .xml (epts), _home.csv (metrica), .txt (mot)");
   EXPECT_NE(refusal("b.csv", "nexus", Content::space).find("is read only"), std::string::npos);
   EXPECT_NE(refusal("b.csv", "word", Content::space).find("\"word\" is no format"), std::string::npos);
 }

@@ -60,7 +60,8 @@ class Player {
   }
 
  private:
-  void begin(const RecordingHeader& header) {
+  void begin(RecordingHeader header) {
+    if (header.name.empty()) header.name = options_.name;
     for (const auto& sink : sinks_) sink->begin(header);
     period_ = duration_from_seconds(1 / header.rate_hz);
     began_ = origin_ = Steady::now();

@@ -17,9 +17,10 @@
 namespace marey::pipeline {
 
 struct PlayOptions {
-  bool loop = false;              ///< from the beginning again, until it is stopped; indices and times go on growing
-  double speed = 1;               ///< times as fast as it was recorded
-  std::optional<double> rate_hz;  ///< at most so many instants a second of the recording; all where it is left out
+  std::string name = {};               ///< of the recording, where it does not say one itself
+  bool loop = false;                   ///< from the beginning again, until it is stopped; indices and times go on growing
+  double speed = 1;                    ///< times as fast as it was recorded
+  std::optional<double> rate_hz = {};  ///< at most so many instants a second of the recording; all where it is left out
 };
 
 struct PlaySummary {

@@ -37,7 +37,8 @@ class HearingSink : public Sink {
   Heard& heard_;
 };
 
-PlaySummary played(Heard& heard, int instants, const PlayOptions& options, stream::CaptureClock* clock = nullptr, const Hooks& hooks = {}) {
+PlaySummary played(Heard& heard, int instants, const PlayOptions& options, stream::CaptureClock* clock = nullptr,
+                   const Hooks& hooks = {}) {
   std::vector<std::unique_ptr<Sink>> sinks;
   sinks.push_back(std::make_unique<HearingSink>(heard));
   return play([&] { return std::make_unique<test::MovingBodies>(instants); }, sinks, options, clock, hooks);
@@ -46,7 +47,7 @@ PlaySummary played(Heard& heard, int instants, const PlayOptions& options, strea
 TEST(Play, EveryInstantComesOnceInOrderAndNoneBeforeItIsDue) {
   Heard heard;
   stream::CaptureClock clock;
-  const PlaySummary done = played(heard, 40, {.speed = 4}, &clock);
+  const PlaySummary done = played(heard, 40, {.name = {}, .speed = 4}, &clock);
   EXPECT_EQ(done.instants + done.skipped, 40);
   EXPECT_EQ(heard.begun, 1);
   EXPECT_EQ(heard.finished, 1);
@@ -63,8 +64,12 @@ TEST(Play, EveryInstantComesOnceInOrderAndNoneBeforeItIsDue) {
 TEST(Play, ALoopGoesOnCounting) {
   Heard heard;
   std::stop_source stop;
-  Hooks hooks{.progress = [&](const Progress& now) { if (now.done >= 25) stop.request_stop(); }, .stop = stop.get_token()};
-  const PlaySummary done = played(heard, 10, {.loop = true, .speed = 10}, nullptr, hooks);
+  Hooks hooks{.progress =
+                  [&](const Progress& now) {
+                    if (now.done >= 25) stop.request_stop();
+                  },
+              .stop = stop.get_token()};
+  const PlaySummary done = played(heard, 10, {.name = {}, .loop = true, .speed = 10}, nullptr, hooks);
   EXPECT_TRUE(done.stopped);
   EXPECT_EQ(done.rounds, 3);
   EXPECT_EQ(heard.finished, 1);
@@ -78,7 +83,7 @@ TEST(Play, ALoopGoesOnCounting) {
 
 TEST(Play, ARateLeavesInstantsOut) {
   Heard heard;
-  const PlaySummary done = played(heard, 100, {.speed = 20, .rate_hz = 25});
+  const PlaySummary done = played(heard, 100, {.name = {}, .speed = 20, .rate_hz = 25});
   EXPECT_EQ(done.left_out, 75);
   EXPECT_EQ(done.instants + done.skipped, 25);
 }
@@ -90,7 +95,7 @@ TEST(Play, AStopIsHeededWithinATenthOfASecondAndFinishes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
     stop.request_stop();
   });
-  const PlaySummary done = played(heard, 100, {.speed = 0.01}, nullptr, {.progress = {}, .stop = stop.get_token()});
+  const PlaySummary done = played(heard, 100, {.name = {}, .speed = 0.01}, nullptr, {.progress = {}, .stop = stop.get_token()});
   later.join();
   EXPECT_TRUE(done.stopped);
   EXPECT_LT(done.seconds, 1);

@@ -1,5 +1,5 @@
-// The Foxglove WebSocket: what the Foxglove app and Lichtblick open. Topics as in MCAP files (format/mcap). Both names of the protocol are
-// accepted: they are one protocol, and clients ask for the one or the other.
+// The Foxglove WebSocket: what the Foxglove app and Lichtblick open. Topics as in MCAP files (format/mcap). Both names of the
+// protocol are accepted: they are one protocol, and clients ask for the one or the other.
 #include <array>
 #include <map>
 #include <memory>
@@ -123,7 +123,9 @@ Wire foxglove_wire() {
   return {.name = "foxglove",
           .title = "Foxglove WebSocket",
           .port = 8765,
-          .detail = "`/marey/points` (PointCloud), `/tf` (FrameTransforms), `/marey/scene` (SceneUpdate), protobuf; `/marey/times` (JSON); m, z up",
+          .detail =
+              "`/marey/points` (PointCloud), `/tf` (FrameTransforms), `/marey/scene` (SceneUpdate), protobuf; `/marey/times` "
+              "(JSON); m, z up",
           .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
             return std::make_unique<FoxgloveWire>(target, options);
           }};

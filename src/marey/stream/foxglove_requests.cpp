@@ -59,7 +59,8 @@ std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
     const auto wanted = message.find("subscriptionIds");
     if (wanted == message.end() || !wanted->is_array() || wanted->size() > kMostAtOnce) throw Error("an unsubscription of nothing");
     for (const json& each : *wanted) {
-      if (each.is_number_unsigned() && each.get<std::uint64_t>() <= 0xffffffffu) request.unsubscribe.push_back(each.get<std::uint32_t>());
+      if (each.is_number_unsigned() && each.get<std::uint64_t>() <= 0xffffffffu)
+        request.unsubscribe.push_back(each.get<std::uint32_t>());
     }
     return request;
   }

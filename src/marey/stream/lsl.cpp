@@ -1,5 +1,5 @@
-// Lab Streaming Layer: an outlet of our own, for experiments that record motion beside EEG, eyes and forces (LabRecorder, pylsl, MNE).
-// Found by multicast; listening on this host alone it answers this host's programs alone.
+// Lab Streaming Layer: an outlet of our own, for experiments that record motion beside EEG, eyes and forces (LabRecorder, pylsl,
+// MNE). Found by multicast; listening on this host alone it answers this host's programs alone.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -29,8 +29,8 @@ std::string new_uid() {
   std::random_device dice;
   std::array<std::uint32_t, 4> words{};
   for (std::uint32_t& word : words) word = dice();
-  return fmt::format("{:08x}-{:04x}-4{:03x}-a{:03x}-{:08x}{:04x}", words[0], words[1] & 0xffff, words[1] >> 16 & 0xfff, words[2] & 0xfff,
-                     words[3], words[2] >> 16);
+  return fmt::format("{:08x}-{:04x}-4{:03x}-a{:03x}-{:08x}{:04x}", words[0], words[1] & 0xffff, words[1] >> 16 & 0xfff,
+                     words[2] & 0xfff, words[3], words[2] >> 16);
 }
 
 /// What sessions read. There is no outlet before the first moment: its channels are not known.
@@ -157,7 +157,10 @@ class LslWire : public WireSink {
     outlet.rate_hz = header().rate_hz;
     outlet.created_at = steady_seconds();
     outlet.port = at_.port;
-    outlet.layout = {.labels = cast().labels(), .bodies = header().bodies, .metric = header().frame.metric(), .flat = header().frame.dimensions() == 2};
+    outlet.layout = {.labels = cast().labels(),
+                     .bodies = header().bodies,
+                     .metric = header().frame.metric(),
+                     .flat = header().frame.dimensions() == 2};
     shared_.begun = outlet.layout.channels() > 0;
     if (!shared_.begun) note_ = "nothing has a label, and there are no bodies: an outlet has no channels, and is not found";
   }
@@ -213,7 +216,9 @@ Wire lsl_wire() {
   return {.name = "lsl",
           .title = "Lab Streaming Layer, an outlet of type MoCap",
           .port = kFirstPort,
-          .detail = "one channel a coordinate of every labelled point and every body, times of capture by the steady clock; m (px of pictures), z up; missing is NaN",
+          .detail =
+              "one channel a coordinate of every labelled point and every body, times of capture by the steady clock; m (px of "
+              "pictures), z up; missing is NaN",
           .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
             return std::make_unique<LslWire>(target, options);
           }};

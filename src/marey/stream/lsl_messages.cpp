@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kMostQuery = 1024;
 constexpr std::size_t kMostRequest = 8192;
 
-void append_channel(std::string& xml, std::string_view label, std::string_view marker, std::string_view object, std::string_view type,
-                    std::string_view unit) {
+void append_channel(std::string& xml, std::string_view label, std::string_view marker, std::string_view object,
+                    std::string_view type, std::string_view unit) {
   fmt::format_to(std::back_inserter(xml), "<channel><label>{}</label>", xml_escaped(label));
   if (!marker.empty()) fmt::format_to(std::back_inserter(xml), "<marker>{}</marker>", xml_escaped(marker));
   if (!object.empty()) fmt::format_to(std::back_inserter(xml), "<object>{}</object>", xml_escaped(object));
@@ -49,8 +49,9 @@ std::string description_xml(const LslLayout& layout) {
     for (const std::string_view part : {"A", "B", "C", "D"})
       append_channel(xml, fmt::format("{}_q{}", name, part), {}, name, fmt::format("Orientation{}", part), "quaternion");
   }
-  return xml + "</channels><acquisition><manufacturer>Marey</manufacturer><model>Marey</model></acquisition>"
-               "<setup><name>Marey</name></setup></desc>";
+  return xml +
+         "</channels><acquisition><manufacturer>Marey</manufacturer><model>Marey</model></acquisition>"
+         "<setup><name>Marey</name></setup></desc>";
 }
 
 /// The next line, without its end; nothing where it has none yet.
@@ -79,7 +80,8 @@ std::optional<std::pair<std::string_view, std::string_view>> two_words(std::stri
 /// liblsl's pattern, by which a reader knows that it understands the format.
 std::vector<float> test_pattern(std::size_t channels, int offset) {
   std::vector<float> values(channels);
-  for (std::size_t k = 0; k < channels; ++k) values[k] = (static_cast<float>(k) + static_cast<float>(offset)) * (k % 2 == 0 ? 1.0F : -1.0F);
+  for (std::size_t k = 0; k < channels; ++k)
+    values[k] = (static_cast<float>(k) + static_cast<float>(offset)) * (k % 2 == 0 ? 1.0F : -1.0F);
   return values;
 }
 
@@ -87,12 +89,16 @@ std::vector<float> test_pattern(std::size_t channels, int offset) {
 
 std::string lsl_info_xml(const LslOutlet& outlet, bool full) {
   return fmt::format(
-      "<?xml version=\"1.0\"?>\n<info><name>{}</name><type>MoCap</type><channel_count>{}</channel_count><channel_format>float32</channel_format>"
-      "<source_id>{}</source_id><nominal_srate>{:.15g}</nominal_srate><version>1.100000000000000</version><created_at>{:.6f}</created_at>"
+      "<?xml "
+      "version=\"1.0\"?>\n<info><name>{}</name><type>MoCap</type><channel_count>{}</channel_count><channel_format>float32</"
+      "channel_format>"
+      "<source_id>{}</source_id><nominal_srate>{:.15g}</nominal_srate><version>1.100000000000000</version><created_at>{:.6f}</"
+      "created_at>"
       "<uid>{}</uid><session_id>default</session_id><hostname>{}</hostname><v4address></v4address><v4data_port>{}</v4data_port>"
-      "<v4service_port>{}</v4service_port><v6address></v6address><v6data_port>0</v6data_port><v6service_port>0</v6service_port>{}</info>\n",
-      xml_escaped(outlet.name), outlet.layout.channels(), xml_escaped(outlet.source_id), outlet.rate_hz, outlet.created_at, outlet.uid,
-      xml_escaped(outlet.host), outlet.port, outlet.port, full ? description_xml(outlet.layout) : "<desc/>");
+      "<v4service_port>{}</v4service_port><v6address></v6address><v6data_port>0</v6data_port><v6service_port>0</v6service_port>{}</"
+      "info>\n",
+      xml_escaped(outlet.name), outlet.layout.channels(), xml_escaped(outlet.source_id), outlet.rate_hz, outlet.created_at,
+      outlet.uid, xml_escaped(outlet.host), outlet.port, outlet.port, full ? description_xml(outlet.layout) : "<desc/>");
 }
 
 bool lsl_matches(const std::string& info_xml, std::string_view query) {
@@ -185,8 +191,10 @@ std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const
   for (const Body& body : layout.bodies) {
     if (const BodyPose* pose = pose_of(instant, body.id); pose != nullptr && pose->tracked) {
       const Eigen::Quaterniond turn(pose->world_from_body.rotation);
-      for (Eigen::Index i = 0; i < 3; ++i) channels[at + static_cast<std::size_t>(i)] = static_cast<float>(pose->world_from_body.translation[i]);
-      for (const auto& [offset, value] : {std::pair(3, turn.w()), std::pair(4, turn.x()), std::pair(5, turn.y()), std::pair(6, turn.z())})
+      for (Eigen::Index i = 0; i < 3; ++i)
+        channels[at + static_cast<std::size_t>(i)] = static_cast<float>(pose->world_from_body.translation[i]);
+      for (const auto& [offset, value] :
+           {std::pair(3, turn.w()), std::pair(4, turn.x()), std::pair(5, turn.y()), std::pair(6, turn.z())})
         channels[at + static_cast<std::size_t>(offset)] = static_cast<float>(value);
     }
     at += 7;

@@ -1,5 +1,6 @@
-// What an outlet of Lab Streaming Layer says: its description, answers to searches, the head of a feed, samples. As liblsl speaks it (protocol
-// 1.10, read in its MIT sources); one outlet of 32-bit floats, type MoCap, with the channels of the xdf wiki's MoCap metadata.
+// What an outlet of Lab Streaming Layer says: its description, answers to searches, the head of a feed, samples. As liblsl speaks
+// it (protocol 1.10, read in its MIT sources); one outlet of 32-bit floats, type MoCap, with the channels of the xdf wiki's MoCap
+// metadata.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,8 @@ struct LslOutlet {
 
 /// `<info>` with what a search sees; `full` with all channels.
 std::string lsl_info_xml(const LslOutlet& outlet, bool full);
-/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is none is not met.
+/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is none is
+/// not met.
 bool lsl_matches(const std::string& info_xml, std::string_view query);
 
 /// "LSL:shortinfo", as a datagram.
@@ -48,9 +50,9 @@ std::optional<std::string> lsl_time_answer(std::string_view datagram, double cam
 struct LslRequest {
   enum class Kind { short_info, full_info, feed };
   Kind kind = Kind::short_info;
-  std::string text;           ///< a query, or the UID that is asked for
-  int version = 0;            ///< of a feed
-  std::size_t size = 0;       ///< bytes that it took
+  std::string text;      ///< a query, or the UID that is asked for
+  int version = 0;       ///< of a feed
+  std::size_t size = 0;  ///< bytes that it took
 };
 std::optional<LslRequest> lsl_request(std::string_view bytes);
 

@@ -1,11 +1,10 @@
-#include "marey/stream/lsl_messages.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
 #include "marey/stream/bytes.h"
+#include "marey/stream/lsl_messages.h"
 
 #include "support/moving_bodies.h"
 

@@ -1,10 +1,9 @@
-#include "marey/stream/natnet_packets.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "marey/stream/bytes.h"
+#include "marey/stream/natnet_packets.h"
 
 #include "support/moving_bodies.h"
 

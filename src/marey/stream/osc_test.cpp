@@ -1,13 +1,14 @@
-#include "marey/stream/osc_message.h"
-
 #include <gtest/gtest.h>
+
+#include "marey/stream/osc_message.h"
 
 namespace marey::stream {
 namespace {
 
 TEST(Osc, AMessageIsPaddedToFourBytes) {
   EXPECT_EQ(OscMessage("/a").i(1).s("abcd").f(1).bytes(), std::string("/a\0\0,isf\0\0\0\0\0\0\0\1abcd\0\0\0\0\x3f\x80\0\0", 28));
-  EXPECT_EQ(OscMessage("/abc").h(-1).d(0).bytes(), std::string("/abc\0\0\0\0,hd\0\xff\xff\xff\xff\xff\xff\xff\xff\0\0\0\0\0\0\0\0", 28));
+  EXPECT_EQ(OscMessage("/abc").h(-1).d(0).bytes(),
+            std::string("/abc\0\0\0\0,hd\0\xff\xff\xff\xff\xff\xff\xff\xff\0\0\0\0\0\0\0\0", 28));
 }
 
 TEST(Osc, ATextEndsAtItsFirstNul) {

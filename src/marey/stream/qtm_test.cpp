@@ -77,17 +77,18 @@ TEST(Qtm, OthersBearTheirTracksNumber) {
 
 TEST(Qtm, ARotationGoesColumnByColumnAndAsDegrees) {
   const std::string packet = QtmScene(50).packet({QtmComponent::bodies, QtmComponent::bodies_euler});
-  EXPECT_FLOAT_EQ(float_at(packet, 44), 50);                                    // y, mm
-  EXPECT_FLOAT_EQ(float_at(packet, 52), static_cast<float>(std::cos(0.5)));     // R00
-  EXPECT_FLOAT_EQ(float_at(packet, 56), static_cast<float>(std::sin(0.5)));     // R10
-  EXPECT_FLOAT_EQ(float_at(packet, 64), static_cast<float>(-std::sin(0.5)));    // R01
+  EXPECT_FLOAT_EQ(float_at(packet, 44), 50);                                        // y, mm
+  EXPECT_FLOAT_EQ(float_at(packet, 52), static_cast<float>(std::cos(0.5)));         // R00
+  EXPECT_FLOAT_EQ(float_at(packet, 56), static_cast<float>(std::sin(0.5)));         // R10
+  EXPECT_FLOAT_EQ(float_at(packet, 64), static_cast<float>(-std::sin(0.5)));        // R01
   EXPECT_NEAR(float_at(packet, 88 + 16 + 20), 0.5 * 180 / 3.14159265358979, 1e-4);  // yaw
 }
 
 TEST(Qtm, EulerAnglesMakeTheRotationAgain) {
   for (const Vector<3>& degrees : {Vector<3>(10, 20, 30), Vector<3>(-170, 60, 5), Vector<3>(90, -80, 179)}) {
     const Vector<3> rad = degrees * (3.14159265358979 / 180);
-    const Matrix<3> R = geometry::rotation_from({rad.x(), 0, 0}) * geometry::rotation_from({0, rad.y(), 0}) * geometry::rotation_from({0, 0, rad.z()});
+    const Matrix<3> R = geometry::rotation_from({rad.x(), 0, 0}) * geometry::rotation_from({0, rad.y(), 0}) *
+                        geometry::rotation_from({0, 0, rad.z()});
     EXPECT_LT((qtm_euler_degrees(R) - degrees).norm(), 1e-9);
   }
 }
@@ -153,7 +154,8 @@ TEST(Qtm, ParametersNameLabelsAndBodies) {
   session.answer("version 1.25");
   const std::string all = session.answer("GetParameters All").at(0);
   EXPECT_NE(all.find("<Frequency>100</Frequency>"), std::string::npos);
-  EXPECT_NE(all.find(R"(<Point X="100.000000" Y="0.000000" Z="0.000000" Virtual="0" PhysicalId="0" Name="corner"/>)"), std::string::npos);
+  EXPECT_NE(all.find(R"(<Point X="100.000000" Y="0.000000" Z="0.000000" Virtual="0" PhysicalId="0" Name="corner"/>)"),
+            std::string::npos);
   EXPECT_NE(all.find(R"(<Segment Name="LeftUpLeg" ID="3">)"), std::string::npos);
 }
 

@@ -19,7 +19,8 @@ TEST(WebSocket, TheKeyIsAnsweredAsTheStandardsExampleHasIt) {
 TEST(WebSocket, ForeignPagesAndForeignNamesAreRefused) {
   for (const char* origin : {"", "http://localhost:8080", "http://127.0.0.1", "https://app.foxglove.dev", "file:///a"})
     EXPECT_TRUE(is_trusted_origin(origin)) << origin;
-  for (const char* origin : {"https://evil.example", "http://localhost.evil.example", "null", "https://app.foxglove.dev.evil.example", "http://127.0.0.1.evil.example"})
+  for (const char* origin : {"https://evil.example", "http://localhost.evil.example", "null",
+                             "https://app.foxglove.dev.evil.example", "http://127.0.0.1.evil.example"})
     EXPECT_FALSE(is_trusted_origin(origin)) << origin;
   for (const char* host : {"localhost:8765", "127.0.0.1:8765", "192.168.0.9", "[::1]:80"}) EXPECT_TRUE(is_plain_host(host)) << host;
   for (const char* host : {"evil.example:8765", "localhost.evil.example", ""}) EXPECT_FALSE(is_plain_host(host)) << host;
@@ -48,11 +49,11 @@ TEST(WebSocket, AClientsFrameIsUnmaskedOrRefused) {
   EXPECT_EQ(parse_frame(hello, 100, frame), 11u);
   EXPECT_EQ(frame.payload, "Hello");
   for (std::size_t size = 0; size < hello.size(); ++size) EXPECT_EQ(parse_frame(hello.substr(0, size), 100, frame), 0u);
-  EXPECT_THROW(parse_frame(std::string("\x81\x05Hello"), 100, frame), Error);             // no mask
-  EXPECT_THROW(parse_frame(std::string("\xc1\x85", 2), 100, frame), Error);              // an extension's bit
-  EXPECT_THROW(parse_frame(std::string("\x83\x85", 2), 100, frame), Error);              // no such kind
+  EXPECT_THROW(parse_frame(std::string("\x81\x05Hello"), 100, frame), Error);                                 // no mask
+  EXPECT_THROW(parse_frame(std::string("\xc1\x85", 2), 100, frame), Error);                                   // an extension's bit
+  EXPECT_THROW(parse_frame(std::string("\x83\x85", 2), 100, frame), Error);                                   // no such kind
   EXPECT_THROW(parse_frame(std::string("\x81\xff\xff\xff\xff\xff\xff\xff\xff\xff", 10), 100, frame), Error);  // 2^64 bytes
-  EXPECT_THROW(parse_frame(std::string("\x09\x80\0\0\0\0", 6), 100, frame), Error);      // a ping in pieces
+  EXPECT_THROW(parse_frame(std::string("\x09\x80\0\0\0\0", 6), 100, frame), Error);                           // a ping in pieces
 }
 
 TEST(Foxglove, RequestsAreReadOrRefused) {
@@ -63,7 +64,8 @@ TEST(Foxglove, RequestsAreReadOrRefused) {
   EXPECT_EQ(request->subscribe[0].channel, 1u);
   EXPECT_EQ(foxglove_request(R"({"op":"unsubscribe","subscriptionIds":[5,"x",-1]})")->unsubscribe, std::vector<std::uint32_t>{5});
   EXPECT_FALSE(foxglove_request(R"({"op":"getParameters"})"));
-  for (const char* wrong : {"", "[]", "{", R"({"op":1})", R"({"op":"subscribe"})", R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"})
+  for (const char* wrong :
+       {"", "[]", "{", R"({"op":1})", R"({"op":"subscribe"})", R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"})
     EXPECT_THROW(foxglove_request(wrong), Error) << wrong;
   EXPECT_THROW(foxglove_request(std::string(1000, '[')), Error);
 }

@@ -31,7 +31,8 @@ using namespace std::chrono_literals;
 /// A client that waits for two seconds at most.
 class TestClient {
  public:
-  explicit TestClient(const std::string& where, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit TestClient(const std::string& where, int receive_buffer = 0)
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(where.substr(where.rfind(':') + 1))));
@@ -132,7 +133,8 @@ TEST(Wires, APortThatIsTakenIsToldInASentence) {
     open_wire(parse_target("qtm::" + port));
     FAIL() << "two have the port";
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()), "qtm: port " + port + " of 127.0.0.1 is in use by another program; stop that, or name another port");
+    EXPECT_EQ(std::string(error.what()),
+              "qtm: port " + port + " of 127.0.0.1 is in use by another program; stop that, or name another port");
   }
   EXPECT_THROW(open_wire(parse_target("json:203.0.113.7:0")), Error);
 }
@@ -152,7 +154,8 @@ TEST(Wires, JsonSaysItsHeaderAndThenFrames) {
   ASSERT_TRUE(write_until(*wire, k, [&] { return wire->report().sent > 3; }));
   wire->finish();
   const std::string heard = client.hear_until("\"type\":\"frame\"");
-  EXPECT_TRUE(heard.starts_with(R"({"type":"header","version":1,"name":"bodies","frame":"space","unit":"m","rate_hz":100,"up":"z","labels":["LASI","RASI"])"))
+  EXPECT_TRUE(heard.starts_with(
+      R"({"type":"header","version":1,"name":"bodies","frame":"space","unit":"m","rate_hz":100,"up":"z","labels":["LASI","RASI"])"))
       << heard;
   EXPECT_NE(heard.find(R"("label":"racket")"), std::string::npos);
 }
@@ -160,14 +163,16 @@ TEST(Wires, JsonSaysItsHeaderAndThenFrames) {
 TEST(Wires, JsonGoesThroughAWebSocketAsWell) {
   const auto wire = begun("json::0");
   TestClient client(wire->where());
-  client.say("GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-             "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
+  client.say(
+      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
   const std::string heard = client.hear_until("\"header\"");
   EXPECT_TRUE(heard.starts_with("HTTP/1.1 101 Switching Protocols\r\n")) << heard;
   EXPECT_NE(heard.find("\r\n\r\n\x81"), std::string::npos);
   TestClient foreign(wire->where());
-  foreign.say("GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nOrigin: https://evil.example\r\n"
-              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
+  foreign.say(
+      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nOrigin: https://evil.example\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
   EXPECT_TRUE(foreign.hear().starts_with("HTTP/1.1 403 Forbidden"));
   EXPECT_TRUE(foreign.is_closed());
 }
@@ -190,7 +195,7 @@ TEST(Wires, AClientThatReadsNothingLosesItsOwnFramesAlone) {
   over = true;
   reader.join();
   EXPECT_EQ(report.clients, 2);
-  EXPECT_GE(lines, report.sent / 2 - 20);   // the quick one had nearly all
+  EXPECT_GE(lines, report.sent / 2 - 20);  // the quick one had nearly all
   EXPECT_LT(report.sending.quantile(0.99), 0.01);
 }
 
@@ -280,11 +285,12 @@ TEST(StreamClock, CaptureIsWhatIsSetOrTheLeastDelaySeen) {
 TEST(Cast, ALabelKeepsItsPlaceWhoeverBearsIt) {
   Cast cast;
   cast.begin({});
-  EXPECT_TRUE(cast.add(std::vector<TrackName>{{.id = TrackId(1), .label = "A", .team = {}}, {.id = TrackId(2), .label = "9", .team = "Home"}}));
+  EXPECT_TRUE(cast.add(
+      std::vector<TrackName>{{.id = TrackId(1), .label = "A", .team = {}}, {.id = TrackId(2), .label = "9", .team = "Home"}}));
   EXPECT_FALSE(cast.add(std::vector<TrackName>{{.id = TrackId(7), .label = "A", .team = {}}}));
   EXPECT_EQ(cast.labels(), (std::vector<std::string>{"A", "Home 9"}));
   Instant instant;
-  instant.samples = {{.track = TrackId(2)}, {.track = TrackId(7)}, {.track = TrackId(9)}};
+  for (const int track : {2, 7, 9}) instant.samples.push_back(test::point_at(track, {0, 0, 0}));
   Cast::Scene scene;
   cast.place(instant, scene);
   EXPECT_EQ(scene.labelled[0], &instant.samples[1]);

@@ -48,7 +48,8 @@ std::string frame_of(const Body& body) {
 }
 
 const BodyPose* pose_at(const Instant& instant, BodyId body) {
-  const auto found = std::find_if(instant.bodies.begin(), instant.bodies.end(), [&](const BodyPose& pose) { return pose.body == body; });
+  const auto found =
+      std::find_if(instant.bodies.begin(), instant.bodies.end(), [&](const BodyPose& pose) { return pose.body == body; });
   return found == instant.bodies.end() ? nullptr : &*found;
 }
 

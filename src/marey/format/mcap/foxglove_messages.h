@@ -1,5 +1,5 @@
-// A moment as Foxglove's messages, for MCAP files and for the Foxglove WebSocket: points as a PointCloud (Rerun reads that), bodies as
-// FrameTransforms, both drawn with their names as a SceneUpdate, and the times as JSON.
+// A moment as Foxglove's messages, for MCAP files and for the Foxglove WebSocket: points as a PointCloud (Rerun reads that), bodies
+// as FrameTransforms, both drawn with their names as a SceneUpdate, and the times as JSON.
 #pragma once
 
 #include <cstdint>

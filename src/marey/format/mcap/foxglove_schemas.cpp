@@ -10,7 +10,8 @@
 namespace marey::format::mcap {
 namespace {
 
-// A message a line: "Name: type field number, …"; "*" before a type: repeated; types with a capital letter are messages, those with "#" enumerations.
+// A message a line: "Name: type field number, …"; "*" before a type: repeated; types with a capital letter are messages, those with
+// "#" enumerations.
 constexpr std::string_view kGoogle = R"(
 Timestamp: int64 seconds 1, int32 nanos 2
 Duration: int64 seconds 1, int32 nanos 2

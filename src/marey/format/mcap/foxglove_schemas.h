@@ -1,5 +1,5 @@
-// The messages of Foxglove that are written here, as protobuf descriptors (FileDescriptorSet): what a reader needs to understand them without
-// knowing them. Names, numbers and types are those of Foxglove's published schemas (MIT).
+// The messages of Foxglove that are written here, as protobuf descriptors (FileDescriptorSet): what a reader needs to understand
+// them without knowing them. Names, numbers and types are those of Foxglove's published schemas (MIT).
 #pragma once
 
 #include <string>

@@ -99,7 +99,8 @@ class McapFile : public Sink {
   std::string name() const override { return path_; }
 
   Wants begin(const RecordingHeader& header) override {
-    if (!header.frame.metric()) throw Error("{}: such a file holds metres, and these positions are {}", path_, to_string(header.frame));
+    if (!header.frame.metric())
+      throw Error("{}: such a file holds metres, and these positions are {}", path_, to_string(header.frame));
     messages_.begin(header);
     put(kMagic);
     put(record(Record::header, RecordBytes().text("").text("marey").str()));
@@ -186,7 +187,10 @@ class McapFile : public Sink {
     RecordBytes offsets;
     for (const auto& [channel, offset] : chunk.index_offsets) offsets.put<std::uint16_t>(channel).put<std::uint64_t>(offset);
     RecordBytes content;
-    content.put<std::uint64_t>(chunk.begin).put<std::uint64_t>(chunk.end).put<std::uint64_t>(chunk.offset).put<std::uint64_t>(chunk.length);
+    content.put<std::uint64_t>(chunk.begin)
+        .put<std::uint64_t>(chunk.end)
+        .put<std::uint64_t>(chunk.offset)
+        .put<std::uint64_t>(chunk.length);
     content.text(offsets.str()).put<std::uint64_t>(chunk.index_length).text("");
     content.put<std::uint64_t>(chunk.bytes).put<std::uint64_t>(chunk.bytes);
     return record(Record::chunk_index, content.str());
@@ -266,7 +270,8 @@ std::vector<Fact> mcap_facts(std::string_view bytes, const std::string& name) {
       if (*size < 46 || !last || *last < *first) throw Error("{}: its statistics contradict themselves", name);
       facts.push_back({"messages", static_cast<std::int64_t>(std::min<std::uint64_t>(*messages, std::uint64_t{1} << 62))});
       facts.push_back({"channels", static_cast<std::int64_t>(*channels)});
-      facts.push_back({"seconds", 1e-9 * static_cast<double>(*last - *first), fmt::format("{:.2f}", 1e-9 * static_cast<double>(*last - *first))});
+      facts.push_back({"seconds", 1e-9 * static_cast<double>(*last - *first),
+                       fmt::format("{:.2f}", 1e-9 * static_cast<double>(*last - *first))});
       return facts;
     }
     at += 9 + *size;
@@ -279,8 +284,9 @@ Format mcap_format() {
           .title = "an MCAP file",
           .endings = ".mcap",
           .holds = Content::space | Content::ground,
-          .detail = "for Foxglove and Rerun: points as PointCloud, bodies as FrameTransforms, both as SceneUpdate (protobuf); m, z up; "
-                    "times from the recording's beginning. Written; of one that is read, `marey info` tells what its summary says",
+          .detail =
+              "for Foxglove and Rerun: points as PointCloud, bodies as FrameTransforms, both as SceneUpdate (protobuf); m, z up; "
+              "times from the recording's beginning. Written; of one that is read, `marey info` tells what its summary says",
           .is = [](const Beginning& file) { return file.bytes.starts_with(mcap::kMagic); },
           .facts = mcap::facts_of_file,
           .create = mcap::create_mcap,

@@ -17,15 +17,24 @@ namespace marey::format::mcap {
 namespace {
 
 RecordingHeader header_with_body() {
-  RecordingHeader header{.name = "walk", .recorded_at = {}, .frame = {}, .rate_hz = 100, .rig = {}, .bodies = {}, .made_by = {}};
-  header.bodies.push_back({.id = BodyId(1), .label = "racket"});
+  RecordingHeader header;
+  header.rate_hz = 100;
+  Body& racket = header.bodies.emplace_back();
+  racket.id = BodyId(1);
+  racket.label = "racket";
   return header;
 }
 
 Instant instant_at(std::int64_t index) {
-  Instant instant{.index = index, .time = Timestamp(std::chrono::milliseconds(10 * index))};
-  instant.samples.push_back({.track = TrackId(3), .position = {1, 2, 3}});
-  instant.bodies.push_back({.body = BodyId(1), .world_from_body = {.rotation = Matrix<3>::Identity(), .translation = {4, 5, 6}}});
+  Instant instant;
+  instant.index = index;
+  instant.time = Timestamp(std::chrono::milliseconds(10 * index));
+  Sample& point = instant.samples.emplace_back();
+  point.track = TrackId(3);
+  point.position = {1, 2, 3};
+  BodyPose& pose = instant.bodies.emplace_back();
+  pose.body = BodyId(1);
+  pose.world_from_body.translation = {4, 5, 6};
   if (index == 0) instant.named.push_back({.id = TrackId(3), .label = "LASI", .team = {}});
   return instant;
 }
