@@ -33,6 +33,15 @@ Picture drawn(const Recording& take, std::size_t instant, CameraId camera, cv::S
     if (point.camera != camera) continue;
     cv::circle(grey, cv::Point2d(16 * point.pixel.x(), 16 * point.pixel.y()), 32, cv::Scalar(240), cv::FILLED, cv::LINE_AA, 4);
   }
+  if (take.header.frame.kind == FrameOfReference::Kind::image) {
+    for (const TrackColumns& track : take.tracks()) {
+      const auto row = track.row_at(static_cast<std::int32_t>(instant));
+      const auto box = row ? track.sample(*row).box : std::nullopt;
+      if (box)
+        cv::rectangle(grey, cv::Rect2d(box->left, box->top, box->width, box->height),
+                      cv::Scalar(110 + 20 * (number(track.id()) % 5)), cv::FILLED);
+    }
+  }
   return Picture(grey);
 }
 

@@ -63,7 +63,7 @@ class Page {
     this.take(scene);
     if (scene.kind === "recording") state.time = this.motion.first;
     const narrow = matchMedia("(max-width: 800px)").matches;
-    this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && !narrow ? "pictures" : "list");
+    this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && scene.frame !== "image" && !narrow ? "pictures" : "list");
     new ResizeObserver(() => this.resize()).observe(element("stage"));
     document.addEventListener("keydown", (event) => this.key(event));
     document.addEventListener("visibilitychange", () => this.visible());
@@ -113,8 +113,9 @@ class Page {
       this.motion.add(this.latest);
     } else if (kind === 3) {
       const picture = picture_of(data);
-      if (this.motion.scene.kind === "live") this.cameras.picture(picture);
-      else this.take_film(picture);
+      const { scene } = this.motion;
+      if (scene.kind === "live") this.cameras.picture(picture);
+      if (scene.kind === "recording" || (scene.frame === "image" && picture.camera === (scene.camera ?? 0))) this.take_film(picture);
     }
   }
 
@@ -324,6 +325,11 @@ class Page {
   private resize(): void {
     const stage = element("stage");
     this.view.resize(stage.clientWidth, stage.clientHeight);
+    const { scene } = this.motion;
+    if (scene.kind === "live" && scene.frame === "image") {
+      this.cameras.also = { camera: scene.camera ?? 0, width: (this.view as PlaneView).pixels_wide };
+      this.cameras.ask();
+    }
     this.draw_soon();
   }
 
