@@ -89,6 +89,7 @@ Json header_json(const RecordingHeader& header) {
   for (const RigCamera& camera : header.rig->cameras) scene["cameras"].push_back(json_of(camera));
   if (header.frame.kind == FrameOfReference::Kind::image) {
     const auto shown = static_cast<std::size_t>(header.frame.camera ? number(*header.frame.camera) : 0);
+    scene["camera"] = shown;
     if (shown < header.rig->cameras.size() && header.rig->cameras[shown].size)
       scene["size"] = Json(std::array{header.rig->cameras[shown].size->width, header.rig->cameras[shown].size->height});
   }

@@ -24,7 +24,7 @@ namespace {
 using namespace marey;
 using Steady = std::chrono::steady_clock;
 
-constexpr int kDrawn = 60;  // pictures of a camera that are drawn beforehand
+constexpr int kDrawn = 90;  // instants that are played forth and back; their pictures are drawn beforehand
 
 Picture drawn(const Recording& take, std::size_t instant, CameraId camera, cv::Size size) {
   cv::Mat grey(size, CV_8UC1, cv::Scalar(18));
@@ -32,6 +32,15 @@ Picture drawn(const Recording& take, std::size_t instant, CameraId camera, cv::S
   for (const SeenPoint& point : take.seen(instant)) {
     if (point.camera != camera) continue;
     cv::circle(grey, cv::Point2d(16 * point.pixel.x(), 16 * point.pixel.y()), 32, cv::Scalar(240), cv::FILLED, cv::LINE_AA, 4);
+  }
+  if (take.header.frame.kind == FrameOfReference::Kind::image) {
+    for (const TrackColumns& track : take.tracks()) {
+      const auto row = track.row_at(static_cast<std::int32_t>(instant));
+      const auto box = row ? track.sample(*row).box : std::nullopt;
+      if (box)
+        cv::rectangle(grey, cv::Rect2d(box->left, box->top, box->width, box->height),
+                      cv::Scalar(110 + 20 * (number(track.id()) % 5)), cv::FILLED);
+    }
   }
   return Picture(grey);
 }
@@ -60,14 +69,16 @@ Body some_body() {
 
 Instant played(const Recording& take, const std::vector<Instant>& instants, const std::vector<std::vector<Picture>>& pictures,
                std::int64_t count, double rate_hz) {
-  Instant instant = instants[static_cast<std::size_t>(count) % instants.size()];
-  const std::size_t drawn_at = static_cast<std::size_t>(count) % pictures.front().size();
+  const std::size_t length = std::min(instants.size(), pictures.front().size()),
+                    phase = static_cast<std::size_t>(count) % (2 * length);
+  const std::size_t at = phase < length ? phase : 2 * length - 1 - phase;
+  Instant instant = instants[at];
   instant.index = count;
   instant.time = timestamp_from_seconds(static_cast<double>(count) / rate_hz);
-  const auto seen = take.seen(drawn_at);
+  const auto seen = take.seen(at);
   instant.seen.assign(seen.begin(), seen.end());
   for (std::size_t camera = 0; camera < pictures.size(); ++camera)
-    instant.frames.push_back({CameraId{static_cast<int>(camera)}, count, instant.time, pictures[camera][drawn_at]});
+    instant.frames.push_back({CameraId{static_cast<int>(camera)}, count, instant.time, pictures[camera][at]});
   BodyPose pose;
   pose.body = BodyId{1};
   if (!instant.samples.empty()) pose.world_from_body.translation = instant.samples.front().position;

@@ -196,6 +196,14 @@ async function pick() {
   assert.fail("nothing in the view can be picked");
 }
 
+/** The picture lies behind its tracks. */
+async function live_image() {
+  await sleep(2500);
+  assert((await look("#view canvas")).colours > 40, "the view has no picture");
+  assert.match(await text("#facts"), /Hz/);
+  await page.screenshot({ path: join(folder, `${scenario}.png`) });
+}
+
 async function live() {
   await until("no picture comes", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
   if (phone) await page.click("#pictures_tab");
@@ -241,7 +249,9 @@ assert(seen.colours > 30, `the view has ${seen.colours} colours`);
 await page.screenshot({ path: join(folder, `${scenario}.png`) });
 await check_layout();
 const space = scenario.includes("space") || scenario.includes("live");
-if (scenario.includes("live")) {
+if (scenario === "live_image") {
+  await live_image();
+} else if (scenario.includes("live")) {
   await live();
 } else {
   await play_and_scrub();

@@ -47,6 +47,7 @@ def make_recordings(marey, folder):
     run("track", "match/rig.toml", "--ground", "-o", "match.csv")
     run("simulate", "people", "-o", "street", "--frames", "120")
     run("track", "street/video.mp4", "-o", "street.csv")
+    run("track", "street/video.mp4", "-o", "street.marey")
 
 
 def look_at(command, folder, scenario):
@@ -67,6 +68,7 @@ def main(marey, live_scene, folder):
     look_at([*view, "street.csv", "--film", "street/video.mp4"], folder, "image")
     look_at([*view, "match.csv"], folder, "ground_phone")
     look_at([live_scene, "walk.marey", "60"], folder, "live")
+    look_at([live_scene, "street.marey", "25"], folder, "live_image")
 
 
 if __name__ == "__main__":

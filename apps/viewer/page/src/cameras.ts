@@ -100,6 +100,8 @@ export class Cameras {
   private grid = document.querySelector<HTMLElement>("#cameras")!;
   private tiles: Tile[] = [];
   private watched = "";
+  /** A camera whose picture is shown elsewhere, and how wide there, px of the screen. */
+  also: { camera: number; width: number } | null = null;
   private watcher: IntersectionObserver;
 
   constructor(private state: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: Picture) => void) {
@@ -133,7 +135,10 @@ export class Cameras {
   ask(anew = false): void {
     const ratio = Math.min(devicePixelRatio, 2);
     const step = (width: number) => Math.min(4096, Math.max(64, 32 * Math.ceil((width * ratio) / 32)));
-    const parts = this.tiles.filter((tile) => tile.visible && !document.hidden).map((tile) => `${tile.number} ${step(tile.canvas.clientWidth)}`);
+    const widths = new Map<number, number>();
+    for (const tile of this.tiles) if (tile.visible) widths.set(tile.number, step(tile.canvas.clientWidth));
+    if (this.also) widths.set(this.also.camera, Math.max(step(this.also.width / ratio), widths.get(this.also.camera) ?? 0));
+    const parts = document.hidden ? [] : [...widths].map(([camera, width]) => `${camera} ${width}`);
     const line = `watch ${parts.join(" ")}`;
     if (line === this.watched && !anew) return;
     this.watched = line;

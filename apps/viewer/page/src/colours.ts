@@ -13,6 +13,12 @@ const TEAMS: Rgb[] = [
   [0.62, 0.8, 0.45],
 ];
 
+/** Teams are often called by their shirts. */
+const SHIRTS: Record<string, Rgb> = {
+  white: [0.92, 0.93, 0.95], black: [0.24, 0.26, 0.3], red: [0.9, 0.33, 0.32], blue: [0.3, 0.58, 0.95], yellow: [0.96, 0.82, 0.3],
+  green: [0.36, 0.74, 0.42], orange: [0.96, 0.6, 0.26], referee: [0.98, 0.8, 0.35],
+};
+
 function from_hsl(hue: number, saturation: number, lightness: number): Rgb {
   const amount = saturation * Math.min(lightness, 1 - lightness);
   const channel = (n: number) => {
@@ -35,6 +41,8 @@ export class Colours {
   private sides = false;
   private teams: string[] = [];
   private frame: Scene["frame"] = "space";
+  /** On white, colours are darker. */
+  dark: boolean | null = null;
 
   take(scene: Scene): void {
     this.of.clear();
@@ -53,7 +61,12 @@ export class Colours {
   rgb(id: number): Rgb {
     let colour = this.of.get(id);
     if (!colour) this.of.set(id, (colour = of_number(id)));
-    return colour;
+    return this.shown(colour);
+  }
+  private shown([r, g, b]: Rgb): Rgb {
+    if (this.dark !== false) return [r, g, b];
+    const by = 1 - 0.42 * Math.max(0, 0.299 * r + 0.587 * g + 0.114 * b - 0.35) / 0.65;
+    return [by * r, by * g, by * b];
   }
   css(id: number, alpha = 1): string {
     const [r, g, b] = this.rgb(id);
@@ -66,16 +79,16 @@ export class Colours {
   }
   /** What the colours stand for, for the legend. */
   legend(): [string, string][] {
-    const css = (c: Rgb) => `rgb(${c.map((v) => Math.round(255 * v)).join(",")})`;
+    const css = (c: Rgb) => `rgb(${this.shown(c).map((v) => Math.round(255 * v)).join(",")})`;
     if (this.sides) return [["left", css(LEFT)], ["right", css(RIGHT)], ["middle", css(MIDDLE)]];
-    if (this.frame === "ground") return this.teams.slice(0, 4).map((team, i) => [team, css(TEAMS[i])]);
+    if (this.frame === "ground") return this.teams.slice(0, 4).map((team, i) => [team, css(SHIRTS[team.toLowerCase()] ?? TEAMS[i])]);
     return [];
   }
 
   private chosen(track: Track): Rgb {
     if (track.colour) return track.colour.map((v) => v / 255) as Rgb;
     const team = this.teams.indexOf(track.team);
-    if (track.team !== "" && team >= 0 && team < TEAMS.length) return TEAMS[team];
+    if (track.team !== "" && team >= 0 && team < TEAMS.length) return SHIRTS[track.team.toLowerCase()] ?? TEAMS[team];
     if (this.sides) return is_left(track.label) ? LEFT : is_right(track.label) ? RIGHT : MIDDLE;
     return of_number(track.id);
   }

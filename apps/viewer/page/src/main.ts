@@ -1,8 +1,9 @@
 // The page: fetches the scene, keeps the socket, wires the parts together. It draws when something has changed, once a picture of
 // the screen at most, from the newest state only; what is not in sight costs nothing.
 import "./style.css";
-import { Cameras, type CameraStatus } from "./cameras";
+import { Cameras } from "./cameras";
 import { Colours } from "./colours";
+import { Latency } from "./latency";
 import { Live } from "./live";
 import { time_of, type Moment, type Motion } from "./motion";
 import { PlaneView } from "./plane_view";
@@ -12,19 +13,13 @@ import type { Scene } from "./scene";
 import { SpaceView } from "./space_view";
 import { put, State } from "./state";
 import { Table } from "./table";
-import { clock, Timeline } from "./timeline";
+import { Timeline } from "./timeline";
 import type { View } from "./view";
 import { kind_of, picture_of, Stretch, type Picture } from "./wire";
+import { Words, type Status } from "./words";
 
 const element = <T extends HTMLElement>(id: string): T => document.querySelector<T>(`#${id}`)!;
 const TRAILS = [0, 0.5, 1, 2, 5, 10];
-
-interface Status {
-  cameras?: CameraStatus[];
-  steps?: { name: string; median: number; p99: number }[];
-  overtaken?: number;
-  notes?: string[];
-}
 
 class Page {
   private state = new State();
@@ -37,17 +32,13 @@ class Page {
   private table: Table;
   private plots: Plots;
   private cameras: Cameras;
+  private words: Words;
   private tab = "list";
   private wanted = false;
   private before = 0;
-  private status: Status = {};
   private recording = false;
   private recording_into = "";
-  private pings = new Map<number, number>();
-  private ping_count = 0;
-  private clock_offset: { ms: number; trip: number } | null = null;
-  /** ms from the capture to the picture on the screen, the last few. */
-  private latencies: number[] = [];
+  private latency = new Latency();
   private latest: Stretch | null = null;
   private film_asked = { frame: -1, at: 0 };
 
@@ -62,7 +53,8 @@ class Page {
     this.timeline = new Timeline(state, () => this.motion, (by) => this.step(by));
     this.table = new Table(state, this.colours);
     this.plots = new Plots(state, this.colours, () => this.motion, (time) => this.seek(time));
-    this.cameras = new Cameras(state, this.colours, (line) => this.say(line), (picture) => this.note_latency(picture.sent_ms));
+    this.cameras = new Cameras(state, this.colours, (line) => this.say(line), (picture) => this.latency.drawn(picture.sent_ms));
+    this.words = new Words(() => this.motion, this.colours, this.latency);
     state.on_change(redraw);
     state.on_change(() => this.plots.update());
     state.on_hover = redraw;
@@ -71,7 +63,7 @@ class Page {
     this.take(scene);
     if (scene.kind === "recording") state.time = this.motion.first;
     const narrow = matchMedia("(max-width: 800px)").matches;
-    this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && !narrow ? "pictures" : "list");
+    this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && scene.frame !== "image" && !narrow ? "pictures" : "list");
     new ResizeObserver(() => this.resize()).observe(element("stage"));
     document.addEventListener("keydown", (event) => this.key(event));
     document.addEventListener("visibilitychange", () => this.visible());
@@ -111,7 +103,7 @@ class Page {
     else if (word === "recording") this.take_recording(rest);
     else if (word === "said") this.said(rest);
     else if (word === "ended") this.said("The run has ended.");
-    else if (word === "pong") this.pong(rest);
+    else if (word === "pong") this.latency.pong(rest);
   }
 
   private bytes(data: ArrayBuffer): void {
@@ -121,8 +113,9 @@ class Page {
       this.motion.add(this.latest);
     } else if (kind === 3) {
       const picture = picture_of(data);
-      if (this.motion.scene.kind === "live") this.cameras.picture(picture);
-      else this.take_film(picture);
+      const { scene } = this.motion;
+      if (scene.kind === "live") this.cameras.picture(picture);
+      if (scene.kind === "recording" || (scene.frame === "image" && picture.camera === (scene.camera ?? 0))) this.take_film(picture);
     }
   }
 
@@ -162,15 +155,15 @@ class Page {
     this.cameras.take(scene);
     this.plots.forget();
     this.plots.update();
-    this.tell(scene);
+    this.words.tell();
     this.draw_soon();
   }
 
   private take_status(status: Status): void {
-    this.status = status;
+    this.words.status = status;
     this.cameras.status(status.cameras ?? []);
     if (status.notes?.length) this.said(status.notes.join(" "));
-    this.about(this.motion.scene);
+    this.words.about();
     if (this.motion instanceof Live && this.tab === "list") {
       const live = this.motion;
       this.table.take(live.scene, (track) => live.seen(track.id));
@@ -213,6 +206,12 @@ class Page {
     const { state, motion } = this;
     const passed = Math.min(0.25, (now - this.before) / 1000);
     this.before = now;
+    if (this.colours.dark !== state.dark) {
+      this.colours.dark = state.dark;
+      document.documentElement.classList.toggle("light", !state.dark);
+      this.table.draw();
+      this.words.legend();
+    }
     if (motion.scene.kind === "live") {
       if (state.following) state.time = motion.last;
       else if (state.time < motion.first) state.time = motion.first;
@@ -225,7 +224,7 @@ class Page {
     this.ask_for_film();
     this.view.draw(motion, this.shown_moment());
     if (this.latest) {
-      this.note_latency(this.latest.sent_ms);
+      this.latency.drawn(this.latest.sent_ms);
       this.latest = null;
     }
     this.timeline.draw();
@@ -266,86 +265,15 @@ class Page {
     this.say(`film ${frame} ${Math.max(320, Math.min(1920, 160 * Math.ceil(view.pixels_wide / 160)))}`);
   }
 
-  private tell(scene: Scene): void {
-    const words = { space: "Markers", ground: "People", image: "Tracks" }[scene.frame];
-    element("list_tab").textContent = words;
-    const name = scene.name.split("/").pop() || "Live";
-    element("title").textContent = scene.kind === "live" ? "Live" : name;
-    document.title = `${scene.kind === "live" ? "Live" : name} – Marey`;
-    element("record").hidden = !scene.can_record;
-    element("pictures_tab").hidden = scene.kind !== "live" || scene.cameras.length === 0;
-    element("rig").hidden = !(scene.frame === "space" && scene.cameras.some((camera) => camera.centre));
-    for (const id of ["top", "front", "side"]) element(id).hidden = scene.frame !== "space";
-    element("legend").replaceChildren(
-      ...this.colours.legend().map(([text, colour]) => {
-        const entry = document.createElement("span");
-        const dot = document.createElement("i");
-        dot.style.background = colour;
-        entry.append(dot, text);
-        return entry;
-      }),
-    );
-    this.facts();
-    this.about(scene);
-  }
-
-  private facts(): void {
-    const { scene } = this.motion;
-    const parts: string[] = [];
-    const word = { space: "marker", ground: "track", image: "track" }[scene.frame];
-    if (scene.tracks.length) parts.push(`${scene.tracks.length} ${word}${scene.tracks.length === 1 ? "" : "s"}`);
-    if (this.motion instanceof Live) {
-      const rate = this.motion.rate();
-      if (rate > 0) parts.push(`${rate.toFixed(0)} Hz`);
-      const latency = this.latency(0.5);
-      if (latency !== null) parts.push(`${latency.toFixed(0)} ms`);
-    } else {
-      parts.push(clock(this.motion.last - this.motion.first), `${+scene.rate.toFixed(2)} Hz`);
-      if (!scene.complete) parts.push("reading …");
-      if (scene.warnings?.length) parts.push(`${scene.warnings.length} warning${scene.warnings.length === 1 ? "" : "s"}`);
-    }
-    put(element("facts"), parts.join(" · "));
-    this.facts_told = performance.now();
-  }
-  private facts_told = 0;
-
-  private about(scene: Scene): void {
-    const rows: [string, string][] = [["Name", scene.name]];
-    const frames = { space: "markers in space, m, z up", ground: "places on the ground, m", image: "tracks in a picture, px" };
-    rows.push(["Holds", frames[scene.frame]]);
-    if (scene.made_by) rows.push(["Made by", scene.made_by]);
-    if (scene.kind === "recording") {
-      rows.push(["Length", `${clock(this.motion.last - this.motion.first)}, ${scene.instants} instants at ${+scene.rate.toFixed(3)} Hz`]);
-    }
-    if (scene.cameras.length) rows.push(["Cameras", scene.cameras.map((camera) => camera.name).join(", ")]);
-    if (scene.bodies.length) rows.push(["Bodies", scene.bodies.map((body) => body.label).join(", ")]);
-    const ms = (s: number) => `${(1000 * s).toFixed(1)} ms`;
-    for (const step of this.status.steps ?? []) rows.push([step.name, `${ms(step.median)}, 99 % within ${ms(step.p99)}`]);
-    if (this.status.overtaken !== undefined) rows.push(["Overtaken", `${this.status.overtaken} moments`]);
-    const [median, late] = [this.latency(0.5), this.latency(0.95)];
-    if (median !== null && late !== null) rows.push(["Capture to screen", `${median.toFixed(0)} ms, 95 % within ${late.toFixed(0)} ms`]);
-    for (const warning of scene.warnings ?? []) rows.push(["Warning", warning]);
-    element("about").replaceChildren(
-      ...rows.flatMap(([term, text]) => {
-        const dt = document.createElement("dt");
-        const dd = document.createElement("dd");
-        dt.textContent = term;
-        dd.textContent = text;
-        return [dt, dd];
-      }),
-    );
-  }
-
   private show_buttons(): void {
     const { state } = this;
-    document.documentElement.classList.toggle("light", !state.dark);
     put(element("theme"), state.dark ? "☾" : "☀");
     element("labels").classList.toggle("on", state.labels);
     element("rig").classList.toggle("on", state.cameras);
     const trails = element("trails");
     trails.classList.toggle("on", state.trail_s > 0);
     put(trails, state.trail_s > 0 ? `Trails ${state.trail_s} s` : "Trails");
-    if (this.motion.scene.kind === "live" && performance.now() - this.facts_told > 400) this.facts();
+    this.words.live_facts();
   }
 
   private said(text: string): void {
@@ -354,39 +282,11 @@ class Page {
     place.hidden = text === "";
   }
 
-  // -- latency
-
   private ping(): void {
-    if (this.motion.scene.kind === "live") {
-      this.pings.set(++this.ping_count, performance.now());
-      this.say(`ping ${this.ping_count}`);
-      setTimeout(() => this.socket && this.ping(), this.ping_count < 8 ? 150 : 4000);
-    }
-  }
-
-  /** The server's clock by the shortest of the round trips. */
-  private pong(rest: string): void {
-    const [count, ns] = rest.split(" ");
-    const sent = this.pings.get(Number(count));
-    this.pings.delete(Number(count));
-    if (sent === undefined) return;
-    const now = performance.now();
-    const trip = now - sent;
-    if (this.clock_offset && trip > this.clock_offset.trip * 1.02) return;
-    this.clock_offset = { ms: Number(BigInt(ns) / 1000n) / 1000 - (sent + now) / 2, trip };
-  }
-
-  private note_latency(sent_ms: number): void {
-    if (!this.clock_offset || document.hidden) return;
-    this.latencies.push(performance.now() + this.clock_offset.ms - sent_ms);
-    if (this.latencies.length > 330) this.latencies.splice(0, 30);
-    if (this.latencies.length % 30 === 0) document.body.dataset.latency = `${this.latency(0.95)?.toFixed(1)}`;
-  }
-
-  private latency(share: number): number | null {
-    if (this.latencies.length < 10) return null;
-    const sorted = [...this.latencies].sort((a, b) => a - b);
-    return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+    if (this.motion.scene.kind !== "live" || !this.socket) return;
+    const [line, again_ms] = this.latency.ping();
+    this.say(line);
+    setTimeout(() => this.ping(), again_ms);
   }
 
   // -- what the user does
@@ -419,12 +319,17 @@ class Page {
     this.plots.visible = tab === "plot";
     this.plots.update();
     this.table.draw();
-    this.about(this.motion.scene);
+    this.words.about();
   }
 
   private resize(): void {
     const stage = element("stage");
     this.view.resize(stage.clientWidth, stage.clientHeight);
+    const { scene } = this.motion;
+    if (scene.kind === "live" && scene.frame === "image") {
+      this.cameras.also = { camera: scene.camera ?? 0, width: (this.view as PlaneView).pixels_wide };
+      this.cameras.ask();
+    }
     this.draw_soon();
   }
 

@@ -49,6 +49,8 @@ export interface Scene {
   cameras: Camera[];
   bodies: Body[];
   tracks: Track[];
+  /** Of tracks in a picture: whose, and its size (px). */
+  camera?: number;
   size?: [number, number];
   pitch?: Pitch | null;
   y_down?: boolean;
