@@ -379,7 +379,7 @@ std::string changed_input(const BatchTask& task) {
 int expected_memory_mb(const std::string& job, const std::vector<std::string>& inputs) {
   // What the program takes before its first frame, and what a pixel of a camera's pictures takes: frames that are read ahead, the
   // background model, the samples that it learns from (docs/batch.md has the measurements).
-  constexpr double kProgramMb = 75, kPixelBytes = 165;
+  constexpr double kProgramMb = 56, kPixelBytes = 47;
   double mb = kProgramMb;
   for (const std::string& path : inputs) {
     try {

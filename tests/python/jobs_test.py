@@ -103,7 +103,7 @@ class Jobs(unittest.TestCase):
         picture = self.pictures[0]
         for wrong, said in [
             (lambda: marey.Frames([picture.astype(float)], rate=25), "is of float64; give uint8"),
-            (lambda: marey.Frames([picture[0]], rate=25), "has the shape"),
+            (lambda: marey.Frames([picture[..., None]], rate=25), "has the shape"),
             (lambda: marey.Frames([picture], rate=float("nan")), "the rate is nan"),
             (lambda: marey.Frames([], rate=25), "there is no picture"),
             (lambda: marey.Frames([picture], rate=25, colour="hsv"), 'colour is "hsv"'),

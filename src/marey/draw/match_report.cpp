@@ -86,13 +86,13 @@ class ReportPage {
     if (teams_.size() > 8 || (teams_.size() == 1 && teams_.begin()->first.empty())) return;
     std::vector<MatchReport::Period> periods = report_.periods;
     if (periods.empty()) periods.push_back({"the whole of it", -1e300, 1e300});
-    add("<h2>Territories</h2><p>The smallest part of the pitch on which a team spent half of its time.</p>");
+    add("<h2>Territories</h2><p>The smallest part of the pitch on which a team spent half of its time.</p><div class=\"two\">");
     for (const auto& [team, number] : teams_) {
-      if (team.empty()) continue;
-      add("<h3>{}</h3><div class=\"two\">", escaped(team));
-      for (const MatchReport::Period& period : periods) write_territory(team, period);
-      add("</div>");
+      for (const MatchReport::Period& period : periods) {
+        if (!team.empty()) write_territory(team, period);
+      }
     }
+    add("</div>");
   }
 
   void write_territory(const std::string& team, const MatchReport::Period& period) {
@@ -115,7 +115,7 @@ class ReportPage {
       }
     }
     close_pitch();
-    add("<figcaption>{}: {:.0f} m²</figcaption></figure>", escaped(period.name), area);
+    add("<figcaption>{}, {}: {:.0f} m²</figcaption></figure>", escaped(team), escaped(period.name), area);
   }
 
   void open_pitch() {
@@ -228,7 +228,7 @@ class ReportPage {
 
   void write_person(const MatchReport::Person& person) {
     const std::string own = std::to_string(person.number);
-    add("<details><summary>{}{} {}</summary><div class=\"two\"><div>", person.name == own ? "" : own + " · ", escaped(person.name),
+    add("<details><summary>{}{} {}</summary><div class=\"two\"><div>", person.name == own ? "" : person.name.empty() ? own : own + " · ", escaped(person.name),
         escaped(person.team));
     open_pitch();
     draw_heat(person);

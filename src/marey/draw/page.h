@@ -12,7 +12,7 @@ struct PageTable {
   std::string title;
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;  ///< as many cells as `head` has
-  int bars_from = 0;                           ///< columns before this one have no bars: they are names and numbers of names
+  int bars_from = 0, bars_end = 1000;          ///< columns outside these have no bars: they are names, or places
 };
 
 /// Light or dark as the reader's system is, with everything open and nothing dark on paper.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -23,12 +22,6 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
   return fmt::format("{:g}-{:g}", zone == 0 ? 0.0 : borders[zone - 1], borders[zone]);
 }
 
-/// Its label; its number too where others have the same label, as referees do. `uses` counts the labels.
-std::string name_of(const analyse::PersonMeasure& person, const std::map<std::string, int>& uses) {
-  if (person.label.empty()) return std::to_string(person.id);
-  return uses.at(person.label) > 1 ? fmt::format("{} {}", person.label, person.id) : person.label;
-}
-
 /// Teams that are called by the colour of their shirts are drawn in it.
 std::optional<Appearance> shirt_of(const std::string& team) {
   try {
@@ -38,11 +31,11 @@ std::optional<Appearance> shirt_of(const std::string& team) {
   }
 }
 
-draw::MatchReport::Person page_of(const analyse::PersonMeasure& person, const std::map<std::string, int>& uses) {
+draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   draw::MatchReport::Person page;
   page.number = person.id;
   page.sprints = person.sprint_times;
-  page.name = name_of(person, uses);
+  page.name = person.label;
   page.team = person.team;
   page.appearance = shirt_of(person.team);
   page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
@@ -106,13 +99,11 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
   report.columns = {"distance, m", "mean, m/s", "top, m/s", "sprints", "accelerations", "decelerations"};
   for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
     report.columns.push_back(fmt::format("m at {} m/s", zone_name(options.zones, zone)));
-  std::map<std::string, int> uses;
-  for (const analyse::PersonMeasure& person : measured.people) ++uses[person.label];
-  for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person, uses));
+  for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
   if (!measured.teams.empty()) {
     draw::PageTable& table = report.tables.emplace_back();
     table.title = "Teams";
-    table.bars_from = 2;
+    table.bars_from = 2, table.bars_end = 6;
     table.head = {"team", "people", "distance, m", "length, m", "width, m", "hull, m²", "middle x, m", "middle y, m"};
     for (const analyse::TeamMeasure& team : measured.teams) {
       table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
