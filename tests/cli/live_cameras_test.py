@@ -208,12 +208,8 @@ class LiveCameras(unittest.TestCase):
         script.write_text(f"""ip link set lo up || exit 77
 arv-fake-gv-camera-0.8 -i 127.0.0.1 -s LEFT & one=$!
 arv-fake-gv-camera-0.8 -i 127.0.0.2 -s RIGHT & two=$!
-for try in $(seq 30); do  # until both have begun to answer
-  rm -f rig.toml
-  {MAREY} cameras --json -o rig.toml > found.json
-  grep -q LEFT found.json && grep -q RIGHT found.json && break
-  sleep 0.3
-done
+sleep 1
+{MAREY} cameras --json -o rig.toml > found.json
 {MAREY} live gige:LEFT gige:RIGHT --for 4 --json -q > live.json
 code=$?
 kill $one $two
@@ -229,7 +225,7 @@ exit $code
         told = json.loads((self.folder / "live.json").read_text())
         for name, camera in told["cameras"].items():
             self.assertGreater(camera["frames"], 30, name)
-            self.assertLess(camera["lost"] + camera["damaged"], camera["frames"] / 4, name)  # a machine that does other things loses some
+            self.assertEqual(camera["lost"] + camera["damaged"], 0, name)
 
 
 def take_terminal(file):
