@@ -57,7 +57,9 @@ TEST(Play, EveryInstantComesOnceInOrderAndNoneBeforeItIsDue) {
     EXPECT_FALSE(heard.instants[i].bodies.empty());
     const auto since_first = (heard.instants[i].time - heard.instants[0].time).count() / 4;
     EXPECT_GE(heard.at_ns[i] - clock.capture_ns(heard.instants[0].time, heard.at_ns[i]), since_first);
-    if (i > 0) EXPECT_GT(heard.instants[i].index, heard.instants[i - 1].index);
+    if (i > 0) {
+      EXPECT_GT(heard.instants[i].index, heard.instants[i - 1].index);
+    }
   }
 }
 
