@@ -17,7 +17,11 @@ const sleep = (ms) => page.waitForTimeout(ms);
 const text = (selector) => page.textContent(selector);
 const time = async () => Number(await page.evaluate(() => document.body.dataset.time));
 const has = (selector, name) => page.evaluate(([s, n]) => document.querySelector(s).classList.contains(n), [selector, name]);
-const until = (what, condition, argument) => page.waitForFunction(condition, argument, { timeout: 15000 }).catch(() => assert.fail(what));
+/** Asked again and again, for the page's policy forbids what Playwright's own waiting does. */
+async function until(what, condition, argument) {
+  for (const end = Date.now() + 20000; Date.now() < end; await sleep(60)) if (await page.evaluate(condition, argument)) return;
+  assert.fail(what);
+}
 
 /** How many colours a part of the page has, and its pixels as a digest. */
 async function look(selector) {

@@ -66,6 +66,8 @@ class Page {
     this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && scene.frame !== "image" && !narrow ? "pictures" : "list");
     new ResizeObserver(() => this.resize()).observe(element("stage"));
     document.addEventListener("keydown", (event) => this.key(event));
+    // Who clicks a button with the pointer and then presses space wants to play.
+    document.addEventListener("click", (event) => event.detail > 0 && (event.target as Element).closest("button")?.blur());
     document.addEventListener("visibilitychange", () => this.visible());
     this.connect();
   }
@@ -377,6 +379,8 @@ class Page {
     const { state } = this;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.target instanceof HTMLInputElement && event.key !== "Escape") return;
+    if (event.target instanceof HTMLSelectElement) return;
+    if (event.target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter")) return; // who tabbed there presses it
     if (element<HTMLDialogElement>("keys").open) return;
     const press = (id: string) => element(id).hidden || element(id).click();
     const keys: Record<string, () => void> = {
