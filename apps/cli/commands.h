@@ -12,6 +12,8 @@ void add_measure(Command& program);
 void add_reconstruct(Command& program);
 void add_convert(Command& program);
 void add_info(Command& program);
+void add_body(Command& program);
+void add_label(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   add_convert(root);
   add_info(root);
   add_reconstruct(root);
+  add_body(root);
+  add_label(root);
   add_experiment(root);
   return program.run(argc, argv);
 }
