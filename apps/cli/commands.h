@@ -21,6 +21,8 @@ void add_cameras(Command& program);
 void add_batch(Command& program);
 void add_doctor(Command& program);
 void add_completion(Command& program);
+void add_body(Command& program);
+void add_label(Command& program);
 
 void add_simulate(Command& program);
 void add_simulate_markers(Command& simulate);  ///< below `simulate`

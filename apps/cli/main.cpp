@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
   add_batch(root);
   add_doctor(root);
   add_completion(root);
+  add_body(root);
+  add_label(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

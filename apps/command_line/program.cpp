@@ -92,6 +92,7 @@ const CLI::Option& Command::Declared::option(const std::string& name) const {
 
 Command::Declared& Command::Declared::named_by(const std::vector<std::string>& words) {
   Declared* at = this;
+  bool own = false;  // it is the one that runs, and takes positionals
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     const std::string& word = words[i];
     if (word == "-h" || word == "--help" || word == "--version") return *at;
@@ -103,11 +104,14 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
     } else if (is_short) {
       const CLI::Option& named = at->option(word.substr(0, 2));
       if (word.size() == 2) i += static_cast<std::size_t>(named.get_items_expected_min());
-    } else if (!at->below.empty()) {
-      at = &at->child(word);
+    } else if (!at->below.empty() && !own) {
+      // A command that does something itself takes what is none of those below it as its own.
+      const auto is_named = [&](const auto& entry) { return entry->app->get_name() == word; };
+      own = at->run && std::none_of(at->below.begin(), at->below.end(), is_named);
+      if (!own) at = &at->child(word);
     }
   }
-  if (!at->below.empty()) throw CommandMissing{at->app->help()};
+  if (!at->below.empty() && !at->run) throw CommandMissing{at->app->help()};
   return *at;
 }
 

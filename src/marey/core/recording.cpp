@@ -177,6 +177,56 @@ void TrackColumns::set_at(std::vector<std::int32_t> instants) {
   at_ = std::move(instants);
 }
 
+BodyPose BodyColumns::pose(std::size_t row) const {
+  BodyPose pose{.body = body_,
+                .world_from_body = poses_[row],
+                .covariance = {},
+                .residual_m = {},
+                .tracked = static_cast<bool>(tracked_[row])};
+  if (covariance_.known(row)) {
+    const double* value = covariance_.values(row);
+    Matrix<6> covariance;
+    for (int i = 0; i < 6; ++i) {
+      for (int k = i; k < 6; ++k) covariance(i, k) = covariance(k, i) = *value++;
+    }
+    pose.covariance = covariance;
+  }
+  if (residual_m_.known(row)) pose.residual_m = *residual_m_.values(row);
+  return pose;
+}
+
+std::optional<std::size_t> BodyColumns::row_at(std::int32_t instant) const {
+  const auto found = std::lower_bound(at_.begin(), at_.end(), instant);
+  if (found == at_.end() || *found != instant) return std::nullopt;
+  return static_cast<std::size_t>(found - at_.begin());
+}
+
+void BodyColumns::add(std::int32_t instant, const BodyPose& pose) {
+  if (!is_new(at_, instant)) throw Error("body {} has two poses at one instant", number(body_));
+  const std::size_t row = at_.size();
+  at_.push_back(instant);
+  poses_.push_back(pose.world_from_body);
+  tracked_.push_back(pose.tracked);
+  if (pose.covariance) {
+    std::array<double, 21> upper{};
+    std::size_t count = 0;
+    for (int i = 0; i < 6; ++i) {
+      for (int k = i; k < 6; ++k) upper[count++] = (*pose.covariance)(i, k);
+    }
+    covariance_.set(row, upper);
+  }
+  if (pose.residual_m) residual_m_.set(row, {&*pose.residual_m, 1});
+}
+
+void BodyColumns::append(const BodyColumns& other, std::int32_t offset) {
+  for (std::size_t row = 0; row < other.size(); ++row) add(other.at_[row] + offset, other.pose(row));
+}
+
+void BodyColumns::set_at(std::vector<std::int32_t> instants) {
+  assert(instants.size() == at_.size() && std::is_sorted(instants.begin(), instants.end()));
+  at_ = std::move(instants);
+}
+
 const TrackColumns* Recording::find(TrackId id) const {
   const auto found =
       std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
@@ -187,6 +237,18 @@ TrackColumns& Recording::track_of(TrackId id) {
   const auto at = std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
   if (at != tracks_.end() && at->id() == id) return *at;
   return *tracks_.emplace(at, TrackName{.id = id, .label = {}, .team = {}}, dimensions());
+}
+
+const BodyColumns* Recording::find(BodyId id) const {
+  const auto found =
+      std::lower_bound(bodies_.begin(), bodies_.end(), id, [](const BodyColumns& b, BodyId i) { return b.body() < i; });
+  return found == bodies_.end() || found->body() != id ? nullptr : &*found;
+}
+
+BodyColumns& Recording::body_of(BodyId id) {
+  const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), id, [](const BodyColumns& b, BodyId i) { return b.body() < i; });
+  if (at != bodies_.end() && at->body() == id) return *at;
+  return *bodies_.emplace(at, id);
 }
 
 std::int64_t Recording::samples() const {
@@ -208,6 +270,7 @@ void Recording::add(const Instant& instant) {
   instants_.push_back({instant.index, instant.time});
   for (const TrackName& name : instant.named) set_name(name);
   for (const Sample& sample : instant.samples) track_of(sample.track).add(at, sample);
+  for (const BodyPose& pose : instant.bodies) body_of(pose.body).add(at, pose);
   if (instant.seen.empty() && seen_end_.empty()) return;
   seen_end_.resize(static_cast<std::size_t>(at), seen_.size());
   seen_.insert(seen_.end(), instant.seen.begin(), instant.seen.end());
@@ -221,6 +284,11 @@ void Recording::set_name(const TrackName& name) {
 void Recording::put(TrackColumns track) {
   TrackColumns& place = track_of(track.id());
   place = std::move(track);
+}
+
+void Recording::put(BodyColumns body) {
+  BodyColumns& place = body_of(body.body());
+  place = std::move(body);
 }
 
 void Recording::erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out) {
@@ -263,6 +331,11 @@ std::optional<Instant> InstantsOf::next() {
   instant.time = recording_.instants()[next_].time;
   const auto seen = recording_.seen(next_);
   instant.seen.assign(seen.begin(), seen.end());
+  for (std::size_t b = 0; b < body_rows_.size(); ++b) {
+    const BodyColumns& body = recording_.bodies()[b];
+    if (body_rows_[b] < body.size() && body.at()[body_rows_[b]] == static_cast<std::int32_t>(next_))
+      instant.bodies.push_back(body.pose(body_rows_[b]++));
+  }
   const auto rows = rows_.at(next_++);
   instant.samples.reserve(rows.size());
   for (const auto& [index, row] : rows) {

@@ -175,6 +175,40 @@ class TrackColumns {
   Outlines outlines_;
 };
 
+/// One body over the whole recording, in columns, by growing instant.
+class BodyColumns {
+ public:
+  explicit BodyColumns(BodyId body) : body_(body) {}
+
+  BodyId body() const { return body_; }
+  std::size_t size() const { return at_.size(); }
+  bool empty() const { return at_.empty(); }
+  /// Which of the recording's instants each row belongs to.
+  std::span<const std::int32_t> at() const { return at_; }
+  std::span<const Rigid3> poses() const { return poses_; }  ///< world_from_body, m
+  const std::vector<bool>& tracked() const { return tracked_; }
+  const OptionalColumn& covariance() const { return covariance_; }  ///< the upper triangle, row by row: 21 numbers
+  const OptionalColumn& residual_m() const { return residual_m_; }
+
+  BodyPose pose(std::size_t row) const;
+  /// The row of this instant of the recording, by binary search.
+  std::optional<std::size_t> row_at(std::int32_t instant) const;
+
+  /// `instant` is later than the last one's.
+  void add(std::int32_t instant, const BodyPose& pose);
+  /// What another one of this body holds, whose instants are later once `offset` is added to them.
+  void append(const BodyColumns& other, std::int32_t offset);
+  /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
+  void set_at(std::vector<std::int32_t> instants);
+
+ private:
+  BodyId body_;
+  std::vector<std::int32_t> at_;
+  std::vector<Rigid3> poses_;
+  std::vector<bool> tracked_;
+  OptionalColumn covariance_{21}, residual_m_{1};
+};
+
 /// A whole recording in memory. What may be long and is only passed on is better streamed, instant by instant.
 class Recording {
  public:
@@ -194,6 +228,8 @@ class Recording {
   const std::vector<Moment>& instants() const { return instants_; }
   const std::vector<TrackColumns>& tracks() const { return tracks_; }  ///< by id
   const TrackColumns* find(TrackId id) const;
+  const std::vector<BodyColumns>& bodies() const { return bodies_; }  ///< by id; what they are says the header
+  const BodyColumns* find(BodyId id) const;
   double seconds_at(std::size_t instant) const { return seconds(instants_[instant].time); }
   std::int64_t samples() const;
   std::span<const SeenPoint> seen(std::size_t instant) const;
@@ -204,6 +240,7 @@ class Recording {
   void set_name(const TrackName& name);
   /// Puts a track in as a whole, in the place of one with its id. Its instants must be there already.
   void put(TrackColumns track);
+  void put(BodyColumns body);
   /// Takes all tracks out, so that another recording can be made of them without holding both.
   std::vector<TrackColumns> take_tracks() { return std::exchange(tracks_, {}); }
   void add_moment(const Moment& moment) { instants_.push_back(moment); }
@@ -212,9 +249,11 @@ class Recording {
 
  private:
   TrackColumns& track_of(TrackId id);
+  BodyColumns& body_of(BodyId id);
 
   std::vector<Moment> instants_;
   std::vector<TrackColumns> tracks_;
+  std::vector<BodyColumns> bodies_;
   std::vector<SeenPoint> seen_;
   std::vector<std::size_t> seen_end_;  // by instant; empty where nothing seen is kept
 };
@@ -243,7 +282,8 @@ class InstantRows {
 /// The recording's instants one after the other, as a sink takes them. The recording must outlive it.
 class InstantsOf {
  public:
-  explicit InstantsOf(const Recording& recording) : recording_(recording), rows_(recording) {}
+  explicit InstantsOf(const Recording& recording)
+      : recording_(recording), rows_(recording), body_rows_(recording.bodies().size()) {}
   /// The next one, names at the first that shows them; nothing behind the last.
   std::optional<Instant> next();
 
@@ -251,6 +291,7 @@ class InstantsOf {
   const Recording& recording_;
   std::size_t next_ = 0;
   InstantRows rows_;
+  std::vector<std::size_t> body_rows_;  // of each body, the next
 };
 
 /// The usual step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
+#include "marey/core/recording_reader.h"
 
 namespace marey {
 namespace {
@@ -92,6 +93,42 @@ TEST(Recording, TwoDimensionsHaveNoThirdColumn) {
   EXPECT_TRUE(track.z().empty());
   EXPECT_EQ(track.sample(0).covariance, instant.samples[0].covariance);
   EXPECT_FALSE(track.has_velocities());
+}
+
+TEST(Recording, BodiesComeAndGo) {
+  Recording recording(header_in(FrameOfReference::Kind::space));
+  for (int i = 0; i < 6; ++i) {
+    Instant instant;
+    instant.index = 2 * i;
+    for (const int body : {2, 5}) {
+      if (body == 5 && i % 2 == 0) continue;
+      BodyPose pose;
+      pose.body = BodyId{body};
+      pose.world_from_body.translation = {static_cast<double>(i), static_cast<double>(body), 0};
+      pose.tracked = i != 3;
+      if (i == 4) pose.covariance = Matrix<6>::Identity() * 2;
+      if (i == 5) pose.residual_m = 0.5;
+      instant.bodies.push_back(pose);
+    }
+    recording.add(instant);
+  }
+  ASSERT_EQ(recording.bodies().size(), 2U);
+  EXPECT_EQ(recording.find(BodyId{5})->size(), 3U);
+  EXPECT_EQ(recording.find(BodyId{3}), nullptr);
+  EXPECT_EQ(recording.find(BodyId{5})->row_at(3), 1U);
+  EXPECT_FALSE(recording.find(BodyId{5})->row_at(2));
+  MemoryReader reader(recording);
+  const Recording again = read_all(reader);
+  InstantsOf instants(again);
+  for (int i = 0; i < 6; ++i) {
+    const auto instant = instants.next();
+    ASSERT_TRUE(instant);
+    ASSERT_EQ(instant->bodies.size(), i % 2 == 0 ? 1U : 2U);
+    EXPECT_EQ(instant->bodies[0].world_from_body.translation.x(), i);
+    EXPECT_EQ(instant->bodies[0].tracked, i != 3);
+    EXPECT_EQ(instant->bodies[0].covariance.has_value(), i == 4);
+    EXPECT_EQ(instant->bodies[0].residual_m, i == 5 ? std::optional(0.5) : std::nullopt);
+  }
 }
 
 TEST(Recording, InstantsMustGrow) {

@@ -24,6 +24,12 @@ void turn(Instant& instant, const Matrix<3>& rotation) {
     if (sample.velocity) sample.velocity = (rotation * *sample.velocity).eval();
     if (sample.covariance) sample.covariance = (rotation * *sample.covariance * rotation.transpose()).eval();
   }
+  Matrix<6> both = Matrix<6>::Zero();
+  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = rotation;
+  for (BodyPose& pose : instant.bodies) {
+    pose.world_from_body = Rigid3{rotation, Vector<3>::Zero()} * pose.world_from_body;
+    if (pose.covariance) pose.covariance = (both * *pose.covariance * both.transpose()).eval();
+  }
 }
 
 /// Turns a world whose y is up so that its z is.

@@ -35,6 +35,8 @@
   row(format::rig, opencv) \
   row(format::rig, qualisys) \
   row(format::rig, tsai) \
+  row(format::bodies, bodies) \
+  row(format::bodies, label_set) \
   row(format::rig, marey) \
   row(format::rig, aniposelib) \
   row(format::rig, self_cal) \

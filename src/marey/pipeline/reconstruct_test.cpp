@@ -15,8 +15,8 @@
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/take_file.h"
+#include "marey/geometry/layout.h"
 #include "marey/pipeline/simulation_files.h"
-#include "marey/reconstruct/layout.h"
 #include "marey/simulate/room/room.h"
 
 #include "support/data.h"
@@ -261,7 +261,7 @@ struct WingErrors {
       }
     }
     ASSERT_EQ(markers.size(), 16) << "at " << instant.index;
-    const Rigid3 fit = reconstruct::rigid_fit(from, to);
+    const Rigid3 fit = geometry::rigid_fit(from, to);
     for (std::size_t i = 0; i < from.size(); ++i) {
       places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
     }

@@ -9,7 +9,7 @@
 
 #include "marey/core/marker_set.h"
 #include "marey/core/track.h"
-#include "marey/reconstruct/layout.h"
+#include "marey/geometry/layout.h"
 
 namespace marey::reconstruct {
 
@@ -35,7 +35,7 @@ class SetLabels {
       points_.push_back(track.position);
       ids_.push_back(track.id);
     }
-    const auto match = match_layout(set_.places, points_, tolerance_);
+    const auto match = geometry::match_layout(set_.places, points_, tolerance_);
     if (!match) return;
     for (std::size_t m = 0; m < set_.labels.size(); ++m) {
       if (!match->point_of[m] || !given_.insert(m).second) continue;

@@ -39,6 +39,7 @@ enum SampleField {
   first_optional,
   outline = first_optional + TrackColumns::kOptionals
 };
+enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked };
 enum SeenField { seen_id, seen_rows, seen_at, seen_x, seen_y, seen_sigma, seen_area, seen_track };
 
 constexpr const char* kSampleFields =
@@ -66,6 +67,16 @@ void bind_integers(Statement& statement, int parameter, std::span<const std::uin
   }
 }
 
+std::optional<Matrix<6>> symmetric_6(const OptionalColumn& column, std::size_t row) {
+  if (!column.known(row)) return std::nullopt;
+  Matrix<6> matrix;
+  const double* value = column.values(row);
+  for (int i = 0; i < 6; ++i) {
+    for (int k = i; k < 6; ++k) matrix(i, k) = matrix(k, i) = *value++;
+  }
+  return matrix;
+}
+
 bool consecutive(std::span<const std::int32_t> places) {
   return !places.empty() && static_cast<std::size_t>(places.back() - places.front()) + 1 == places.size();
 }
@@ -76,9 +87,11 @@ ChunkWriter::ChunkWriter(const Database& database)
     : add_instants_(database, "INSERT INTO chunk VALUES (?, ?, ?, ?, ?, ?)"),
       add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       add_seen_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
+      add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?)"),
       remove_instants_(database, "DELETE FROM chunk WHERE id = ?"),
       remove_samples_(database, "DELETE FROM samples WHERE id >= ? AND id < ?"),
       remove_seen_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
+      remove_poses_(database, "DELETE FROM poses WHERE id >= ? AND id < ?"),
       blobs_(outline + 1) {}
 
 void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
@@ -88,6 +101,9 @@ void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
   }
   for (const auto& [camera, columns] : chunk.seen) {
     if (columns.size() > 0) write_seen(row_id(chunk_id, number(camera)), columns);
+  }
+  for (const auto& [body, columns] : chunk.bodies) {
+    if (!columns.empty()) write_poses(row_id(chunk_id, number(body)), columns);
   }
 }
 
@@ -160,13 +176,39 @@ void ChunkWriter::write_seen(std::int64_t row, const SeenColumns& seen) {
   to.run();
 }
 
+void ChunkWriter::write_poses(std::int64_t row, const BodyColumns& body) {
+  Statement& to = add_poses_;
+  to.bind(poses_id, row);
+  to.bind(poses_rows, static_cast<std::int64_t>(body.size()));
+  if (consecutive(body.at())) {
+    to.bind(poses_at, std::int64_t{body.at().front()});
+  } else {
+    to.bind(poses_at, std::as_bytes(body.at()));
+  }
+  std::vector<double> numbers;
+  for (const Rigid3& pose : body.poses()) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) numbers.push_back(pose.rotation(i, k));
+      numbers.push_back(pose.translation[i]);
+    }
+  }
+  to.bind(poses_pose, std::as_bytes(std::span<const double>(numbers)));
+  encode(body.residual_m(), body.size(), false, blobs_[x]);
+  encode(body.covariance(), body.size(), false, blobs_[y]);
+  bind_or_null(to, poses_residual, blobs_[x]);
+  bind_or_null(to, poses_covariance, blobs_[y]);
+  integers_.assign(body.tracked().begin(), body.tracked().end());
+  bind_integers(to, poses_tracked, integers_, blobs_[z]);
+  to.run();
+}
+
 void ChunkWriter::remove_instants(std::int64_t chunk_id) {
   remove_instants_.bind(0, chunk_id);
   remove_instants_.run();
 }
 
 void ChunkWriter::remove_rows(std::int64_t chunk_id) {
-  for (Statement* statement : {&remove_samples_, &remove_seen_}) {
+  for (Statement* statement : {&remove_samples_, &remove_seen_, &remove_poses_}) {
     statement->bind(0, row_id(chunk_id, 0));
     statement->bind(1, row_id(chunk_id + 1, 0));
     statement->run();
@@ -180,7 +222,12 @@ ChunkReader::ChunkReader(const Database& database, int dimensions)
       moments_(database, "SELECT indices, times FROM chunk WHERE id = ?"),
       samples_(database, fmt::format("SELECT {} FROM samples WHERE id >= ? AND id < ? ORDER BY id", kSampleFields)),
       seen_(database, "SELECT id, rows, at, x, y, sigma, area, track FROM seen WHERE id >= ? AND id < ? ORDER BY id"),
-      one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", kSampleFields)) {}
+      one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", kSampleFields)) {
+  Statement columns(database, "SELECT count(*) FROM pragma_table_info('poses') WHERE name IN ('covariance', 'tracked')");
+  if (columns.step() && columns.integer(0) == 2)
+    poses_.emplace(database,
+                   "SELECT id, rows, at, pose, residual, covariance, tracked FROM poses WHERE id >= ? AND id < ? ORDER BY id");
+}
 
 ChunkReader::Row ChunkReader::checked_row(const Statement& row) const {
   const Row result{.id = row.integer(0), .first_index = row.integer(1), .last_index = row.integer(2), .instants = row.integer(3)};
@@ -250,6 +297,7 @@ void ChunkReader::read(const Row& row, bool with_seen, Chunk& chunk) {
     decode_samples(samples_, row, offset, chunk.track(TrackId{static_cast<int>(track)}, dimensions_));
   }
   samples_.reset();
+  if (poses_) read_poses(row, offset, chunk.bodies);
   if (!with_seen) return;
   seen_.reset();
   seen_.bind(0, row_id(row.id, 0));
@@ -269,6 +317,49 @@ bool ChunkReader::read_track(const Row& row, std::int64_t offset, TrackColumns& 
   if (there) decode_samples(one_track_, row, offset, track);
   one_track_.reset();
   return there;
+}
+
+void ChunkReader::read_poses(const Row& row, std::int64_t offset, std::map<BodyId, BodyColumns>& bodies) {
+  poses_->reset();
+  poses_->bind(0, row_id(row.id, 1));
+  poses_->bind(1, row_id(row.id, 0) + kOneChunk);
+  while (poses_->step()) {
+    const std::int64_t body = poses_->integer(poses_id) & 0xffffffff;
+    if (body > std::numeric_limits<int>::max()) throw Error("{}: is damaged (a body's id is {})", database_->path(), body);
+    const BodyId id{static_cast<int>(body)};
+    decode_poses(row, offset, bodies.try_emplace(id, id).first->second);
+  }
+  poses_->reset();
+}
+
+void ChunkReader::decode_poses(const Row& chunk, std::int64_t offset, BodyColumns& body) {
+  const std::string where = fmt::format("{}: chunk {}, body {}", database_->path(), chunk.id, number(body.body()));
+  ColumnDecoder decoder(checked_count(poses_->integer(poses_rows)), where);
+  const std::span<const std::byte> blob = poses_->blob(poses_pose);
+  if (blob.size() != decoder.rows() * 12 * sizeof(double)) decoder.fail("it has another number of poses than of rows");
+  decode_places(*poses_, poses_at, chunk, offset, decoder);
+  OptionalColumn covariance(21), residual(1);
+  decoder.optional(poses_->blob(poses_residual), 0, residual);
+  decoder.optional(poses_->blob(poses_covariance), 0, covariance);
+  if (poses_->is_number(poses_tracked)) {
+    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(poses_->integer(poses_tracked)));
+  } else {
+    decoder.integers(poses_->blob(poses_tracked), integers_);
+  }
+  std::vector<double> numbers(blob.size() / sizeof(double));
+  std::memcpy(numbers.data(), blob.data(), blob.size());
+  for (std::size_t row = 0; row < decoder.rows(); ++row) {
+    BodyPose pose{.body = body.body(), .world_from_body = {}, .covariance = {}, .residual_m = {}, .tracked = integers_[row] != 0};
+    const double* value = numbers.data() + 12 * row;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) pose.world_from_body.rotation(i, k) = *value++;
+      pose.world_from_body.translation[i] = *value++;
+    }
+    pose.covariance = symmetric_6(covariance, row);
+    if (residual.known(row)) pose.residual_m = *residual.values(row);
+    if (problem_of(pose)) decoder.fail("it is nowhere");
+    body.add(at_[row], pose);
+  }
 }
 
 std::size_t ChunkReader::checked_count(std::int64_t count) const {

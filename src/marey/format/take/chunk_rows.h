@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,8 +27,9 @@ class ChunkWriter {
   void write_instants(std::int64_t id, const Chunk& chunk);
   void write_samples(std::int64_t id, const TrackColumns& track);
   void write_seen(std::int64_t id, const SeenColumns& seen);
+  void write_poses(std::int64_t id, const BodyColumns& body);
 
-  Statement add_instants_, add_samples_, add_seen_, remove_instants_, remove_samples_, remove_seen_;
+  Statement add_instants_, add_samples_, add_seen_, add_poses_, remove_instants_, remove_samples_, remove_seen_, remove_poses_;
   std::vector<Bytes> blobs_;
   std::vector<std::uint64_t> integers_;
 };
@@ -55,12 +57,15 @@ class ChunkReader {
   Row checked_row(const Statement& statement) const;
   void decode_samples(const Statement& row, const Row& chunk, std::int64_t offset, TrackColumns& track);
   void decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen);
+  void read_poses(const Row& chunk, std::int64_t offset, std::map<BodyId, BodyColumns>& bodies);
+  void decode_poses(const Row& chunk, std::int64_t offset, BodyColumns& body);
   std::size_t checked_count(std::int64_t rows) const;
   void decode_places(const Statement& row, int column, const Row& chunk, std::int64_t offset, ColumnDecoder& decoder);
 
   const Database* database_;
   int dimensions_;
   Statement find_, moments_, samples_, seen_, one_track_;
+  std::optional<Statement> poses_;  // nothing in takes from before bodies were solved
   std::vector<std::int32_t> at_;
   std::vector<double> x_, y_, z_;
   std::vector<Provenance> provenance_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_rows.h"
 #include "marey/format/take/frame_names.h"
 #include "marey/format/take/take_cursor.h"
@@ -93,6 +94,10 @@ class CursorOfSchema2 : public TakeCursor {
       for (; place.row < place.columns->size() && place.columns->at[place.row] == at; ++place.row)
         instant.seen.push_back(place.columns->point(camera, place.row));
     }
+    for (Place<BodyColumns>& place : bodies_) {
+      if (place.row < place.columns->size() && place.columns->at()[place.row] == at)
+        instant.bodies.push_back(place.columns->pose(place.row++));
+    }
     next_index_ = instant.index + 1;
     return instant;
   }
@@ -138,13 +143,30 @@ class CursorOfSchema2 : public TakeCursor {
     while (options.step()) header.made_by.options.emplace(options.text(0), options.text(1));
     Statement inputs(*database_, "SELECT name, hash FROM input ORDER BY id");
     while (inputs.step()) header.made_by.inputs.push_back({std::string(inputs.text(0)), std::string(inputs.text(1))});
+    read_bodies(header.bodies);
     return header;
+  }
+
+  void read_bodies(std::vector<Body>& bodies) {
+    Statement rows(*database_, "SELECT id, label, definition FROM body ORDER BY id");
+    while (rows.step()) {
+      const std::int64_t id = rows.integer(0);
+      if (id <= 0 || id > std::numeric_limits<int>::max()) throw Error("{}: is damaged (a body's id is {})", database_->path(), id);
+      if (bodies.size() >= options_.limits.tracks)
+        throw Error("{}: has more than {} bodies (the limit tracks)", database_->path(), options_.limits.tracks);
+      Body& body = bodies.emplace_back();
+      body.id = BodyId{static_cast<int>(id)};
+      body.label = std::string(rows.text(1));
+      check_name({.id = TrackId{static_cast<int>(id)}, .label = body.label, .team = {}}, 0, options_.limits, *database_);
+      read_body_definition(rows.text(2), database_->path(), body);
+    }
   }
 
   void leave_chunk() {
     chunk_.clear();
     tracks_.clear();
     seen_.clear();
+    bodies_.clear();
     at_ = 0;
   }
 
@@ -169,6 +191,7 @@ class CursorOfSchema2 : public TakeCursor {
     };
     for (const auto& [id, columns] : chunk_.tracks) tracks_.push_back({&columns, row_of(columns.at())});
     for (const auto& [camera, columns] : chunk_.seen) seen_.emplace_back(camera, Place<SeenColumns>{&columns, row_of(columns.at)});
+    for (const auto& [id, columns] : chunk_.bodies) bodies_.push_back({&columns, row_of(columns.at())});
     return true;
   }
 
@@ -181,6 +204,7 @@ class CursorOfSchema2 : public TakeCursor {
   std::size_t at_ = 0;  // the chunk's instants: the next
   std::vector<Place<TrackColumns>> tracks_;
   std::vector<std::pair<CameraId, Place<SeenColumns>>> seen_;
+  std::vector<Place<BodyColumns>> bodies_;
   std::int64_t next_index_ = 0;
 };
 

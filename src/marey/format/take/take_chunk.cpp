@@ -113,7 +113,8 @@ void Chunk::add(const Instant& instant, int dimensions) {
     camera = point.camera;
     seen_by->add(at, point);
   }
-  bytes += 16 + 32 * instant.seen.size();
+  for (const BodyPose& pose : instant.bodies) bodies.try_emplace(pose.body, pose.body).first->second.add(at, pose);
+  bytes += 16 + 32 * instant.seen.size() + 190 * instant.bodies.size();
 }
 
 void Chunk::append(const Chunk& other, int dimensions) {
@@ -133,6 +134,7 @@ void Chunk::append(const Chunk& other, int dimensions) {
     for (const auto& [row, outline] : columns.outlines()) to.set_outline(first + row, outline);
   }
   for (const auto& [camera, columns] : other.seen) seen[camera].append(columns, offset);
+  for (const auto& [body, columns] : other.bodies) bodies.try_emplace(body, body).first->second.append(columns, offset);
 }
 
 void Chunk::clear() {
@@ -142,6 +144,7 @@ void Chunk::clear() {
   std::erase_if(tracks, [](const auto& entry) { return entry.second.empty(); });
   for (auto& [id, columns] : tracks) columns.clear();
   for (auto& [camera, columns] : seen) columns.clear();
+  bodies.clear();
 }
 
 std::optional<std::string> problem_of(const Sample& sample) {
@@ -164,6 +167,15 @@ std::optional<std::string> problem_of(const SeenPoint& point) {
   if (!point.pixel.allFinite() || !is_number(point.sigma) || !is_number(point.area) || (point.track && number(*point.track) <= 0))
     return fmt::format("camera {} has seen what no camera sees", camera);
   return std::nullopt;
+}
+
+std::optional<std::string> problem_of(const BodyPose& pose) {
+  if (number(pose.body) <= 0) return fmt::format("body {} cannot be; ids are positive", number(pose.body));
+  const Matrix<3>& rotation = pose.world_from_body.rotation;
+  const bool rigid = rotation.allFinite() && (rotation.transpose() * rotation - Matrix<3>::Identity()).norm() < 1e-6;
+  const bool known = !pose.covariance || (pose.covariance->array().abs() <= std::numeric_limits<float>::max()).all();
+  if (rigid && known && pose.world_from_body.translation.allFinite() && is_number(pose.residual_m)) return std::nullopt;
+  return fmt::format("body {} is nowhere", number(pose.body));
 }
 
 }  // namespace marey::format::take

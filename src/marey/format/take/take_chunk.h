@@ -32,6 +32,7 @@ struct Chunk {
   std::vector<Recording::Moment> moments;
   std::map<TrackId, TrackColumns> tracks;
   std::map<CameraId, SeenColumns> seen;
+  std::map<BodyId, BodyColumns> bodies;
   std::size_t bytes = 0;  ///< about what it takes in the file
 
   bool empty() const { return moments.empty(); }
@@ -45,5 +46,6 @@ struct Chunk {
 /// Why reading would refuse it; nothing where it is sound.
 std::optional<std::string> problem_of(const Sample& sample);
 std::optional<std::string> problem_of(const SeenPoint& point);
+std::optional<std::string> problem_of(const BodyPose& pose);
 
 }  // namespace marey::format::take

@@ -126,6 +126,71 @@ TEST_F(TakeFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "a take is one file";
 }
 
+/// Two bodies, of which the second comes and goes; the first is a segment of a skeleton.
+Recording bodies_moving(std::int64_t instants) {
+  Recording take(header());
+  Body hip{.id = BodyId{1}, .label = "Hip", .skeleton = "anna", .parent = {}, .offset = {}, .end = {}, .markers = {}};
+  Body racket{.id = BodyId{7},
+              .label = "racket",
+              .skeleton = {},
+              .parent = BodyId{1},
+              .offset = {0.1, 0, -1.0 / 3},
+              .end = {{0, 0, 0.4}},
+              .markers = {}};
+  racket.markers = {{"grip", {0, 0, 1.0 / 7}}, {"\"tip\"", {0.1, 0.2, 0.3}}};
+  take.header.bodies = {hip, racket};
+  for (std::int64_t i = 0; i < instants; ++i) {
+    Instant instant = instant_of(3 * i);
+    for (const int id : {1, 7}) {
+      if (id == 7 && i % 5 == 2) continue;
+      BodyPose pose{.body = BodyId{id}, .world_from_body = {}, .covariance = {}, .residual_m = {}, .tracked = (i + id) % 3 != 0};
+      pose.world_from_body = {geometry::rotation_from({0.01 * static_cast<double>(i), 0.3, -1.0 / id}),
+                              {1.0 / 3, static_cast<double>(i) / 7, static_cast<double>(id)}};
+      if (i % 4 != 1) pose.covariance = Matrix<6>::Identity() / static_cast<double>(i + 1);
+      if (i % 3 != 1) pose.residual_m = 1e-4 * static_cast<double>(i);
+      instant.bodies.push_back(pose);
+    }
+    take.add(instant);
+  }
+  return take;
+}
+
+TEST_F(TakeFile, BodiesComeBackAsTheyWereWritten) {
+  const Recording take = bodies_moving(2000);
+  write_recording(path_, take);
+  const Recording read = read_recording(path_);
+  EXPECT_EQ(read.header.bodies, take.header.bodies);
+  ASSERT_EQ(read.bodies().size(), 2U);
+  testing_take::expect_same(read, take);
+  TakeReader reader(path_);
+  reader.seek(3 * 777);
+  const auto instant = reader.next();
+  ASSERT_TRUE(instant);
+  ASSERT_EQ(instant->bodies.size(), 1U) << "the racket is away in every fifth instant";
+  EXPECT_EQ(instant->bodies[0].body, BodyId{1});
+  InstantsOf instants(take);
+  for (int i = 0; i < 777; ++i) instants.next();
+  testing_take::expect_same(*instant, instants.next().value());
+}
+
+TEST_F(TakeFile, BodiesThatCannotBeAreRefused) {
+  Recording take = bodies_moving(3);
+  write_recording(path_, take);
+  {
+    Database database(path_, Database::Mode::create);
+    database.run("UPDATE body SET definition = '{\"markers\":[{\"label\":1}]}' WHERE id = 7");
+  }
+  EXPECT_NE(error_of([&] { read_recording(path_); }).find("damaged"), std::string::npos);
+  Instant instant = instant_of(100);
+  BodyPose pose;
+  pose.body = BodyId{1};
+  pose.world_from_body.rotation *= 2;
+  instant.bodies.push_back(pose);
+  TakeWriter writer(folder_ / "other.marey");
+  writer.begin(take.header);
+  EXPECT_NE(error_of([&] { writer.write(instant); }).find("body 1"), std::string::npos);
+}
+
 TEST_F(TakeFile, SaysWhichEditsItCannotDoAndKeepsThem) {
   Recording take = recording_of({0});
   take.edits = {{1, {}, "note", "{}"}, {2, 1, "paint", R"({"colour":"red"})"}};

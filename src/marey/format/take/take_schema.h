@@ -36,12 +36,13 @@ constexpr const char* kTakeSchema = R"(
   CREATE TABLE seen (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at BLOB NOT NULL, x BLOB NOT NULL, y BLOB NOT NULL,
                      sigma BLOB, area BLOB, track NOT NULL);
   CREATE TABLE body (id INTEGER PRIMARY KEY, label TEXT NOT NULL, definition TEXT NOT NULL);
-  CREATE TABLE poses (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at NOT NULL, pose BLOB NOT NULL, residual BLOB);
+  CREATE TABLE poses (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at NOT NULL, pose BLOB NOT NULL, residual BLOB,
+                      covariance BLOB, tracked NOT NULL);
   CREATE TABLE edit (id INTEGER PRIMARY KEY, parent INTEGER, operation TEXT NOT NULL, payload TEXT NOT NULL);
 )";
 constexpr int kTakeTables = 10;
 
-/// The id of a row of `samples` and of `seen`: whose it is (a track, a camera), within which chunk.
+/// The id of a row of `samples`, `seen` and `poses`: whose it is (a track, a camera, a body), within which chunk.
 constexpr std::int64_t row_id(std::int64_t chunk, int whose) {
   return chunk << 32 | static_cast<std::int64_t>(whose);
 }

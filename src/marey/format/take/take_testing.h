@@ -61,6 +61,19 @@ inline void expect_same(const SeenPoint& a, const SeenPoint& b) {
   EXPECT_EQ(static_cast<float>(a.area.value_or(0)), static_cast<float>(b.area.value_or(0)));
 }
 
+inline void expect_same(const BodyPose& a, const BodyPose& b) {
+  EXPECT_EQ(a.body, b.body);
+  EXPECT_EQ(a.world_from_body.rotation, b.world_from_body.rotation);
+  EXPECT_EQ(a.world_from_body.translation, b.world_from_body.translation);
+  EXPECT_EQ(a.tracked, b.tracked);
+  ASSERT_EQ(a.covariance.has_value(), b.covariance.has_value());
+  if (a.covariance) {
+    EXPECT_TRUE(a.covariance->cast<float>() == b.covariance->cast<float>());
+  }
+  ASSERT_EQ(a.residual_m.has_value(), b.residual_m.has_value());
+  EXPECT_EQ(static_cast<float>(a.residual_m.value_or(0)), static_cast<float>(b.residual_m.value_or(0)));
+}
+
 inline void expect_same(const Instant& a, const Instant& b) {
   ASSERT_EQ(a.index, b.index);
   EXPECT_EQ(a.time, b.time);
@@ -68,6 +81,8 @@ inline void expect_same(const Instant& a, const Instant& b) {
   for (std::size_t i = 0; i < a.samples.size(); ++i) expect_same(a.samples[i], b.samples[i]);
   ASSERT_EQ(a.seen.size(), b.seen.size()) << a.index;
   for (std::size_t i = 0; i < a.seen.size(); ++i) expect_same(a.seen[i], b.seen[i]);
+  ASSERT_EQ(a.bodies.size(), b.bodies.size()) << a.index;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) expect_same(a.bodies[i], b.bodies[i]);
 }
 
 inline void expect_same(const TrackColumns& a, const TrackColumns& b) {

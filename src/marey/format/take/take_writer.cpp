@@ -15,6 +15,7 @@
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_joiner.h"
 #include "marey/format/take/chunk_rows.h"
 #include "marey/format/take/frame_names.h"
@@ -82,6 +83,7 @@ class TakeWriter::Recorder {
     if (header.rig) set("rig", rig::rig_text(*header.rig));
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
+    set_bodies(header.bodies);
     flush();
   }
 
@@ -176,6 +178,18 @@ class TakeWriter::Recorder {
     }
   }
 
+  void set_bodies(const std::vector<Body>& bodies) {
+    Statement add_body(database_, "INSERT INTO body VALUES (?, ?, ?)");
+    for (const Body& body : bodies) {
+      if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path_, number(body.id));
+      const std::string definition = body_definition(body);
+      add_body.bind(0, std::int64_t{number(body.id)});
+      add_body.bind(1, std::string_view(body.label));
+      add_body.bind(2, std::string_view(definition));
+      run(add_body);
+    }
+  }
+
   /// Refuses here what reading would refuse.
   void check(const Instant& instant) {
     if (broken_) throw Error("{}: cannot be written any more, since an earlier write failed", path_);
@@ -189,6 +203,9 @@ class TakeWriter::Recorder {
     }
     for (const SeenPoint& point : instant.seen) {
       if (const auto problem = problem_of(point)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
+    }
+    for (const BodyPose& pose : instant.bodies) {
+      if (const auto problem = problem_of(pose)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
     }
     std::sort(ids_.begin(), ids_.end());
     const auto twin = std::adjacent_find(ids_.begin(), ids_.end());

@@ -1,4 +1,4 @@
-#include "marey/reconstruct/layout.h"
+#include "marey/geometry/layout.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "marey/geometry/decompositions.h"
 
-namespace marey::reconstruct {
+namespace marey::geometry {
 namespace {
 
 constexpr double kFlattest = 0.1;        // height of the triangle over its base, at least
@@ -119,7 +119,7 @@ Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to)
   to_mean /= static_cast<double>(to.size());
   Matrix<3> moment = Matrix<3>::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) moment += (to[i] - to_mean) * (from[i] - from_mean).transpose();
-  const geometry::SingularValues3 svd = geometry::singular_values(moment);
+  const SingularValues3 svd = singular_values(moment);
   Matrix<3> keep = Matrix<3>::Identity();
   keep(2, 2) = (svd.U * svd.V.transpose()).determinant() < 0 ? -1 : 1;
   const Matrix<3> rotation = svd.U * keep * svd.V.transpose();
@@ -142,4 +142,4 @@ std::optional<LayoutMatch> match_layout(std::span<const Vector<3>> layout, std::
   return std::nullopt;
 }
 
-}  // namespace marey::reconstruct
+}  // namespace marey::geometry

@@ -1,21 +1,31 @@
-#include "marey/reconstruct/layout.h"
+#include "marey/geometry/layout.h"
 
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "marey/reconstruct/room_test.h"
-
-namespace marey::reconstruct {
+namespace marey::geometry {
 namespace {
+
+/// Seeded, in m.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double gaussian(double sigma) { return std::normal_distribution<double>(0, sigma)(engine_); }
+  Vector<3> in_room() { return {uniform(-1.5, 1.5), uniform(-1.5, 1.5), uniform(0, 2.2)}; }
+
+ private:
+  std::mt19937_64 engine_;
+};
 
 TEST(Layout, IsFoundAmongOtherPointsWithACornerHidden) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    room::Random random(seed);
+    Random random(seed);
     std::vector<Vector<3>> layout, points;
     for (int i = 0; i < 12; ++i) layout.push_back({random.uniform(0, 0.5), random.uniform(0, 0.8), random.uniform(0, 0.3)});
-    const Rigid3 truth{geometry::rotation_from({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}),
-                       random.in_room()};
+    const Rigid3 truth{rotation_from({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}), random.in_room()};
     for (int i = 0; i < 5; ++i) points.push_back(random.in_room());
     const int hidden = static_cast<int>(seed) % 12;
     for (int i = 0; i < 12; ++i) {
@@ -40,7 +50,7 @@ TEST(Layout, OfTwoWaysToLieASymmetricOneTakesTheSmallerTurn) {
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 5; ++j) grid.push_back({0.1 * i, 0.05 * j, 0});
   }
-  const Rigid3 turned{geometry::rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
+  const Rigid3 turned{rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
   std::vector<Vector<3>> points;
   for (const Vector<3>& place : grid) points.push_back(turned * place);
   const auto match = match_layout(grid, points, 0.01);
@@ -49,7 +59,7 @@ TEST(Layout, OfTwoWaysToLieASymmetricOneTakesTheSmallerTurn) {
 }
 
 TEST(Layout, NoMatchWhereThereIsNone) {
-  room::Random random(7);
+  Random random(7);
   std::vector<Vector<3>> layout, points;
   for (int i = 0; i < 10; ++i) layout.push_back(random.in_room()), points.push_back(random.in_room());
   EXPECT_FALSE(match_layout(layout, points, 0.01));
@@ -58,4 +68,4 @@ TEST(Layout, NoMatchWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace marey::reconstruct
+}  // namespace marey::geometry

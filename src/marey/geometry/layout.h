@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
+#include "marey/geometry/vector.h"
 
-namespace marey::reconstruct {
+namespace marey::geometry {
 
 struct LayoutMatch {
   Rigid3 world_from_layout;
@@ -31,4 +31,4 @@ std::optional<LayoutMatch> match_layout(std::span<const Vector<3>> layout, std::
 /// Huang, Blostein 1987).
 Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to);
 
-}  // namespace marey::reconstruct
+}  // namespace marey::geometry

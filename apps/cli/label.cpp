@@ -1,0 +1,139 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "marey/format/motion/marker_set.h"
+#include "marey/format/register.h"
+#include "marey/pipeline/labels_in_space.h"
+
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "label_list.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+struct LearnLabelsCommand {
+  std::vector<std::string> recordings;
+  std::string out, markers;
+  solve::labels::LearnOptions options;
+  bool json = false, quiet = false;
+};
+
+struct LabelCommand {
+  std::string recording, set, out;
+  solve::labels::LabelOptions options;
+  bool json = false, quiet = false;
+};
+
+void run(LearnLabelsCommand& command) {
+  if (!command.markers.empty()) {
+    command.options.labels = std::filesystem::is_regular_file(command.markers)
+                                 ? format::motion::read_marker_set(command.markers).labels
+                                 : labels_in(command.markers);
+  }
+  const LearnedMarkers learned = pipeline::learn_labels(command.recordings, command.out, command.options);
+  if (command.json) {
+    print({{"labels", learned.labels}, {"moves", learned.moves}, {"scaled", learned.scaled}, {"set", command.out}});
+  } else if (!command.quiet) {
+    fmt::print(stderr, "{} markers from {} recording{}{}\nset: {}\n", learned.size(), command.recordings.size(),
+               command.recordings.size() == 1 ? "" : "s",
+               learned.moves ? "" : "; the subject stood still: what is rigid will be learned where names are given", command.out);
+  }
+}
+
+double share_of(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& summary) {
+  fmt::print(stderr, "{:.2f} % of {} points in {} frames have names\n", share_of(summary.named, summary.points), summary.points,
+             summary.instants);
+  fmt::print(stderr, "  {:<16} {:>8} {:>6} {:>9} {:>9}\n", "marker", "seen", "gaps", "renamed", "outliers");
+  for (const auto& marker : summary.health)
+    fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, share_of(marker.seen, summary.instants),
+               marker.gaps, marker.renamed, marker.outliers);
+  if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
+  int told = 0;
+  for (const auto& piece : summary.unnamed) {
+    if (piece.best.empty() || piece.last - piece.first < 10 || told++ >= 10) continue;
+    fmt::print(stderr, "  frames {}-{} of track {} have no name: {}{}{}?\n", piece.first, piece.last, number(piece.track),
+               piece.best, piece.next.empty() ? "" : " or ", piece.next);
+  }
+  fmt::print(stderr, "{}\n", command.out);
+}
+
+Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& summary) {
+  Json json{{"frames", summary.instants}, {"points", summary.points}, {"named", summary.named},      {"renamed", summary.renamed},
+            {"scale", summary.scale},     {"recording", command.out}, {"warnings", summary.warnings}};
+  json["markers"] = Json::array();
+  for (const auto& marker : summary.health)
+    json["markers"].push_back({{"label", marker.label},
+                               {"seen", marker.seen},
+                               {"gaps", marker.gaps},
+                               {"renamed", marker.renamed},
+                               {"outliers", marker.outliers}});
+  json["unnamed"] = Json::array();
+  for (const auto& piece : summary.unnamed)
+    json["unnamed"].push_back(
+        {{"track", number(piece.track)}, {"first", piece.first}, {"last", piece.last}, {"best", piece.best}, {"next", piece.next}});
+  return json;
+}
+
+void run(const LabelCommand& command) {
+  const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::label_recording(command.recording, command.set, command.out, command.options, hooks);
+  });
+  warn(summary.warnings);
+  if (command.json) {
+    print(labelled_json(command, summary));
+  } else if (!command.quiet) {
+    print_labelled(command, summary);
+  }
+}
+
+void add_learn(Command& label) {
+  auto options = std::make_shared<LearnLabelsCommand>();
+  Command command = label.subcommand("learn", "Learn a marker set from recordings in which its markers have names");
+  command.input_files("TAKES", options->recordings, "points in space with names: " + format::names_of_read(format::Content::space))
+      .required();
+  command.output_file("-o,--output", options->out, "the set, as set.toml").required();
+  command.text("--markers", options->markers,
+               "those that belong to it, commas between, or a file with one a line (default: all with names)");
+  command.flag("--scaled", options->options.scaled,
+               "the recordings are of subjects of several sizes, and the set is for others still");
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace
+
+void add_label(Command& program) {
+  Command command = program.subcommand("label", "Name the markers of a recording by a set that was learned");
+  add_learn(command);
+  auto options = std::make_shared<LabelCommand>();
+  // None of these is required by the parser, which would ask "label learn" for them too.
+  command.input_file("RECORDING", options->recording,
+                     "points in space; names that it has count nothing: " + format::names_of_read(format::Content::space));
+  command.input_file("--set", options->set, "set.toml, by \"marey label learn\"");
+  command.output_file("-o,--output", options->out,
+                      "the recording with names: " + format::endings_of_written(format::Content::space));
+  auto& how = options->options;
+  command.number("--least-fit", how.least_fit, "nats", closed(0, 100), "what fits no name better stays without one");
+  command.number("--least-margin", how.least_margin, "nats", closed(0, 100), "by so much a name must be better than the next");
+  command.reports(options->json, options->quiet);
+  command.runs([options] {
+    if (options->recording.empty()) throw WrongUsage("RECORDING is missing; \"marey label RECORDING --set set.toml -o OUTPUT\"");
+    if (options->set.empty()) throw WrongUsage("--set is missing; \"marey label learn\" makes one");
+    if (options->out.empty()) throw WrongUsage("-o is missing; name the file to write");
+    run(*options);
+  });
+}
+
+}  // namespace marey::cli

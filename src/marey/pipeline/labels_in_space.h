@@ -1,0 +1,32 @@
+// Names for markers in space: a set is learned once from recordings in which they have names, then other recordings get them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "marey/core/hooks.h"
+#include "marey/solve/labels/label_recording.h"
+#include "marey/solve/labels/learn_markers.h"
+
+namespace marey::pipeline {
+
+/// Throws Error where a file cannot be read or written, or holds no such set.
+LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
+                            const solve::labels::LearnOptions& options);
+
+struct LabelSummary {
+  std::vector<solve::labels::MarkerHealth> health;
+  std::vector<solve::labels::Unnamed> unnamed;
+  std::int64_t instants = 0, points = 0, named = 0;  ///< points that were measured or filled; of these with a name now
+  std::int64_t renamed = 0;                          ///< stretches of tracks that had another name of the set
+  double scale = 1;
+  std::vector<std::string> warnings;
+};
+
+/// Names the markers of a recording by a set (set.toml) and writes it: a track for each name, and what has none. Whatever its
+/// tracks were called before counts nothing. Throws Error where a file cannot be read or written, or the set is not in it.
+LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
+                             const solve::labels::LabelOptions& options, const Hooks& hooks = {});
+
+}  // namespace marey::pipeline

@@ -1,0 +1,157 @@
+#include "marey/solve/bodies/body_boot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "marey/geometry/layout.h"
+
+namespace marey::solve::bodies {
+namespace {
+
+constexpr double kFlattest = 0.15;          // sine of the least angle of a triangle at its first corner
+constexpr std::size_t kMostPairs = 20'000;  // of one edge that are tried
+
+/// The points of a candidate, whichever marker each is taken for.
+std::vector<int> points_of(const BootCandidate& candidate) {
+  std::vector<int> points;
+  for (const auto& point : candidate.point_of) {
+    if (point) points.push_back(*point);
+  }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+double sine_at(const Vector<3>& corner, const Vector<3>& b, const Vector<3>& c) {
+  const Vector<3> u = b - corner, v = c - corner;
+  return u.cross(v).norm() / std::max(u.norm() * v.norm(), 1e-12);
+}
+
+}  // namespace
+
+BodyBoot::BodyBoot(std::vector<std::vector<Vector<3>>> layouts, double tolerance)
+    : layouts_(std::move(layouts)), tolerance_(tolerance) {}
+
+const std::vector<BootCandidate>& BodyBoot::find(std::span<const Vector<3>> points, std::span<const int> wanted) {
+  found_.clear();
+  if (points.size() < 3 || wanted.empty()) return found_;
+  double longest = 0;
+  for (const int body : wanted) {
+    const auto& layout = layouts_[static_cast<std::size_t>(body)];
+    for (const Vector<3>& a : layout) {
+      for (const Vector<3>& b : layout) longest = std::max(longest, (a - b).norm());
+    }
+  }
+  sort_pairs(points, longest + 2 * tolerance_);
+  for (const int body : wanted) {
+    for (const Edge& edge : rarest_edges(layouts_[static_cast<std::size_t>(body)])) {
+      const auto [first, last] = pairs_near(edge.length);
+      for (std::size_t i = first; i < std::min(last, first + kMostPairs); ++i) {
+        try_pair(points, body, edge, pairs_[i].a, pairs_[i].b);
+        try_pair(points, body, edge, pairs_[i].b, pairs_[i].a);
+      }
+    }
+  }
+  return found_;
+}
+
+void BodyBoot::sort_pairs(std::span<const Vector<3>> points, double longest) {
+  pairs_.clear();
+  for (int a = 0; a < std::ssize(points); ++a) {
+    for (int b = 0; b < a; ++b) {
+      const double square = (points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]).squaredNorm();
+      if (square < longest * longest) pairs_.push_back({std::sqrt(square), a, b});
+    }
+  }
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& one, const Pair& other) {
+    return std::tie(one.length, one.a, one.b) < std::tie(other.length, other.a, other.b);
+  });
+}
+
+std::pair<std::size_t, std::size_t> BodyBoot::pairs_near(double length) const {
+  const auto shorter = [](const Pair& pair, double limit) { return pair.length < limit; };
+  const auto first = std::lower_bound(pairs_.begin(), pairs_.end(), length - 2 * tolerance_, shorter);
+  const auto last = std::lower_bound(first, pairs_.end(), length + 2 * tolerance_, shorter);
+  return {static_cast<std::size_t>(first - pairs_.begin()), static_cast<std::size_t>(last - pairs_.begin())};
+}
+
+std::vector<BodyBoot::Edge> BodyBoot::rarest_edges(const std::vector<Vector<3>>& layout) const {
+  std::vector<Edge> edges;
+  for (int a = 0; a < std::ssize(layout); ++a) {
+    for (int b = 0; b < a; ++b) {
+      const double length = (layout[static_cast<std::size_t>(a)] - layout[static_cast<std::size_t>(b)]).norm();
+      const auto [first, last] = pairs_near(length);
+      edges.push_back({a, b, length, last - first});
+    }
+  }
+  // Of equally rare ones the longest, which fixes the pose best.
+  std::stable_sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
+    return one.count != other.count ? one.count < other.count : one.length > other.length;
+  });
+  // With that many that share no marker, one is whole while a body may still be believed.
+  const int hidden = static_cast<int>(layout.size()) - fewest_to_boot(static_cast<int>(layout.size()));
+  std::vector<Edge> chosen;
+  for (const Edge& edge : edges) {
+    const auto apart = [&](const Edge& other) {
+      return edge.a != other.a && edge.a != other.b && edge.b != other.a && edge.b != other.b;
+    };
+    if (static_cast<int>(chosen.size()) <= hidden && std::all_of(chosen.begin(), chosen.end(), apart)) chosen.push_back(edge);
+  }
+  return chosen;
+}
+
+void BodyBoot::try_pair(std::span<const Vector<3>> points, int body, const Edge& edge, int p, int q) {
+  const auto& layout = layouts_[static_cast<std::size_t>(body)];
+  const Vector<3>&a = layout[static_cast<std::size_t>(edge.a)], &b = layout[static_cast<std::size_t>(edge.b)];
+  const Vector<3>&at_p = points[static_cast<std::size_t>(p)], &at_q = points[static_cast<std::size_t>(q)];
+  int thirds = static_cast<int>(layout.size()) - fewest_to_boot(static_cast<int>(layout.size())) + 1;
+  for (int c = 0; c < std::ssize(layout) && thirds > 0; ++c) {
+    const Vector<3>& third = layout[static_cast<std::size_t>(c)];
+    if (c == edge.a || c == edge.b || sine_at(a, b, third) < kFlattest) continue;
+    --thirds;
+    const double from_a = (third - a).norm(), from_b = (third - b).norm(), most = 2 * tolerance_;
+    for (int r = 0; r < std::ssize(points); ++r) {
+      const Vector<3>& at_r = points[static_cast<std::size_t>(r)];
+      if (r == p || r == q || std::abs((at_r - at_p).norm() - from_a) > most || std::abs((at_r - at_q).norm() - from_b) > most)
+        continue;
+      confirm(points, body, geometry::rigid_fit(std::array{a, b, third}, std::array{at_p, at_q, at_r}));
+    }
+  }
+}
+
+void BodyBoot::confirm(std::span<const Vector<3>> points, int body, Rigid3 pose) {
+  const auto& layout = layouts_[static_cast<std::size_t>(body)];
+  BootCandidate candidate{body, pose, {}, 0, 0};
+  for (int round = 0; round < 2; ++round) {
+    const double limit = (round == 0 ? 2 : 1) * tolerance_;
+    candidate.point_of.assign(layout.size(), std::nullopt);
+    std::vector<Vector<3>> from, to;
+    double squares = 0;
+    for (std::size_t m = 0; m < layout.size(); ++m) {
+      const Vector<3> place = candidate.world_from_body * layout[m];
+      double nearest = limit * limit;
+      for (int r = 0; r < std::ssize(points); ++r) {
+        const double square = (points[static_cast<std::size_t>(r)] - place).squaredNorm();
+        if (square < nearest) nearest = square, candidate.point_of[m] = r;
+      }
+      if (!candidate.point_of[m]) continue;
+      from.push_back(layout[m]);
+      to.push_back(points[static_cast<std::size_t>(*candidate.point_of[m])]);
+      squares += nearest;
+    }
+    candidate.matched = static_cast<int>(from.size());
+    if (candidate.matched < fewest_to_boot(static_cast<int>(layout.size()))) return;
+    candidate.rms = std::sqrt(squares / candidate.matched);
+    candidate.world_from_body = geometry::rigid_fit(from, to);
+  }
+  const std::vector<int> mine = points_of(candidate);
+  if (std::adjacent_find(mine.begin(), mine.end()) != mine.end()) return;  // one point for two markers
+  for (BootCandidate& other : found_) {
+    if (other.body != body || points_of(other) != mine) continue;
+    if (candidate.rms < other.rms) other = candidate;
+    return;
+  }
+  found_.push_back(std::move(candidate));
+}
+
+}  // namespace marey::solve::bodies

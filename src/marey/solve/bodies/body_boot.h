@@ -1,0 +1,65 @@
+// Rigid bodies among points without names.
+//
+// The distances between all points are sorted by length. Of a body's edges those are looked for whose length is rarest there, and
+// which share no marker, so that one of them is whole though some markers are hidden. Each pair of points of that length, with a
+// third point at the right distances from both, proposes a pose, which all other markers must then confirm. A pose is a turn, never
+// a mirror image: what lies mirrored does not confirm it, unless it lies in a plane.
+// Cost: points² for the distances, and points for each pair of a right length. Reference for the rarest feature first: the pruning
+// of interpretation trees (Grimson & Lozano-Pérez 1987).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/core/geometry.h"
+#include "marey/geometry/rigid.h"
+
+namespace marey::solve::bodies {
+
+/// A body, where it may be.
+struct BootCandidate {
+  int body = 0;  ///< index into the layouts
+  Rigid3 world_from_body;
+  std::vector<std::optional<int>> point_of;  ///< by marker
+  int matched = 0;
+  double rms = 0;  ///< m
+};
+
+/// So many markers must be seen before a body of `markers` is believed to be there.
+constexpr int fewest_to_boot(int markers) {
+  return markers <= 4 ? 3 : (3 * markers + 3) / 4;
+}
+
+class BodyBoot {
+ public:
+  /// Markers by body, in the body's frame; a marker is where it should be within `tolerance` m.
+  BodyBoot(std::vector<std::vector<Vector<3>>> layouts, double tolerance);
+
+  /// Where the `wanted` bodies may be, each set of points once for a body; a point may be in several candidates.
+  const std::vector<BootCandidate>& find(std::span<const Vector<3>> points, std::span<const int> wanted);
+
+ private:
+  struct Edge {
+    int a = 0, b = 0;
+    double length = 0;
+    std::size_t count = 0;  // pairs of points of that length
+  };
+
+  void sort_pairs(std::span<const Vector<3>> points, double longest);
+  std::pair<std::size_t, std::size_t> pairs_near(double length) const;
+  std::vector<Edge> rarest_edges(const std::vector<Vector<3>>& layout) const;
+  void try_pair(std::span<const Vector<3>> points, int body, const Edge& edge, int p, int q);
+  void confirm(std::span<const Vector<3>> points, int body, Rigid3 pose);
+
+  struct Pair {
+    double length;
+    int a, b;
+  };
+  std::vector<std::vector<Vector<3>>> layouts_;
+  double tolerance_;
+  std::vector<Pair> pairs_;
+  std::vector<BootCandidate> found_;
+};
+
+}  // namespace marey::solve::bodies

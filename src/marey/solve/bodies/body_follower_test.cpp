@@ -1,0 +1,191 @@
+#include "marey/solve/bodies/body_follower.h"
+
+#include <algorithm>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/solve/bodies/moving_bodies_test.h"
+
+namespace marey::solve::bodies {
+namespace {
+
+struct Scene {
+  std::vector<Body> bodies;
+  std::vector<moving::Path> paths;
+  double sigma = 0.0002, hidden = 0.05;
+  int ghosts = 0;
+  double rate = 100;
+};
+
+/// What is seen at an instant, in no order; `visible` says of a body's marker whether it can be.
+template <typename Visible>
+std::vector<FollowedPoint> seen_at(const Scene& scene, double time, moving::Random& random, const Visible& visible) {
+  std::vector<FollowedPoint> points;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (std::size_t m = 0; m < scene.bodies[b].markers.size(); ++m) {
+      const Vector<3> noise = random.gaussian(scene.sigma);
+      if (random.chance(scene.hidden) || !visible(b, m)) continue;
+      points.push_back({scene.paths[b].at(time) * scene.bodies[b].markers[m].position + noise, {}});
+    }
+  }
+  for (int i = 0; i < scene.ghosts; ++i) points.push_back({random.in_box(1.5), {}});
+  for (std::size_t i = points.size(); i > 1; --i)
+    std::swap(points[i - 1], points[static_cast<std::size_t>(random.uniform(0, static_cast<double>(i) - 1e-9))]);
+  return points;
+}
+
+std::optional<BodyPose> pose_of(std::span<const BodyPose> poses, BodyId body) {
+  for (const BodyPose& pose : poses) {
+    if (pose.body == body) return pose;
+  }
+  return std::nullopt;
+}
+
+Scene scene_of(int bodies, int markers, moving::Random& random) {
+  Scene scene;
+  for (int b = 0; b < bodies; ++b) {
+    scene.bodies.push_back(moving::body_of(b + 1, moving::scattered(random, markers, 0.12, 0.05)));
+    scene.paths.emplace_back(random, random.in_box(1));
+  }
+  return scene;
+}
+
+TEST(BodyFollower, FindsAndFollowsBodiesWithoutNames) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    moving::Random random(seed);
+    Scene scene = scene_of(6, 5, random);
+    scene.ghosts = 20;
+    BodyFollower follower(scene.bodies);
+    int measured = 0, wrong = 0;
+    for (int i = 0; i < 300; ++i) {
+      const auto points = seen_at(scene, i / 100.0, random, [](auto, auto) { return true; });
+      const auto poses = follower.step(timestamp_from_seconds(i / 100.0), points);
+      for (const BodyPose& pose : poses) {
+        if (!pose.tracked) continue;
+        ++measured;
+        const Rigid3 truth = scene.paths[static_cast<std::size_t>(number(pose.body) - 1)].at(i / 100.0);
+        wrong += moving::degrees_between(pose.world_from_body, truth) > 3 ||
+                 (pose.world_from_body.translation - truth.translation).norm() > 0.003;
+      }
+    }
+    EXPECT_EQ(wrong, 0) << "seed " << seed;
+    EXPECT_GT(measured, 6 * 300 * 0.97) << "seed " << seed;
+    EXPECT_NEAR(follower.noise(), 0.0002, 0.00003) << "seed " << seed;
+  }
+}
+
+TEST(BodyFollower, TwoMarkersOrOnePredictAndNoneForHalfASecond) {
+  moving::Random random(8);
+  Scene scene = scene_of(1, 5, random);
+  scene.hidden = 0;
+  BodyFollower follower(scene.bodies);
+  int told = 0, inside = 0;
+  for (int i = 0; i < 400; ++i) {
+    const int phase = i % 100;
+    const std::size_t visible = phase < 60 ? 5 : i < 200 ? 2 : i < 300 ? 1 : 0;
+    const auto points = seen_at(scene, i / 100.0, random, [&](auto, std::size_t m) { return m < visible; });
+    const auto pose = pose_of(follower.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
+    ASSERT_TRUE(pose) << i;
+    EXPECT_EQ(pose->tracked, visible == 5) << i;
+    const Rigid3 truth = scene.paths[0].at(i / 100.0);
+    if (pose->tracked) continue;
+    ++told;
+    const double off = (pose->world_from_body.translation - truth.translation).norm();
+    inside += off < 3 * std::sqrt(pose->covariance->bottomRightCorner<3, 3>().trace());
+  }
+  EXPECT_EQ(told, 160);
+  EXPECT_GT(inside, 152) << "the covariance is honest";
+  for (int i = 400; i < 500; ++i) {
+    const auto poses = follower.step(timestamp_from_seconds(i / 100.0), {});
+    EXPECT_EQ(poses.empty(), i > 409) << i << ": it was hidden from 360 on, and is told for half a second";
+  }
+}
+
+TEST(BodyFollower, LabelsNameMarkersFromTheFirstInstant) {
+  moving::Random random(9);
+  Scene scene = scene_of(2, 3, random);
+  scene.bodies[1].markers = scene.bodies[0].markers;  // identical: nothing but labels tells them apart
+  BodyFollower follower(scene.bodies);
+  std::vector<FollowedPoint> points;
+  for (int b = 1; b >= 0; --b) {
+    for (int m = 0; m < 3; ++m) {
+      const auto& body = scene.bodies[static_cast<std::size_t>(b)];
+      points.push_back(
+          {scene.paths[static_cast<std::size_t>(b)].at(0) * body.markers[static_cast<std::size_t>(m)].position, {{b, m}}});
+    }
+  }
+  const auto poses = follower.step({}, points);
+  ASSERT_EQ(poses.size(), 2U);
+  for (int b = 0; b < 2; ++b)
+    EXPECT_LT((poses[static_cast<std::size_t>(b)].world_from_body.translation -
+               scene.paths[static_cast<std::size_t>(b)].at(0).translation)
+                  .norm(),
+              1e-9);
+}
+
+TEST(BodyFollower, IdenticalBodiesKeepWhoTheyAre) {
+  int swapped = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    moving::Random random(seed);
+    Scene scene;
+    const auto places = moving::scattered(random, 4, 0.06, 0.04);
+    for (int b = 0; b < 4; ++b) {
+      scene.bodies.push_back(moving::body_of(b + 1, places));
+      scene.paths.emplace_back(random, random.in_box(0.3));
+    }
+    BodyFollower follower(scene.bodies);
+    std::map<BodyId, std::size_t> is;  // which of them it found first
+    for (int i = 0; i < 600; ++i) {
+      const auto points = seen_at(scene, i / 100.0, random, [](auto, auto) { return true; });
+      for (const BodyPose& pose : follower.step(timestamp_from_seconds(i / 100.0), points)) {
+        if (!pose.tracked) continue;
+        std::size_t nearest = 0;
+        double least = 1e9;
+        for (std::size_t b = 0; b < 4; ++b) {
+          const double off = (pose.world_from_body.translation - scene.paths[b].at(i / 100.0).translation).norm();
+          if (off < least) least = off, nearest = b;
+        }
+        const auto known = is.emplace(pose.body, nearest).first;
+        swapped += least < 0.002 && known->second != nearest;
+      }
+    }
+  }
+  EXPECT_EQ(swapped, 0);
+}
+
+TEST(BodyFollower, ASymmetricBodyComesBackAsItWas) {
+  int flips = 0, gaps = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    moving::Random random(seed);
+    Scene scene;
+    scene.hidden = 0;
+    scene.bodies.push_back(moving::body_of(1, {{-0.1, 0, 0}, {0.1, 0, 0}, {0, 0, 0.2}, {0, 0, -0.15}}));
+    scene.paths.emplace_back(random, Vector<3>(0, 0, 1));
+    BodyFollower follower(scene.bodies);
+    bool turned = false;  // which of the two poses it took at first, nobody can know
+    for (int i = 0; i < 500; ++i) {
+      const bool hidden = i % 50 >= 35;
+      const auto points = seen_at(scene, i / 100.0, random, [&](auto, auto) { return !hidden; });
+      const auto pose = pose_of(follower.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
+      if (!pose || !pose->tracked) continue;
+      const bool is = moving::degrees_between(pose->world_from_body, scene.paths[0].at(i / 100.0)) > 90;
+      if (i == 0) turned = is;
+      if (i % 50 != 34) continue;  // long enough after the gap
+      ++gaps;
+      flips += is != turned;
+      turned = is;
+    }
+  }
+  EXPECT_EQ(gaps, 200);
+  EXPECT_LE(flips, 1);
+}
+
+TEST(BodyFollower, RefusesWhatHasNoPose) {
+  EXPECT_THROW(BodyFollower({moving::body_of(1, {{0, 0, 0}, {1, 0, 0}})}), Error);
+  EXPECT_THROW(BodyFollower({moving::body_of(1, {{0, 0, 0}, {0.1, 0, 0}, {0.3, 0, 0}})}), Error);
+}
+
+}  // namespace
+}  // namespace marey::solve::bodies

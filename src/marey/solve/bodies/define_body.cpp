@@ -1,0 +1,219 @@
+#include "marey/solve/bodies/define_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/ranges.h>
+
+#include "marey/core/error.h"
+#include "marey/geometry/layout.h"
+#include "marey/solve/bodies/pose_fit.h"
+
+namespace marey::solve::bodies {
+namespace {
+
+constexpr std::size_t kMostInstants = 2000;  // evenly spread
+constexpr std::size_t kFewestInstants = 3;
+constexpr int kRounds = 12;
+constexpr double kTukey = 4.685 * 1.4826;  // of the median distance
+constexpr double kLeastLoose = 0.001;      // m: what varies less is not loose, however still the others are
+
+using Places = std::vector<std::optional<Vector<3>>>;  // of one instant, by marker
+
+std::vector<const TrackColumns*> tracks_of(const Recording& recording, const std::vector<std::string>& labels) {
+  std::vector<const TrackColumns*> tracks;
+  std::vector<std::string> missing;
+  for (const std::string& label : labels) {
+    const TrackColumns* found = nullptr;
+    for (const TrackColumns& track : recording.tracks()) {
+      if (track.name.label != label || track.empty()) continue;
+      if (found != nullptr)
+        throw Error("{}: two tracks are called \"{}\"; give one of them another name", recording.header.name, label);
+      found = &track;
+    }
+    if (found == nullptr) missing.push_back(label);
+    tracks.push_back(found);
+  }
+  if (missing.empty()) return tracks;
+  std::vector<std::string> there;
+  for (const TrackColumns& track : recording.tracks()) {
+    if (!track.name.label.empty()) there.push_back(track.name.label);
+  }
+  throw Error("{}: has no marker \"{}\"; it has {}", recording.header.name, fmt::join(missing, "\", \""),
+              there.empty() ? "none with a name" : fmt::format("{}", fmt::join(there, ", ")));
+}
+
+/// Instants at which at least `fewest` of the markers are measured, evenly spread where there are many.
+std::vector<Places> instants_with(const std::vector<const TrackColumns*>& tracks, std::size_t instants, std::size_t fewest) {
+  std::vector<Places> found;
+  for (std::size_t i = 0; i < instants; ++i) {
+    Places places(tracks.size());
+    std::size_t seen = 0;
+    for (std::size_t m = 0; m < tracks.size(); ++m) {
+      const auto row = tracks[m]->row_at(static_cast<std::int32_t>(i));
+      if (!row || !tracks[m]->measured(*row)) continue;
+      places[m] = tracks[m]->position(*row);
+      ++seen;
+    }
+    if (seen >= fewest) found.push_back(std::move(places));
+  }
+  if (found.size() <= kMostInstants) return found;
+  std::vector<Places> spread;
+  for (std::size_t i = 0; i < kMostInstants; ++i) spread.push_back(std::move(found[i * found.size() / kMostInstants]));
+  return spread;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The mean shape of those markers that count, and how each varies about it.
+class MeanShape {
+ public:
+  MeanShape(const std::vector<Places>& instants, std::vector<bool> counts) : instants_(instants), counts_(std::move(counts)) {
+    const auto most =
+        std::max_element(instants_.begin(), instants_.end(), [&](const Places& a, const Places& b) { return seen(a) < seen(b); });
+    shape_ = *most;
+    for (int round = 0; round < kRounds; ++round) advance();
+  }
+
+  const Places& shape() const { return shape_; }
+  double deviation(std::size_t marker) const { return deviations_[marker]; }
+
+ private:
+  std::int64_t seen(const Places& places) const {
+    std::int64_t count = 0;
+    for (std::size_t m = 0; m < places.size(); ++m) count += places[m].has_value() && counts_[m];
+    return count;
+  }
+
+  void advance() {
+    std::vector<std::vector<Vector<3>>> brought(shape_.size());
+    for (const Places& places : instants_) {
+      std::vector<Vector<3>> from, to;
+      for (std::size_t m = 0; m < places.size(); ++m) {
+        if (places[m] && shape_[m] && counts_[m]) from.push_back(*places[m]), to.push_back(*shape_[m]);
+      }
+      if (from.size() < 3) continue;
+      const Rigid3 shape_from_world = geometry::rigid_fit(from, to);
+      for (std::size_t m = 0; m < places.size(); ++m) {
+        if (places[m]) brought[m].push_back(shape_from_world * *places[m]);
+      }
+    }
+    deviations_.assign(shape_.size(), 0);
+    for (std::size_t m = 0; m < shape_.size(); ++m) {
+      if (!brought[m].empty()) shape_[m] = robust_mean(brought[m], shape_[m].value_or(brought[m].front()), deviations_[m]);
+    }
+  }
+
+  static Vector<3> robust_mean(const std::vector<Vector<3>>& places, const Vector<3>& about, double& deviation) {
+    std::vector<double> distances;
+    double squares = 0;
+    for (const Vector<3>& place : places) {
+      distances.push_back((place - about).norm());
+      squares += distances.back() * distances.back();
+    }
+    deviation = std::sqrt(squares / (3 * static_cast<double>(places.size())));
+    const double limit = std::max(kTukey * median_of(distances), 1e-9);
+    Vector<3> sum = Vector<3>::Zero();
+    double weights = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double share = std::min(distances[i] / limit, 1.0), weight = (1 - share * share) * (1 - share * share);
+      sum += weight * places[i];
+      weights += weight;
+    }
+    return weights > 0 ? Vector<3>(sum / weights) : about;
+  }
+
+  const std::vector<Places>& instants_;
+  std::vector<bool> counts_;
+  Places shape_;
+  std::vector<double> deviations_;
+};
+
+/// The body's own frame within the frame the shape is in.
+Rigid3 shape_from_body(const DefineOptions& options, const Body& body) {
+  const auto place_of = [&](const std::string& label) {
+    for (const BodyMarker& marker : body.markers) {
+      if (marker.label == label) return marker.position;
+    }
+    throw Error("\"{}\" is none of the body's markers that are fixed to each other; pivot and axes go by those", label);
+  };
+  Rigid3 frame;
+  for (const BodyMarker& marker : body.markers) frame.translation += marker.position / static_cast<double>(body.markers.size());
+  if (options.pivot) frame.translation = place_of(*options.pivot);
+  if (!options.axes) return frame;
+  const auto& [origin, along, side] = *options.axes;
+  const Vector<3> x = (place_of(along) - place_of(origin)).normalized();
+  const Vector<3> z = x.cross(place_of(side) - place_of(origin));
+  if (!(z.norm() > 1e-3 * (place_of(side) - place_of(origin)).norm()))
+    throw Error("the markers {}, {} and {} lie in a line and give no axes; name others", origin, along, side);
+  frame.rotation << x, z.normalized().cross(x), z.normalized();
+  return frame;
+}
+
+/// The shape of the markers that are fixed to each other. The one that varies most is judged by the shape of the others, which it
+/// does not spoil: where it varies more than they do, it is left out, and the next one is judged.
+MeanShape fixed_shape(const std::vector<Places>& instants, double loose, std::vector<bool>& fixed) {
+  for (;;) {
+    MeanShape shape(instants, fixed);
+    std::size_t loosest = fixed.size();
+    for (std::size_t m = 0; m < fixed.size(); ++m) {
+      if (fixed[m] && (loosest == fixed.size() || shape.deviation(m) > shape.deviation(loosest))) loosest = m;
+    }
+    if (std::count(fixed.begin(), fixed.end(), true) <= 3) return shape;
+    std::vector<bool> others = fixed;
+    others[loosest] = false;
+    const MeanShape without(instants, others);
+    std::vector<double> deviations;
+    for (std::size_t m = 0; m < fixed.size(); ++m) {
+      if (others[m]) deviations.push_back(without.deviation(m));
+    }
+    if (without.deviation(loosest) <= std::max(kLeastLoose, loose * median_of(deviations))) return shape;
+    fixed = others;
+  }
+}
+
+}  // namespace
+
+DefinedBody define_body(const Recording& recording, const DefineOptions& options) {
+  const std::size_t count = options.markers.size();
+  if (count < 3) throw Error("a body takes three markers or more; {} {} named", count, count == 1 ? "is" : "are");
+  const auto tracks = tracks_of(recording, options.markers);
+  std::vector<Places> instants = instants_with(tracks, recording.instants().size(), count);
+  if (instants.size() < kFewestInstants) instants = instants_with(tracks, recording.instants().size(), 3);
+  if (instants.size() < kFewestInstants)
+    throw Error("{}: the markers {} are seen together in {} frames only; {} are needed", recording.header.name,
+                fmt::join(options.markers, ", "), instants.size(), kFewestInstants);
+  std::vector<bool> fixed(count, true);
+  const MeanShape shape = fixed_shape(instants, options.loose, fixed);
+  DefinedBody defined;
+  defined.instants = static_cast<int>(instants.size());
+  defined.body.id = BodyId{1};
+  defined.body.label = options.name;
+  for (std::size_t m = 0; m < count; ++m) {
+    const bool in = fixed[m] && shape.shape()[m].has_value();
+    defined.markers.push_back({options.markers[m], shape.deviation(m), !in});
+    if (in) defined.body.markers.push_back({options.markers[m], *shape.shape()[m]});
+  }
+  if (defined.body.markers.size() < 3)
+    throw Error("{}: the markers {} are not fixed to each other; fewer than three keep their distances", recording.header.name,
+                fmt::join(options.markers, ", "));
+  const Rigid3 body_from_shape = shape_from_body(options, defined.body).inverse();
+  std::vector<Vector<3>> layout;
+  for (BodyMarker& marker : defined.body.markers) layout.push_back(marker.position = body_from_shape * marker.position);
+  if (!fit_pose(layout, layout, 1e-4))
+    throw Error("{}: the markers {} lie in a line, about which a turn cannot be seen; add one away from it", recording.header.name,
+                fmt::join(options.markers, ", "));
+  defined.symmetries = symmetries(layout, options.tolerance);
+  defined.shortest_edge = (layout[0] - layout[1]).norm();
+  for (std::size_t a = 0; a < layout.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) defined.shortest_edge = std::min(defined.shortest_edge, (layout[a] - layout[b]).norm());
+  }
+  return defined;
+}
+
+}  // namespace marey::solve::bodies

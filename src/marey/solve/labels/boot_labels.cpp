@@ -1,0 +1,259 @@
+#include "marey/solve/labels/boot_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "marey/assign/no_index.h"
+
+namespace marey::solve::labels {
+namespace {
+
+using assign::kNoIndex;
+
+constexpr double kRigid = 0.02;                                // m: what varies less has a side that stays
+constexpr std::size_t kSides = 2;                              // triples by name that are asked for its side
+constexpr std::size_t kNearest = 6;                            // neighbours whose directions count
+constexpr double kDirectionTop = 0.5, kDirectionFloor = -1.5;  // log-likelihood ratio of a direction
+constexpr double kLeastDirection = 0.01;                       // m, of its deviation
+constexpr int kSweeps = 6;                                     // of exchanges
+
+/// The signed height of a point over the plane of three others, m.
+double height_over(const Vector<3>& point, const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
+  const Vector<3> normal = (b - a).cross(c - a);
+  return normal.dot(point - a) / std::max(normal.norm(), 1e-9);
+}
+
+/// On which side of three others a name's point is.
+struct Side {
+  std::array<std::size_t, 3> others{};
+  double height = 0;  // m
+};
+
+class Beam {
+ public:
+  Beam(const BootScene& scene, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options,
+       const std::optional<Matrix<3>>& learned_from_scene)
+      : scene_(scene), learned_(learned), model_(model), options_(options), turn_(learned_from_scene), sides_(model.size()) {
+    if (turn_) find_nearest();
+    std::vector<std::size_t> before;
+    for (const std::size_t name : model.order()) {
+      find_sides(name, before);
+      before.push_back(name);
+    }
+  }
+
+  BootAnswer run() {
+    std::vector<BootAnswer> answers(1);
+    answers[0].point_of.assign(model_.size(), kNoIndex);
+    std::vector<std::size_t> before;
+    for (const std::size_t name : model_.order()) {
+      extend(answers, name, before);
+      before.push_back(name);
+    }
+    BootAnswer best = answers.front();
+    exchange(best);
+    return best;
+  }
+
+ private:
+  std::size_t points() const { return scene_.places.size(); }
+
+  /// Triples of names given before it, rigid with it as far as is known, over which it stands high.
+  void find_sides(std::size_t name, const std::vector<std::size_t>& before) {
+    std::vector<std::size_t> near;
+    for (const std::size_t other : model_.partners(name)) {
+      if (near.size() < 6 && std::find(before.begin(), before.end(), other) != before.end() && !learned_.places[other].isZero(0))
+        near.push_back(other);
+    }
+    if (learned_.places[name].isZero(0)) return;
+    std::vector<Side> found;
+    for (std::size_t i = 2; i < near.size(); ++i) {
+      for (std::size_t j = 1; j < i; ++j) {
+        for (std::size_t k = 0; k < j; ++k) {
+          const auto& places = learned_.places;
+          const Vector<3> normal = (places[near[j]] - places[near[i]]).cross(places[near[k]] - places[near[i]]);
+          const double longest = std::max((places[near[j]] - places[near[i]]).norm(), (places[near[k]] - places[near[i]]).norm());
+          if (normal.norm() < 0.2 * longest * longest) continue;
+          const double height = height_over(places[name], places[near[i]], places[near[j]], places[near[k]]);
+          if (std::abs(height) > options_.height) found.push_back({{near[i], near[j], near[k]}, height});
+        }
+      }
+    }
+    const auto looseness = [&](const Side& side) {
+      double worst = 0;
+      for (const std::size_t other : side.others) worst = std::max(worst, model_.deviation(name, other));
+      return worst / std::abs(side.height);
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const Side& a, const Side& b) { return looseness(a) < looseness(b); });
+    if (found.size() > kSides) found.resize(kSides);
+    sides_[name] = std::move(found);
+  }
+
+  double side_cost(const BootAnswer& answer, std::size_t name, std::size_t point) const {
+    double cost = 0;
+    for (const Side& side : sides_[name]) {
+      std::array<std::size_t, 3> others{};
+      bool known = true;
+      for (std::size_t i = 0; i < 3 && known; ++i) {
+        const int other = answer.point_of[side.others[i]];
+        known = other != kNoIndex && scene_.between(point, static_cast<std::size_t>(other)).variance < kRigid * kRigid;
+        if (known) others[i] = static_cast<std::size_t>(other);
+      }
+      if (!known) continue;
+      const double height =
+          height_over(scene_.places[point], scene_.places[others[0]], scene_.places[others[1]], scene_.places[others[2]]);
+      if (height * side.height < 0 && std::abs(height) > options_.height / 2) cost += options_.wrong_side;
+    }
+    return cost;
+  }
+
+  void find_nearest() {
+    nearest_.resize(model_.size());
+    for (std::size_t name = 0; name < model_.size(); ++name) {
+      const Vector<3>& place = learned_.places[name];
+      if (place.isZero(0)) continue;
+      for (std::size_t other = 0; other < model_.size(); ++other) {
+        if (other != name && !learned_.places[other].isZero(0)) nearest_[name].push_back(other);
+      }
+      std::stable_sort(nearest_[name].begin(), nearest_[name].end(), [&](std::size_t a, std::size_t b) {
+        return (learned_.places[a] - place).norm() < (learned_.places[b] - place).norm();
+      });
+      if (nearest_[name].size() > kNearest) nearest_[name].resize(kNearest);
+    }
+  }
+
+  /// How well the ways from its neighbours fit the learned posture.
+  double direction_gain(const BootAnswer& answer, std::size_t name, std::size_t point) const {
+    double sum = 0;
+    for (const std::size_t other : nearest_[name]) {
+      if (answer.point_of[other] == kNoIndex) continue;
+      const Vector<3> way = learned_.places[name] - learned_.places[other];
+      const Vector<3> seen = *turn_ * (scene_.places[point] - scene_.places[static_cast<std::size_t>(answer.point_of[other])]);
+      const double deviation = options_.direction * way.norm() + kLeastDirection;
+      sum += std::max(kDirectionTop - (seen - way).squaredNorm() / (2 * deviation * deviation), kDirectionFloor);
+    }
+    return sum;
+  }
+
+  double gain(const BootAnswer& answer, std::size_t name, std::size_t point, const std::vector<std::size_t>& others) const {
+    double sum = 0;
+    for (const std::size_t other : others) {
+      const int its = answer.point_of[other];
+      if (its != kNoIndex && other != name) sum += model_.ratio(name, other, scene_.between(point, static_cast<std::size_t>(its)));
+    }
+    if (turn_) sum += direction_gain(answer, name, point);
+    return sum - side_cost(answer, name, point);
+  }
+
+  void extend(std::vector<BootAnswer>& answers, std::size_t name, const std::vector<std::size_t>& before) {
+    struct Next {
+      double score;
+      std::size_t answer;
+      int point;
+    };
+    std::vector<Next> nexts;
+    for (std::size_t a = 0; a < answers.size(); ++a) {
+      std::vector<char> taken(points(), 0);
+      for (const std::size_t other : before) {
+        if (answers[a].point_of[other] != kNoIndex) taken[static_cast<std::size_t>(answers[a].point_of[other])] = 1;
+      }
+      nexts.push_back({answers[a].score, a, kNoIndex});
+      for (std::size_t point = 0; point < points(); ++point) {
+        if (!taken[point]) nexts.push_back({answers[a].score + gain(answers[a], name, point, before), a, static_cast<int>(point)});
+      }
+    }
+    // While hardly anything is known, many answers are alike: more of them are kept.
+    const std::size_t most = static_cast<std::size_t>(options_.answers) * (before.size() < 4 ? 8 : before.size() < 8 ? 2 : 1);
+    const auto better = [](const Next& x, const Next& y) {
+      return std::tie(y.score, x.answer, x.point) < std::tie(x.score, y.answer, y.point);
+    };
+    if (nexts.size() > most) {
+      std::nth_element(nexts.begin(), nexts.begin() + static_cast<std::ptrdiff_t>(most), nexts.end(), better);
+      nexts.resize(most);
+    }
+    std::sort(nexts.begin(), nexts.end(), better);
+    std::vector<BootAnswer> extended;
+    for (const Next& next : nexts) {
+      BootAnswer answer = answers[next.answer];
+      answer.score = next.score;
+      answer.point_of[name] = next.point;
+      extended.push_back(std::move(answer));
+    }
+    answers = std::move(extended);
+  }
+
+  /// Moves single names to free points, and exchanges two, as long as that gains.
+  void exchange(BootAnswer& answer) const {
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      bool changed = false;
+      std::vector<int> name_of(points(), kNoIndex);
+      for (std::size_t name = 0; name < model_.size(); ++name) {
+        if (answer.point_of[name] != kNoIndex) name_of[static_cast<std::size_t>(answer.point_of[name])] = static_cast<int>(name);
+      }
+      for (std::size_t name = 0; name < model_.size(); ++name) {
+        for (int point = kNoIndex; point < static_cast<int>(points()); ++point) {
+          if (point == answer.point_of[name]) continue;
+          const int holder = point == kNoIndex ? kNoIndex : name_of[static_cast<std::size_t>(point)];
+          if (try_exchange(answer, name, point, holder)) {
+            changed = true;
+            std::fill(name_of.begin(), name_of.end(), kNoIndex);
+            for (std::size_t n = 0; n < model_.size(); ++n) {
+              if (answer.point_of[n] != kNoIndex) name_of[static_cast<std::size_t>(answer.point_of[n])] = static_cast<int>(n);
+            }
+          }
+        }
+      }
+      if (!changed) return;
+    }
+  }
+
+  double worth(const BootAnswer& answer, std::size_t name) const {
+    return answer.point_of[name] == kNoIndex ? 0
+                                             : gain(answer, name, static_cast<std::size_t>(answer.point_of[name]), model_.order());
+  }
+
+  bool try_exchange(BootAnswer& answer, std::size_t name, int point, int holder) const {
+    const auto both = [&] {
+      double sum = worth(answer, name);
+      if (holder == kNoIndex) return sum;
+      const auto other = static_cast<std::size_t>(holder);
+      sum += worth(answer, other);
+      if (answer.point_of[name] != kNoIndex && answer.point_of[other] != kNoIndex)  // counted twice
+        sum -= model_.ratio(
+            name, other,
+            scene_.between(static_cast<std::size_t>(answer.point_of[name]), static_cast<std::size_t>(answer.point_of[other])));
+      return sum;
+    };
+    const double before = both();
+    const int was = answer.point_of[name];
+    answer.point_of[name] = point;
+    if (holder != kNoIndex) answer.point_of[static_cast<std::size_t>(holder)] = was;
+    const double after = both();
+    if (after > before + 1e-9) {
+      answer.score += after - before;
+      return true;
+    }
+    answer.point_of[name] = was;
+    if (holder != kNoIndex) answer.point_of[static_cast<std::size_t>(holder)] = point;
+    return false;
+  }
+
+  const BootScene& scene_;
+  const LearnedMarkers& learned_;
+  const DistanceModel& model_;
+  const BootOptions& options_;
+  std::optional<Matrix<3>> turn_;
+  std::vector<std::vector<std::size_t>> nearest_;  // by name, where directions count
+  std::vector<std::vector<Side>> sides_;
+};
+
+}  // namespace
+
+BootAnswer boot_labels(const BootScene& scene, const LearnedMarkers& learned, const DistanceModel& model,
+                       const BootOptions& options, const std::optional<Matrix<3>>& learned_from_scene) {
+  return Beam(scene, learned, model, options, learned_from_scene).run();
+}
+
+}  // namespace marey::solve::labels

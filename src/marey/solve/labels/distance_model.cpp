@@ -1,0 +1,99 @@
+#include "marey/solve/labels/distance_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace marey::solve::labels {
+namespace {
+
+constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over so much
+constexpr int kOftenEnough = 40;      // instants
+constexpr std::size_t kTies = 3;      // to those before it, that say how well a label is tied
+constexpr double kStillCount = 1.5;   // times a distance's own deviation counts where nothing else is known
+
+/// log of a normal density at its mean against that of any distance.
+double top_of(double deviation) {
+  return std::log(kAnyDistance / (deviation * std::sqrt(2 * std::numbers::pi)));
+}
+
+}  // namespace
+
+DistanceModel::DistanceModel(const LearnedMarkers& learned, double scale, const DistanceOptions& options)
+    : size_(learned.size()), options_(options), moves_(learned.moves) {
+  for (const LearnedMarkers::Distance& distance : learned.distances) {
+    Term& term = terms_.emplace_back();
+    const double mean = scale * distance.mean;
+    const double spread = moves_ ? scale * distance.deviation : options_.still_spread * mean;
+    const double shift = moves_ ? options_.shift : options_.still_shift,
+                 share = (moves_ ? options_.share : options_.still_share) * mean;
+    set(term, mean, std::sqrt(spread * spread + shift * shift + share * share));
+  }
+  rank();
+}
+
+void DistanceModel::set(Term& term, double mean, double deviation) const {
+  term.mean = mean;
+  term.deviation = deviation;
+  term.top = top_of(deviation);
+  term.weight = 1 / (2 * deviation * deviation);
+}
+
+double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceSeen& seen) const {
+  const Term& term = terms_[LearnedMarkers::index_of(a, b)];
+  const double off = seen.mean - term.mean;
+  if (moves_ || term.adopted) return std::max(term.top - (off * off + seen.variance) * term.weight, options_.floor);
+  // What varies here was not rigid where it was learned either, and what does not is.
+  const double share = options_.still_share * term.mean;
+  const double variance = kStillCount * kStillCount * seen.variance + options_.still_shift * options_.still_shift + share * share;
+  // Across joints all distances change together with the posture: what they say is said many times, and counts little.
+  const double rigid = options_.still_rigid * options_.still_rigid;
+  const double weight = std::clamp(rigid / std::max(seen.variance, 1e-12), 0.05, 1.0);
+  return weight * std::max(top_of(std::sqrt(variance)) - (off * off + seen.variance) / (2 * variance), options_.floor);
+}
+
+void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceSeen& seen) {
+  Term& term = terms_[LearnedMarkers::index_of(a, b)];
+  if (seen.count < kOftenEnough) return;
+  term.adopted = true;
+  set(term, seen.mean, std::sqrt(seen.variance + options_.shift * options_.shift / 2));
+}
+
+void DistanceModel::rank() {
+  partners_.assign(size_, {});
+  for (std::size_t a = 0; a < size_; ++a) {
+    for (std::size_t b = 0; b < size_; ++b) {
+      if (b != a) partners_[a].push_back(b);
+    }
+    std::stable_sort(partners_[a].begin(), partners_[a].end(),
+                     [&](std::size_t b, std::size_t c) { return deviation(a, b) < deviation(a, c); });
+  }
+  // Begins with the label whose best ties are the tightest; then always the one best tied to those that are there.
+  const auto tightness = [&](std::size_t label, const std::vector<std::size_t>& among) {
+    std::vector<double> ties;
+    for (const std::size_t other : among) {
+      if (other != label) ties.push_back(deviation(label, other));
+    }
+    std::sort(ties.begin(), ties.end());
+    double sum = 0;
+    for (std::size_t i = 0; i < std::min(kTies, ties.size()); ++i) sum -= std::log(ties[i]);
+    return sum;
+  };
+  order_.clear();
+  std::vector<std::size_t> left;
+  for (std::size_t a = 0; a < size_; ++a) left.push_back(a);
+  while (!left.empty()) {
+    const std::vector<std::size_t>& among = order_.empty() ? left : order_;
+    std::size_t best = 0;
+    double most = -std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const double its = tightness(left[i], among);
+      if (its > most) most = its, best = i;
+    }
+    order_.push_back(left[best]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+}
+
+}  // namespace marey::solve::labels

@@ -1,0 +1,76 @@
+// How well a distance between two points fits two names: the logarithm of its likelihood under the names' distribution against that
+// under any two names', bounded below, so that one mistaken neighbour does no more harm than that.
+//
+// A distribution is normal, as wide as the distance varied where the set was learned, and wider by what differs from one recording
+// to the next: where markers sit, how skin moves. Where the set was learned from somebody who stood still, what is rigid is not
+// known from there; then it is taken from the distances themselves: what stays the same in the recording at hand is.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "marey/core/learned_markers.h"
+
+namespace marey::solve::labels {
+
+struct DistanceOptions {
+  double shift = 0.005;        ///< m: what a rigid distance is off between two recordings
+  double share = 0.008;        ///< of a distance, besides
+  double still_shift = 0.008;  ///< the same where the set was learned from one who stood still
+  double still_share = 0.02;
+  double still_spread =
+      0.15;  ///< of a distance: how much it is taken to vary there, while nothing is known of the recording at hand
+  double still_rigid = 0.012;  ///< m: what varies more in the recording at hand counts less there
+  double floor = -4;           ///< of a log-likelihood ratio
+};
+
+/// The mean and the variance of a distance over the instants at which both points are there.
+struct DistanceSeen {
+  double mean = 0, variance = 0;  ///< m, m²
+  int count = 0;
+};
+
+class DistanceModel {
+ public:
+  /// `scale`: of the subject at hand against the learned size.
+  DistanceModel(const LearnedMarkers& learned, double scale, const DistanceOptions& options = {});
+
+  std::size_t size() const { return size_; }
+  /// Of one distance, or of the mean over many.
+  double ratio(std::size_t a, std::size_t b, double distance) const {
+    const Term& term = terms_[LearnedMarkers::index_of(a, b)];
+    const double off = distance - term.mean;
+    return std::max(term.top - off * off * term.weight, options_.floor);
+  }
+  double ratio(std::size_t a, std::size_t b, const DistanceSeen& seen) const;
+  /// Standard deviation that a distance is believed to have, m.
+  double deviation(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].deviation; }
+  double mean(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].mean; }
+  /// The others by how much their distances tell, the most first.
+  const std::vector<std::size_t>& partners(std::size_t label) const { return partners_[label]; }
+  /// Labels in an order in which each is as well tied to those before it as may be.
+  const std::vector<std::size_t>& order() const { return order_; }
+
+  /// What was found in the recording at hand: replaces what was learned elsewhere, as far as it was seen often enough.
+  void adopt(std::size_t a, std::size_t b, const DistanceSeen& seen);
+  /// Only for the order in which names are asked for, where what is rigid was not learned: how much two of them vary, m.
+  void set_rank(std::size_t a, std::size_t b, double deviation) { terms_[LearnedMarkers::index_of(a, b)].deviation = deviation; }
+  /// To be called when all were adopted, or ranked.
+  void rank();
+
+ private:
+  struct Term {
+    double mean = 0, deviation = 0, top = 0, weight = 0;
+    bool adopted = false;
+  };
+  void set(Term& term, double mean, double deviation) const;
+
+  std::size_t size_;
+  DistanceOptions options_;
+  bool moves_;
+  std::vector<Term> terms_;
+  std::vector<std::vector<std::size_t>> partners_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace marey::solve::labels

@@ -1,0 +1,418 @@
+#include "marey/solve/labels/label_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "marey/assign/gated_assignment.h"
+#include "marey/assign/no_index.h"
+#include "marey/core/error.h"
+#include "marey/geometry/layout.h"
+#include "marey/solve/labels/named_chains.h"
+
+namespace marey::solve::labels {
+namespace {
+
+using assign::kNoIndex;
+
+constexpr double kBootS = 0.15;          // s: a chain that a name is looked for from nothing is at least so long
+constexpr double kFewestBooted = 0.4;    // of the set's markers, below which nothing is told
+constexpr double kOutlier = 4;           // deviations
+constexpr double kLeastOutlier = 0.012;  // m
+constexpr std::size_t kMostPointsToBoot = 160;
+
+std::pair<double, double> extent_of(std::vector<double> heights) {
+  std::sort(heights.begin(), heights.end());
+  return {heights[heights.size() / 20], heights[heights.size() - 1 - heights.size() / 20]};
+}
+
+/// The whole way of one recording.
+class Labelling {
+ public:
+  Labelling(const Recording& recording, const LearnedMarkers& learned, const LabelOptions& options, const Hooks& hooks)
+      : recording_(recording), learned_(learned), options_(options), hooks_(hooks), chains_([&] {
+          auto tracklets = tracklets_of(recording, options.tracklets);
+          const auto chain_of = chains_of(tracklets, recording.header.rate_hz, options.tracklets);
+          return NamedChains(std::move(tracklets), chain_of, recording.instants().size(), learned.size());
+        }()) {}
+
+  Labelled run() {
+    boot();
+    for (int round = 0; round < options_.rounds; ++round) {
+      hooks_.advance({.step = "naming", .done = round + 1, .total = options_.rounds + 1});
+      chains_.gather();
+      if (round > 0) {
+        cut_strangers();  // before they spoil what is learned
+        chains_.gather();
+        refine();
+      }
+      share_out();
+    }
+    chains_.gather();
+    refine();
+    judge();
+    return result();
+  }
+
+ private:
+  void boot();
+  void refine();
+  void share_out();
+  void cut_strangers();
+  void judge();
+  Labelled result();
+  std::vector<std::size_t> boot_instants() const;
+  std::vector<double> scales(std::size_t instant) const;
+  BootAnswer boot_again(const BootScene& scene, const BootAnswer& first, DistanceModel model, const Matrix<3>& turn) const;
+  std::optional<Matrix<3>> turn_to_learned(const BootScene& scene, const BootAnswer& answer) const;
+  void settle(const std::vector<std::vector<int>>& votes);
+  double margin(int chain, int name, const std::vector<NamedChains::Fits>& fits, int& next) const;
+
+  const Recording& recording_;
+  const LearnedMarkers& learned_;
+  const LabelOptions& options_;
+  const Hooks& hooks_;
+  NamedChains chains_;
+  std::unique_ptr<DistanceModel> model_;
+  double scale_ = 1;
+  struct Doubt {
+    int best = kNoIndex, next = kNoIndex;
+    double fit = 0, margin = 0;
+  };
+  std::map<int, Doubt> doubts_;            // by chain without a name
+  std::vector<std::vector<int>> bearers_;  // by name, of the last round
+};
+
+/// Instants at which long chains are many, spread over the recording.
+std::vector<std::size_t> Labelling::boot_instants() const {
+  const auto worth = [&](std::size_t instant) {
+    double sum = 0;
+    for (const auto& point : chains_.at(instant))
+      sum += std::min(chains_.chains()[static_cast<std::size_t>(point.chain)].points, 200);
+    return sum;
+  };
+  std::vector<std::size_t> best;
+  const auto parts = static_cast<std::size_t>(options_.boots);
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t begin = part * chains_.instants() / parts, end = (part + 1) * chains_.instants() / parts;
+    std::size_t its = begin;
+    double most = -1;
+    const std::size_t step = std::max<std::size_t>(1, (end - begin) / 50);
+    for (std::size_t i = begin; i < end; i += step) {
+      if (const double value = worth(i); value > most) most = value, its = i;
+    }
+    if (begin < end) best.push_back(its);
+  }
+  return best;
+}
+
+/// Sizes of the subject that come into question: by how high it reaches, against the posture it was learned in.
+std::vector<double> Labelling::scales(std::size_t instant) const {
+  if (!learned_.scaled) return {1};
+  std::vector<double> here, there;
+  for (const auto& point : chains_.at(instant)) here.push_back(point.place.z());
+  for (const Vector<3>& place : learned_.places) there.push_back(place.z());
+  if (here.size() < 4) return {1};
+  const auto [low, high] = extent_of(here);
+  const auto [learned_low, learned_high] = extent_of(there);
+  const double ratio = std::clamp((high - low) / std::max(learned_high - learned_low, 0.1), 0.5, 2.0);
+  return {ratio, 0.95 * ratio, 1.05 * ratio, 0.9 * ratio, 1.1 * ratio};
+}
+
+/// Where what was learned is a posture more than a way to move: how that lies to the subject as it was named first.
+std::optional<Matrix<3>> Labelling::turn_to_learned(const BootScene& scene, const BootAnswer& answer) const {
+  if (learned_.moves && !learned_.scaled) return std::nullopt;
+  std::vector<Vector<3>> from, to;
+  for (std::size_t name = 0; name < learned_.size(); ++name) {
+    if (answer.point_of[name] == kNoIndex || learned_.places[name].isZero(0)) continue;
+    from.push_back(scene.places[static_cast<std::size_t>(answer.point_of[name])]);
+    to.push_back(learned_.places[name]);
+  }
+  if (from.size() < 4) return std::nullopt;
+  return geometry::rigid_fit(from, to).rotation;
+}
+
+/// Once more, with what the first answer says of directions and, where that was not learned, of what is rigid.
+BootAnswer Labelling::boot_again(const BootScene& scene, const BootAnswer& first, DistanceModel model,
+                                 const Matrix<3>& turn) const {
+  for (std::size_t a = 1; a < learned_.size() && !learned_.moves; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (first.point_of[a] == kNoIndex || first.point_of[b] == kNoIndex) continue;
+      const auto& seen = scene.between(static_cast<std::size_t>(first.point_of[a]), static_cast<std::size_t>(first.point_of[b]));
+      model.set_rank(a, b, std::sqrt(seen.variance) + 0.002);
+    }
+  }
+  model.rank();
+  return boot_labels(scene, learned_, model, options_.boot, turn);
+}
+
+void Labelling::boot() {
+  const auto shortest = static_cast<std::int32_t>(std::max(4.0, kBootS * recording_.header.rate_hz));
+  double best_score = 0;
+  std::vector<int> best_chains;
+  BootAnswer best;
+  for (const std::size_t instant : boot_instants()) {
+    hooks_.advance({.step = "naming", .done = 0, .total = options_.rounds + 1});
+    BootScene scene;
+    std::vector<int> chains;
+    scene.seen = chains_.distances_at(instant, shortest, chains, scene.places);
+    if (chains.size() < 4 || chains.size() > kMostPointsToBoot) continue;
+    for (const double scale : best_score > 0 && learned_.scaled ? std::vector{scale_} : scales(instant)) {
+      const DistanceModel model(learned_, scale, options_.distances);
+      BootAnswer answer = boot_labels(scene, learned_, model, options_.boot);
+      if (const auto turn = turn_to_learned(scene, answer)) answer = boot_again(scene, answer, model, *turn);
+      if (answer.score <= best_score) continue;
+      best_score = answer.score, best = std::move(answer), best_chains = chains, scale_ = scale;
+    }
+  }
+  const auto booted = std::count_if(best.point_of.begin(), best.point_of.end(), [](int point) { return point != kNoIndex; });
+  if (static_cast<double>(booted) < kFewestBooted * static_cast<double>(learned_.size()))
+    throw Error("{}: of the {} markers of the set {} can be told by their distances; is it this subject's, and in metres?",
+                recording_.header.name, learned_.size(), booted);
+  model_ = std::make_unique<DistanceModel>(learned_, scale_, options_.distances);
+  for (std::size_t name = 0; name < learned_.size(); ++name) {
+    if (best.point_of[name] != kNoIndex)
+      chains_.set_name(best_chains[static_cast<std::size_t>(best.point_of[name])], static_cast<int>(name));
+  }
+}
+
+void Labelling::refine() {
+  const std::vector<DistanceSeen> seen = chains_.named_distances();
+  for (std::size_t a = 1; a < learned_.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) model_->adopt(a, b, seen[LearnedMarkers::index_of(a, b)]);
+  }
+  model_->rank();
+}
+
+void Labelling::share_out() {
+  const auto& all = chains_.chains();
+  std::vector<NamedChains::Fits> fits;
+  for (int chain = 0; chain < std::ssize(all); ++chain) fits.push_back(chains_.fits_of_chain(chain, *model_, options_.neighbours));
+  std::vector<std::vector<int>> votes(all.size(), std::vector<int>(learned_.size(), 0));
+  assign::GatedAssigner assigner;
+  std::vector<assign::GatedPair> pairs;
+  const std::size_t step = std::max<std::size_t>(1, chains_.instants() / 1000);
+  for (std::size_t instant = 0; instant < chains_.instants(); instant += step) {
+    const auto points = chains_.at(instant);
+    pairs.clear();
+    for (int p = 0; p < std::ssize(points); ++p) {
+      const auto& its = fits[static_cast<std::size_t>(points[static_cast<std::size_t>(p)].chain)];
+      for (int name = 0; name < std::ssize(its); ++name) {
+        if (its[static_cast<std::size_t>(name)] > options_.least_fit / 2)
+          pairs.push_back({p, name, its[static_cast<std::size_t>(name)]});
+      }
+    }
+    const std::span<const int> names = assigner.assign(static_cast<int>(points.size()), static_cast<int>(learned_.size()), pairs);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (names[p] != kNoIndex) ++votes[static_cast<std::size_t>(points[p].chain)][static_cast<std::size_t>(names[p])];
+    }
+  }
+  if (step > 1) {  // chains between the instants that vote
+    for (std::size_t chain = 0; chain < all.size(); ++chain) {
+      const auto best = std::max_element(fits[chain].begin(), fits[chain].end());
+      const bool asked = std::any_of(votes[chain].begin(), votes[chain].end(), [](int count) { return count > 0; });
+      if (!asked && all[chain].points < static_cast<std::int32_t>(step) && *best > options_.least_fit)
+        votes[chain][static_cast<std::size_t>(best - fits[chain].begin())] = 1;
+    }
+  }
+  settle(votes);
+}
+
+/// Those with most votes first; who is there at the same time as one that bears the name takes its next.
+void Labelling::settle(const std::vector<std::vector<int>>& votes) {
+  struct Claim {
+    int count, chain, name;
+  };
+  std::vector<Claim> claims;
+  for (int chain = 0; chain < std::ssize(votes); ++chain) {
+    chains_.set_name(chain, kNoIndex);
+    for (int name = 0; name < std::ssize(votes[static_cast<std::size_t>(chain)]); ++name) {
+      const int count = votes[static_cast<std::size_t>(chain)][static_cast<std::size_t>(name)];
+      if (count > 0) claims.push_back({count, chain, name});
+    }
+  }
+  std::sort(claims.begin(), claims.end(),
+            [](const Claim& a, const Claim& b) { return std::tie(b.count, a.chain, a.name) < std::tie(a.count, b.chain, b.name); });
+  bearers_.assign(learned_.size(), {});
+  for (const Claim& claim : claims) {
+    if (chains_.chains()[static_cast<std::size_t>(claim.chain)].name != kNoIndex) continue;
+    auto& its = bearers_[static_cast<std::size_t>(claim.name)];
+    if (std::any_of(its.begin(), its.end(), [&](int other) { return chains_.overlap(claim.chain, other); })) continue;
+    chains_.set_name(claim.chain, claim.name);
+    its.push_back(claim.chain);
+  }
+}
+
+/// Tracklets that fit another name much better than their chain's.
+void Labelling::cut_strangers() {
+  for (int chain = 0, count = static_cast<int>(chains_.chains().size()); chain < count; ++chain) {
+    const auto its = chains_.chains()[static_cast<std::size_t>(chain)];
+    if (its.tracklets.size() < 2 || its.name == kNoIndex) continue;
+    for (const int tracklet : its.tracklets) {
+      const auto fits = chains_.fits_of_tracklet(tracklet, *model_, options_.neighbours);
+      const double best = *std::max_element(fits.begin(), fits.end());
+      if (best > fits[static_cast<std::size_t>(its.name)] + options_.least_margin ||
+          fits[static_cast<std::size_t>(its.name)] < options_.least_fit)
+        chains_.cut_off(tracklet);
+    }
+  }
+}
+
+/// By how much a chain's name is better than any other it could bear: one that is free in its time, or one that it could exchange.
+double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fits>& fits, int& next) const {
+  const auto& own = fits[static_cast<std::size_t>(chain)];
+  double least = own[static_cast<std::size_t>(name)];
+  next = kNoIndex;
+  for (int other = 0; other < std::ssize(own); ++other) {
+    if (other == name) continue;
+    double loss = own[static_cast<std::size_t>(name)] - own[static_cast<std::size_t>(other)];
+    for (const int holder : bearers_[static_cast<std::size_t>(other)]) {
+      if (holder == chain || !chains_.overlap(chain, holder)) continue;
+      const auto& its = fits[static_cast<std::size_t>(holder)];
+      // The holder would go without a name, or take this one's.
+      loss += its[static_cast<std::size_t>(other)] - std::max(its[static_cast<std::size_t>(name)], 0.0);
+    }
+    if (loss < least) least = loss, next = other;
+  }
+  return least;
+}
+
+void Labelling::judge() {
+  std::vector<NamedChains::Fits> fits;
+  for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain)
+    fits.push_back(chains_.fits_of_chain(chain, *model_, options_.neighbours));
+  std::vector<int> dropped;
+  for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
+    const auto& its = fits[static_cast<std::size_t>(chain)];
+    const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
+    Doubt doubt;
+    if (name == kNoIndex) {
+      const auto best = std::max_element(its.begin(), its.end());
+      if (*best > 0) {
+        doubt.best = static_cast<int>(best - its.begin());
+        doubt.fit = *best;
+        doubt.margin = margin(chain, doubt.best, fits, doubt.next);
+      }
+      doubts_[chain] = doubt;
+      continue;
+    }
+    doubt.best = name;
+    doubt.fit = its[static_cast<std::size_t>(name)];
+    doubt.margin = margin(chain, name, fits, doubt.next);
+    if (doubt.fit >= options_.least_fit && doubt.margin >= options_.least_margin) continue;
+    doubts_[chain] = doubt;
+    dropped.push_back(chain);
+  }
+  for (const int chain : dropped) chains_.set_name(chain, kNoIndex);
+  chains_.gather();
+}
+
+Labelled Labelling::result() {
+  Labelled labelled;
+  labelled.scale = scale_;
+  labelled.recording = Recording(recording_.header);
+  labelled.recording.edits = recording_.edits;
+  labelled.recording.head = recording_.head;
+  for (const Recording::Moment& moment : recording_.instants()) labelled.recording.add_moment(moment);
+  std::map<std::string, int> index;
+  for (std::size_t name = 0; name < learned_.size(); ++name) index[learned_.labels[name]] = static_cast<int>(name);
+  const auto given = [&](const TrackColumns& track) {
+    std::string label = track.name.label;
+    if (!index.contains(label) && label.find(':') != std::string::npos) label = label.substr(label.find(':') + 1);
+    const auto found = index.find(label);
+    return found == index.end() ? kNoIndex : found->second;
+  };
+  std::vector<std::vector<int>> of_name(learned_.size());
+  std::map<TrackId, std::vector<int>> rest;
+  labelled.health.resize(learned_.size());
+  for (int t = 0; t < std::ssize(chains_.tracklets()); ++t) {
+    for (const auto& point : chains_.at(static_cast<std::size_t>(chains_.tracklets()[static_cast<std::size_t>(t)].first))) {
+      if (point.tracklet != t) continue;
+      const int name = chains_.chains()[static_cast<std::size_t>(point.chain)].name;
+      if (name == kNoIndex) {
+        rest[chains_.tracklets()[static_cast<std::size_t>(t)].track].push_back(t);
+      } else {
+        of_name[static_cast<std::size_t>(name)].push_back(t);
+      }
+    }
+  }
+  const auto put = [&](TrackName name, std::vector<int> tracklets) {
+    std::sort(tracklets.begin(), tracklets.end(), [&](int a, int b) {
+      return chains_.tracklets()[static_cast<std::size_t>(a)].first < chains_.tracklets()[static_cast<std::size_t>(b)].first;
+    });
+    TrackColumns track(std::move(name), recording_.dimensions());
+    for (const int t : tracklets) {
+      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
+      const TrackColumns& from = *recording_.find(its.track);
+      for (std::size_t row = its.first_row; row <= its.last_row; ++row) {
+        Sample sample = from.sample(row);
+        sample.track = track.id();
+        track.add(from.at()[row], sample);
+      }
+    }
+    labelled.recording.put(std::move(track));
+  };
+  int next_id = 1;
+  for (std::size_t name = 0; name < learned_.size(); ++name) {
+    MarkerHealth& health = labelled.health[name];
+    health.label = learned_.labels[name];
+    std::set<std::int32_t> ends;
+    for (const int t : of_name[name]) {
+      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
+      health.seen += its.length();
+      const int was = given(*recording_.find(its.track));
+      if (was == kNoIndex || was == static_cast<int>(name)) continue;
+      health.renamed += its.length();
+      ++labelled.renamed;
+    }
+    put({.id = TrackId{next_id++}, .label = learned_.labels[name], .team = {}}, of_name[name]);
+    const auto at = labelled.recording.find(TrackId{next_id - 1})->at();
+    for (std::size_t row = 1; row < at.size(); ++row) health.gaps += at[row] != at[row - 1] + 1;
+    for (std::size_t row = 0; row < at.size(); ++row) {
+      const auto instant = static_cast<std::size_t>(at[row]);
+      std::vector<double> off;
+      for (const std::size_t other : model_->partners(name)) {
+        if (chains_.holder(instant, other).chain == kNoIndex) continue;
+        const double distance = (chains_.holder(instant, name).place - chains_.holder(instant, other).place).norm();
+        off.push_back(std::abs(distance - model_->mean(name, other)) /
+                      std::max(model_->deviation(name, other), kLeastOutlier / kOutlier));
+        if (off.size() == 5) break;
+      }
+      if (off.size() < 3) continue;
+      std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
+      health.outliers += off[off.size() / 2] > kOutlier;
+    }
+  }
+  for (auto& [track, tracklets] : rest) {
+    const TrackId id{next_id++};
+    for (const int t : tracklets) {
+      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
+      int chain = kNoIndex;
+      for (const auto& point : chains_.at(static_cast<std::size_t>(its.first))) {
+        if (point.tracklet == t) chain = point.chain;
+      }
+      const Doubt& doubt = doubts_[chain];
+      const auto word = [&](int name) {
+        return name == kNoIndex ? std::string() : learned_.labels[static_cast<std::size_t>(name)];
+      };
+      labelled.unnamed.push_back({id, its.first, its.last, word(doubt.best), word(doubt.next), doubt.fit, doubt.margin});
+    }
+    put({.id = id, .label = {}, .team = {}}, tracklets);
+  }
+  return labelled;
+}
+
+}  // namespace
+
+Labelled label_recording(const Recording& recording, const LearnedMarkers& learned, const LabelOptions& options,
+                         const Hooks& hooks) {
+  if (recording.header.frame.kind != FrameOfReference::Kind::space)
+    throw Error("{}: names are found for points in space, and these positions are {}", recording.header.name,
+                to_string(recording.header.frame));
+  if (recording.instants().empty()) throw Error("{}: holds no frame", recording.header.name);
+  return Labelling(recording, learned, options, hooks).run();
+}
+
+}  // namespace marey::solve::labels

@@ -1,0 +1,206 @@
+#include "marey/solve/labels/label_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/filter/random_stream.h"
+#include "marey/geometry/rigid.h"
+#include "marey/solve/labels/learn_markers.h"
+
+namespace marey::solve::labels {
+namespace {
+
+double between(filter::RandomStream& random, double low, double high) {
+  return low + (high - low) * random.uniform();
+}
+
+/// A figure of four stiff segments of five markers each that swing about each other, and walks round.
+class Figure {
+ public:
+  explicit Figure(std::uint64_t seed) {
+    filter::RandomStream random(seed);
+    for (int marker = 0; marker < 20; ++marker) {
+      const double half = marker < 5 ? 0.18 : 0.1;
+      for (;;) {
+        const Vector<3> place(between(random, -half, half), between(random, -half, half), between(random, -half, half));
+        bool apart = true;
+        for (int other = marker / 5 * 5; other < marker; ++other) apart &= (places_[other] - place).norm() > 0.05;
+        places_[marker] = place;
+        if (apart) break;
+      }
+    }
+  }
+  Vector<3> at(int marker, double time, double swing = 1) const {
+    const int segment = marker / 5;
+    const Rigid3 trunk{geometry::rotation_from({0, 0, 0.5 * time}), {0.5 * std::cos(time), 0.5 * std::sin(time), 1}};
+    if (segment == 0) return trunk * places_[marker];
+    const double angle = swing * 0.6 * std::sin(5 * time + segment);
+    const Rigid3 limb{geometry::rotation_from({angle, 0.3 * angle, 0}), {0.3 * (segment - 2), 0.1 * segment, -0.4}};
+    return trunk * (limb * (places_[marker] - Vector<3>(0, 0, 0.3)));
+  }
+
+ private:
+  Vector<3> places_[20];
+};
+
+std::string label_of(int marker) {
+  return "m" + std::to_string(marker);
+}
+
+Recording labelled_recording(const Figure& figure, double from, int instants, double swing = 1) {
+  Recording recording;
+  recording.header.name = "figure";
+  recording.header.rate_hz = 100;
+  for (int i = 0; i < instants; ++i) {
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(i / 100.0);
+    for (int m = 0; m < 20; ++m) {
+      Sample sample;
+      sample.track = TrackId{m + 1};
+      sample.position = figure.at(m, from + i / 100.0, swing);
+      instant.samples.push_back(sample);
+    }
+    recording.add(instant);
+  }
+  for (int m = 0; m < 20; ++m) recording.set_name({.id = TrackId{m + 1}, .label = label_of(m), .team = {}});
+  return recording;
+}
+
+/// Without names, 5 % hidden, tracks broken there, ghosts; and whose each track is.
+struct Stripped {
+  Recording recording;
+  std::map<std::pair<std::int32_t, double>, std::string> truth;  // by instant and x
+};
+
+Stripped strip(const Recording& recording, std::uint64_t seed) {
+  filter::RandomStream random(seed);
+  Stripped stripped;
+  stripped.recording = Recording(recording.header);
+  for (const auto& moment : recording.instants()) stripped.recording.add_moment(moment);
+  int id = 1;
+  for (const TrackColumns& track : recording.tracks()) {
+    TrackColumns piece({.id = TrackId{id}, .label = {}, .team = {}}, 3);
+    int hidden = 0;
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      if (hidden == 0 && random.uniform() < 0.005) hidden = static_cast<int>(between(random, 1, 20));
+      if (hidden > 0) {
+        --hidden;
+        if (!piece.empty())
+          stripped.recording.put(std::exchange(piece, TrackColumns({.id = TrackId{++id}, .label = {}, .team = {}}, 3)));
+        continue;
+      }
+      Sample sample = track.sample(row);
+      sample.track = TrackId{id};
+      piece.add(track.at()[row], sample);
+      stripped.truth[{track.at()[row], sample.position.x()}] = track.name.label;
+    }
+    if (!piece.empty()) stripped.recording.put(std::move(piece));
+    ++id;
+  }
+  for (int ghost = 0; ghost < 60; ++ghost, ++id) {
+    TrackColumns track({.id = TrackId{id}, .label = {}, .team = {}}, 3);
+    const Vector<3> place(between(random, -1, 1), between(random, -1, 1), between(random, 0, 2));
+    const auto first = static_cast<std::int32_t>(between(random, 0, static_cast<double>(recording.instants().size()) - 8));
+    for (std::int32_t i = 0; i < 5; ++i) {
+      Sample sample;
+      sample.track = TrackId{id};
+      sample.position = place;
+      track.add(first + i, sample);
+    }
+    stripped.recording.put(std::move(track));
+  }
+  return stripped;
+}
+
+struct Score {
+  int right = 0, wrong = 0, unnamed = 0;
+};
+
+Score score_of(const Labelled& labelled, const Stripped& stripped) {
+  Score score;
+  for (const TrackColumns& track : labelled.recording.tracks()) {
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      const auto found = stripped.truth.find({track.at()[row], track.position(row).x()});
+      const std::string truth = found == stripped.truth.end() ? "" : found->second;
+      if (track.name.label.empty()) {
+        score.unnamed += !truth.empty();
+      } else {
+        ++(track.name.label == truth ? score.right : score.wrong);
+      }
+    }
+  }
+  return score;
+}
+
+TEST(LabelRecording, NamesWhatALabelledTakeOfTheSubjectTaught) {
+  const Figure figure(1);
+  const std::vector<Recording> taught{labelled_recording(figure, 20, 300)};
+  const LearnedMarkers learned = learn_markers(taught, {});
+  EXPECT_TRUE(learned.moves);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const Stripped stripped = strip(labelled_recording(figure, 3, 250), seed);
+    const Labelled labelled = label_recording(stripped.recording, learned);
+    const Score score = score_of(labelled, stripped);
+    EXPECT_GT(score.right, 0.99 * static_cast<double>(stripped.truth.size())) << "seed " << seed;
+    EXPECT_LT(score.wrong, 0.003 * static_cast<double>(stripped.truth.size())) << "seed " << seed;
+    EXPECT_EQ(labelled.recording.instants().size(), stripped.recording.instants().size());
+  }
+}
+
+TEST(LabelRecording, PutsExchangedNamesRight) {
+  const Figure figure(1);
+  const std::vector<Recording> taught{labelled_recording(figure, 20, 300)};
+  Recording exchanged = labelled_recording(figure, 5, 300);
+  Recording wrong(exchanged.header);
+  InstantsOf instants(exchanged);
+  for (auto instant = instants.next(); instant; instant = instants.next()) {
+    if (instant->index >= 120) {  // from here on 3 and 11 bear each other's names
+      for (Sample& sample : instant->samples) {
+        if (sample.track == TrackId{4})
+          sample.track = TrackId{12};
+        else if (sample.track == TrackId{12})
+          sample.track = TrackId{4};
+      }
+      std::sort(instant->samples.begin(), instant->samples.end(),
+                [](const Sample& a, const Sample& b) { return a.track < b.track; });
+    }
+    wrong.add(*instant);
+  }
+  const Labelled labelled = label_recording(wrong, learn_markers(taught, {}));
+  for (int m = 0; m < 20; ++m) {
+    const TrackColumns* track = labelled.recording.find(TrackId{m + 1});
+    ASSERT_EQ(track->size(), 300U) << m;
+    for (std::size_t row = 0; row < 300; ++row)
+      ASSERT_NEAR((track->position(row) - figure.at(m, 5 + static_cast<double>(row) / 100)).norm(), 0, 1e-9) << m << " at " << row;
+    EXPECT_EQ(labelled.health[static_cast<std::size_t>(m)].renamed, m == 3 || m == 11 ? 180 : 0);
+  }
+  EXPECT_EQ(labelled.renamed, 2);
+}
+
+TEST(LabelRecording, WhoStoodStillTeachesEnough) {
+  const Figure figure(3);
+  const std::vector<Recording> taught{labelled_recording(figure, 20, 300)};
+  Recording still = labelled_recording(figure, 1, 100, 0);
+  const std::vector<Recording> stood{still};
+  EXPECT_FALSE(learn_markers(stood, {}).moves) << "one who stands still does not tell what is rigid";
+  const Stripped stripped = strip(labelled_recording(figure, 3, 250), 4);
+  const Score score = score_of(label_recording(stripped.recording, learn_markers(stood, {})), stripped);
+  EXPECT_GT(score.right, 0.98 * static_cast<double>(stripped.truth.size()));
+}
+
+TEST(LabelRecording, RefusesWhatIsAnotherSet) {
+  const std::vector<Recording> taught{labelled_recording(Figure(1), 20, 200)};
+  const LearnedMarkers learned = learn_markers(taught, {});
+  EXPECT_THROW(label_recording(Recording(taught[0].header), learned), Error);
+  EXPECT_THROW(learn_markers(taught, {.labels = {"m1", "m2", "m3", "x"}}), Error);
+}
+
+}  // namespace
+}  // namespace marey::solve::labels

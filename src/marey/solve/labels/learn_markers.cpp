@@ -1,0 +1,190 @@
+#include "marey/solve/labels/learn_markers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/ranges.h>
+
+#include "marey/core/error.h"
+
+namespace marey::solve::labels {
+namespace {
+
+constexpr std::size_t kMostInstants = 1500;  // of a recording, evenly spread
+constexpr double kStill = 0.010;             // m: distances that vary by less
+constexpr double kStillShare = 0.6;          // of all: with more the subject stood still
+constexpr double kUnknownDeviation = 0.25;   // m: of two markers that were never seen together
+
+std::string without_prefix(const std::string& label, const std::string& prefix) {
+  return label.starts_with(prefix) ? label.substr(prefix.size()) : label;
+}
+
+/// "Anna:" where all labels begin so.
+std::string common_prefix(const Recording& recording) {
+  std::optional<std::string> prefix;
+  for (const TrackColumns& track : recording.tracks()) {
+    if (track.name.label.empty()) continue;
+    const std::size_t colon = track.name.label.find(':');
+    const std::string its = colon == std::string::npos ? "" : track.name.label.substr(0, colon + 1);
+    if (prefix && *prefix != its) return {};
+    prefix = its;
+  }
+  return prefix.value_or("");
+}
+
+std::map<std::string, const TrackColumns*> labelled_tracks(const Recording& recording) {
+  const std::string prefix = common_prefix(recording);
+  std::map<std::string, const TrackColumns*> tracks;
+  for (const TrackColumns& track : recording.tracks()) {
+    if (track.name.label.empty() || track.empty()) continue;
+    if (!tracks.emplace(without_prefix(track.name.label, prefix), &track).second)
+      throw Error("{}: two tracks are called \"{}\"; give one of them another name", recording.header.name, track.name.label);
+  }
+  return tracks;
+}
+
+/// Sums of the distances of each two markers over one recording.
+struct DistanceSums {
+  std::vector<double> sum, squares;
+  std::vector<int> count;
+
+  explicit DistanceSums(std::size_t pairs) : sum(pairs), squares(pairs), count(pairs) {}
+  double mean(std::size_t pair) const { return sum[pair] / count[pair]; }
+  double variance(std::size_t pair) const { return std::max(squares[pair] / count[pair] - mean(pair) * mean(pair), 0.0); }
+};
+
+using Posture = std::vector<std::optional<Vector<3>>>;
+
+Posture posture_at(const std::vector<const TrackColumns*>& tracks, std::size_t instant) {
+  Posture places(tracks.size());
+  for (std::size_t m = 0; m < tracks.size(); ++m) {
+    if (tracks[m] == nullptr) continue;
+    const auto row = tracks[m]->row_at(static_cast<std::int32_t>(instant));
+    if (row && (tracks[m]->provenance()[*row] == Provenance::measured || tracks[m]->provenance()[*row] == Provenance::filled))
+      places[m] = tracks[m]->position(*row);
+  }
+  return places;
+}
+
+DistanceSums sums_of(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
+  DistanceSums sums(tracks.size() * (tracks.size() - 1) / 2);
+  const std::size_t step = std::max<std::size_t>(1, instants / kMostInstants);
+  for (std::size_t i = 0; i < instants; i += step) {
+    const Posture places = posture_at(tracks, i);
+    for (std::size_t a = 1; a < places.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (!places[a] || !places[b]) continue;
+        const double distance = (*places[a] - *places[b]).norm();
+        const std::size_t pair = LearnedMarkers::index_of(a, b);
+        sums.sum[pair] += distance;
+        sums.squares[pair] += distance * distance;
+        ++sums.count[pair];
+      }
+    }
+  }
+  return sums;
+}
+
+/// By how much the distances of one recording are larger than those of the first, all pairs together: in least squares.
+double size_against(const DistanceSums& sums, const DistanceSums& first) {
+  double product = 0, square = 0;
+  for (std::size_t pair = 0; pair < sums.sum.size(); ++pair) {
+    if (sums.count[pair] == 0 || first.count[pair] == 0) continue;
+    product += sums.mean(pair) * first.mean(pair);
+    square += first.mean(pair) * first.mean(pair);
+  }
+  return square > 0 ? product / square : 1;
+}
+
+std::vector<std::string> labels_of(std::span<const Recording> recordings, const LearnOptions& options) {
+  if (!options.labels.empty()) return options.labels;
+  std::vector<std::string> labels;
+  for (const Recording& recording : recordings) {
+    for (const auto& [label, track] : labelled_tracks(recording)) {
+      if (std::find(labels.begin(), labels.end(), label) == labels.end()) labels.push_back(label);
+    }
+  }
+  return labels;
+}
+
+void require_all(const std::vector<std::vector<const TrackColumns*>>& tracks, const std::vector<std::string>& labels,
+                 const std::string& name) {
+  std::vector<std::string> missing;
+  for (std::size_t m = 0; m < labels.size(); ++m) {
+    if (std::all_of(tracks.begin(), tracks.end(), [&](const auto& of) { return of[m] == nullptr; })) missing.push_back(labels[m]);
+  }
+  if (!missing.empty())
+    throw Error("{}: has no marker {}; leave it out of the set, or learn from a recording that has it", name,
+                fmt::join(missing, ", "));
+  if (labels.size() < 4) throw Error("{}: {} markers with names; a set takes four or more", name, labels.size());
+}
+
+/// The instant at which most are seen, as a posture; who is hidden then is where the nearest of its distances put it, no matter.
+std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
+  Posture best(tracks.size());
+  std::ptrdiff_t most = -1;
+  for (std::size_t i = 0; i < instants; ++i) {
+    Posture places = posture_at(tracks, i);
+    const auto seen = std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); });
+    if (seen > most) most = seen, best = std::move(places);
+  }
+  std::vector<Vector<3>> places;
+  Vector<3> mean = Vector<3>::Zero();
+  for (const auto& place : best) {
+    if (place) mean += *place / static_cast<double>(std::max<std::ptrdiff_t>(most, 1));
+  }
+  for (const auto& place : best) places.push_back(place ? Vector<3>(*place - mean) : Vector<3>::Zero());
+  return places;
+}
+
+}  // namespace
+
+LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options) {
+  LearnedMarkers learned;
+  learned.labels = labels_of(recordings, options);
+  learned.scaled = options.scaled;
+  std::vector<std::vector<const TrackColumns*>> tracks;
+  std::vector<DistanceSums> sums;
+  for (const Recording& recording : recordings) {
+    const auto named = labelled_tracks(recording);
+    auto& of = tracks.emplace_back();
+    for (const std::string& label : learned.labels) {
+      const auto found = named.find(label);
+      of.push_back(found == named.end() ? nullptr : found->second);
+    }
+  }
+  require_all(tracks, learned.labels, recordings.size() == 1 ? recordings[0].header.name : "the recordings");
+  for (std::size_t r = 0; r < recordings.size(); ++r) sums.push_back(sums_of(tracks[r], recordings[r].instants().size()));
+  std::vector<double> size(sums.size(), 1.0);
+  double mean_size = 0;
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    if (options.scaled) size[r] = size_against(sums[r], sums[0]);
+    mean_size += size[r] / static_cast<double>(sums.size());
+  }
+  std::size_t still = 0, known = 0;
+  for (std::size_t pair = 0; pair < sums[0].sum.size(); ++pair) {
+    double mean = 0, square = 0, within = 0;
+    int takes = 0;
+    for (std::size_t r = 0; r < sums.size(); ++r) {
+      if (sums[r].count[pair] == 0) continue;
+      const double scale = mean_size / size[r], its = scale * sums[r].mean(pair), varies = scale * scale * sums[r].variance(pair);
+      mean += its, square += its * its + varies, within += varies, ++takes;
+    }
+    if (takes == 0) {
+      learned.distances.push_back({0.5, kUnknownDeviation});
+      continue;
+    }
+    mean /= takes;
+    learned.distances.push_back({mean, std::sqrt(std::max(square / takes - mean * mean, 0.0))});
+    ++known;
+    still += std::sqrt(within / takes) < kStill;
+  }
+  learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
+  learned.places = fullest_posture(tracks[0], recordings[0].instants().size());
+  for (Vector<3>& place : learned.places) place *= mean_size / size[0];
+  return learned;
+}
+
+}  // namespace marey::solve::labels

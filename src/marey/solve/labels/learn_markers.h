@@ -1,0 +1,22 @@
+// A marker set out of recordings in which its markers bear their names.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "marey/core/learned_markers.h"
+#include "marey/core/recording.h"
+
+namespace marey::solve::labels {
+
+struct LearnOptions {
+  std::vector<std::string> labels;  ///< those that belong to the set; none: all that have names
+  bool scaled = false;              ///< the recordings are of subjects of several sizes: each is brought to their mean size first
+};
+
+/// All recordings count alike, however long. A prefix "SUBJECT:" that all labels of a recording share is left out. Throws Error
+/// where a label is missing in all of them, two tracks of a recording bear one, or fewer than four markers are there.
+LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options);
+
+}  // namespace marey::solve::labels

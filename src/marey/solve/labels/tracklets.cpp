@@ -1,0 +1,149 @@
+#include "marey/solve/labels/tracklets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "marey/assign/disjoint_sets.h"
+
+namespace marey::solve::labels {
+namespace {
+
+constexpr std::int32_t kFit = 4;          // instants from which a velocity is taken at an end
+constexpr double kTied = 0.012;           // m: what two ends may be off in the middle of their gap, and by so much more
+constexpr double kTiedAcceleration = 60;  // m/s² the longer it is
+constexpr double kClearer = 2.5;          // times as far off the next best must be
+
+bool counts(Provenance provenance) {
+  return provenance == Provenance::measured || provenance == Provenance::filled;
+}
+
+/// Whether a path breaks between two rows that follow each other: what comes before and what comes after do not lead there.
+bool jumps_between(const TrackColumns& track, std::size_t row, std::size_t first, std::size_t end, double limit) {
+  const Vector<3> step = track.position(row + 1) - track.position(row);
+  const bool has_before = row > first, has_after = row + 2 < end;
+  if (!has_before && !has_after) return step.norm() > 3 * limit;
+  double off = 1e9;
+  if (has_before) off = std::min(off, (step - (track.position(row) - track.position(row - 1))).norm());
+  if (has_after) off = std::min(off, (step - (track.position(row + 2) - track.position(row + 1))).norm());
+  return off > limit;
+}
+
+void cut(const TrackColumns& track, std::size_t begin, std::size_t end, double limit, std::vector<Tracklet>& tracklets) {
+  std::size_t first = begin;
+  bool jumped = false;
+  for (std::size_t row = begin; row < end; ++row) {
+    const bool last = row + 1 == end;
+    if (!last && !jumps_between(track, row, first, end, limit)) continue;
+    Tracklet tracklet{.track = track.id(),
+                      .first_row = first,
+                      .last_row = row,
+                      .first = track.at()[first],
+                      .last = track.at()[row],
+                      .places = {},
+                      .after_jump = jumped};
+    for (std::size_t i = first; i <= row; ++i) tracklet.places.push_back(track.position(i));
+    tracklets.push_back(std::move(tracklet));
+    first = row + 1;
+    jumped = true;
+  }
+}
+
+/// Where a tracklet's end, or its beginning, leads: place and velocity an instant.
+struct Lead {
+  Vector<3> place = Vector<3>::Zero(), velocity = Vector<3>::Zero();
+  bool moving = false;  // its velocity is known
+};
+
+Lead lead_of(const Tracklet& tracklet, bool end) {
+  const auto& places = tracklet.places;
+  const std::int32_t span = std::min(kFit, tracklet.length()) - 1;
+  Lead lead;
+  lead.place = end ? places.back() : places.front();
+  lead.moving = span > 0;
+  if (!lead.moving) return lead;
+  const Vector<3>& other =
+      end ? places[places.size() - 1 - static_cast<std::size_t>(span)] : places[static_cast<std::size_t>(span)];
+  lead.velocity = (end ? lead.place - other : other - lead.place) / span;
+  return lead;
+}
+
+/// How far two ends are from going on in each other.
+double off_between(const Lead& end, const Lead& begin, double gap) {
+  const Vector<3> velocity = end.moving && begin.moving ? Vector<3>((end.velocity + begin.velocity) / 2)
+                             : end.moving               ? end.velocity
+                                                        : begin.velocity;
+  return (end.place + gap * velocity - begin.place).norm();
+}
+
+}  // namespace
+
+std::vector<Tracklet> tracklets_of(const Recording& recording, const TrackletOptions& options) {
+  std::vector<Tracklet> tracklets;
+  const double rate = recording.header.rate_hz;
+  const double limit = std::max(options.jump, options.acceleration / (rate * rate));
+  for (const TrackColumns& track : recording.tracks()) {
+    std::size_t begin = 0;
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      if (!counts(track.provenance()[row])) {
+        cut(track, begin, row, limit, tracklets);
+        begin = row + 1;
+      } else if (row + 1 == track.size() || track.at()[row + 1] != track.at()[row] + 1) {
+        cut(track, begin, row + 1, limit, tracklets);
+        begin = row + 1;
+      }
+    }
+  }
+  std::sort(tracklets.begin(), tracklets.end(),
+            [](const Tracklet& a, const Tracklet& b) { return std::tie(a.first, a.track) < std::tie(b.first, b.track); });
+  return tracklets;
+}
+
+std::vector<int> chains_of(const std::vector<Tracklet>& tracklets, double rate_hz, const TrackletOptions& options) {
+  struct Best {
+    int tracklet = -1;
+    double off = std::numeric_limits<double>::max(), next = std::numeric_limits<double>::max();
+    void offer(int candidate, double its) {
+      if (its < off) {
+        next = off, off = its, tracklet = candidate;
+      } else {
+        next = std::min(next, its);
+      }
+    }
+  };
+  const auto longest = static_cast<std::int32_t>(std::max(1.0, std::round(options.longest_tied * rate_hz)));
+  std::map<std::int32_t, std::vector<int>> ends;
+  for (int t = 0; t < std::ssize(tracklets); ++t) ends[tracklets[static_cast<std::size_t>(t)].last].push_back(t);
+  std::vector<Best> before(tracklets.size()), after(tracklets.size());
+  const auto limit_of = [&](double gap) { return kTied + kTiedAcceleration * (gap / rate_hz) * (gap / rate_hz) / 2; };
+  for (int t = 0; t < std::ssize(tracklets); ++t) {
+    const Tracklet& later = tracklets[static_cast<std::size_t>(t)];
+    const Lead begin = lead_of(later, false);
+    for (auto end = ends.lower_bound(later.first - longest); end != ends.end() && end->first < later.first; ++end) {
+      const double gap = later.first - end->first;
+      for (const int e : end->second) {
+        const double off = off_between(lead_of(tracklets[static_cast<std::size_t>(e)], true), begin, gap) / limit_of(gap);
+        if (off > kClearer) continue;
+        before[static_cast<std::size_t>(t)].offer(e, off);
+        after[static_cast<std::size_t>(e)].offer(t, off);
+      }
+    }
+  }
+  std::vector<int> chain(tracklets.size());
+  std::vector<int> previous(tracklets.size(), -1);
+  for (int t = 0; t < std::ssize(tracklets); ++t) {
+    const Best& best = before[static_cast<std::size_t>(t)];
+    if (best.tracklet < 0 || best.off > 1) continue;
+    const Best& back = after[static_cast<std::size_t>(best.tracklet)];
+    const double clear = std::max(kClearer * best.off, 0.4);
+    if (back.tracklet == t && best.next > clear && back.next > clear) previous[static_cast<std::size_t>(t)] = best.tracklet;
+  }
+  int chains = 0;
+  for (std::size_t t = 0; t < tracklets.size(); ++t)
+    chain[t] = previous[t] < 0 ? chains++ : chain[static_cast<std::size_t>(previous[t])];
+  return chain;
+}
+
+}  // namespace marey::solve::labels

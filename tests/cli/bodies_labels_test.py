@@ -1,0 +1,88 @@
+"""docs/bodies.md and docs/labels.md, each command run as it is written there; what comes out against the simulation's truth; what cannot be.
+
+Usage: bodies_labels_test.py MAREY ROOT [unittest options]
+"""
+
+import csv
+import json
+import pathlib
+import re
+import shlex
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+ROOT = pathlib.Path()
+
+
+def commands(page):
+    """The lines of the page's blocks that call the program, in order."""
+    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.M | re.S)
+    return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
+
+
+class BodiesAndLabels(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_bodies_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def marey(self, *arguments, code=0):
+        done = subprocess.run([MAREY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=600)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def rows(self, name):
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def run_page(self, name):
+        lines = commands(ROOT / "docs" / name)
+        self.assertGreaterEqual(len(lines), 4)
+        for line in lines:
+            self.marey(*shlex.split(line)[1:])
+
+    def test_bodies_as_the_page_says(self):
+        self.run_page("bodies.md")
+        database = sqlite3.connect(self.folder / "bodies.marey")
+        labels = [label for (label,) in database.execute("SELECT label FROM body ORDER BY id")]
+        self.assertEqual(labels, ["head", "chest"])
+        for body in (1, 2):
+            (count,) = database.execute("SELECT sum(rows) FROM poses WHERE id & 0xffffffff = ?", [body]).fetchone()
+            self.assertGreater(count, 0.9 * 600, labels[body - 1])
+
+    def test_labels_as_the_page_says(self):
+        self.run_page("labels.md")
+        self.marey("convert", "named.marey", "named.csv")
+        truth = {(row["frame"], row["label"]): [float(row[axis]) for axis in "xyz"] for row in self.rows("walk/truth.csv")}
+        right = wrong = 0
+        for row in self.rows("named.csv"):
+            if not row["label"]:
+                continue
+            true = truth[row["frame"], row["label"]]
+            near = sum((float(row[axis]) - at) ** 2 for axis, at in zip("xyz", true)) < 0.02 ** 2
+            right, wrong = right + near, wrong + (not near)
+        self.assertGreater(right, 0.95 * len(truth))
+        self.assertLess(wrong, 0.01 * len(truth))
+
+    def test_what_cannot_be_is_said(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", "40", "--frames", "60", "-o", "walk", "-q")
+        two = self.marey("body", "define", "walk/truth.csv", "--markers", "head1,head2", "-o", "b.toml", code=2)
+        self.assertIn("three markers", two.stderr)
+        missing = self.marey("body", "define", "walk/truth.csv", "--markers", "head1,head2,nose", "-o", "b.toml", code=1)
+        self.assertIn('no marker "nose"', missing.stderr)
+        (self.folder / "b.toml").write_text('[[body]]\nname = "a"\n')
+        broken = self.marey("body", "follow", "walk/truth.csv", "b.toml", "-o", "out.marey", code=1)
+        self.assertIn("b.toml:1", broken.stderr)
+        self.assertIn("--set", self.marey("label", "walk/truth.csv", "-o", "out.marey", code=2).stderr)
+        self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml")
+        self.assertEqual(json.loads(self.marey("info", "set.toml", "--json").stdout)["format"], "label set")
+        self.assertFalse((self.folder / "out.marey").exists())
+
+
+if __name__ == "__main__":
+    MAREY, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
