@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_info(root);
   add_reconstruct(root);
   add_solve(root);
+  add_gait(root);
   add_experiment(root);
   return program.run(argc, argv);
 }
