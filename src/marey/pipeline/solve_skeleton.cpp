@@ -313,7 +313,11 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
 }
 
 format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const SolveOptions& options, const Hooks& hooks) {
-  if (!skeleton.empty()) return format::skeleton::read_skeleton(skeleton, options.read_skeleton);
+  if (!skeleton.empty()) {
+    format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
+    if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
+    return file;
+  }
   if (options.static_trial.empty())
     throw Error("a skeleton is wanted: --skeleton FILE, or --static of the person standing with Plug-in Gait's markers");
   format::skeleton::SkeletonFile file;
