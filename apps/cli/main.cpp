@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   add_completion(root);
   add_body(root);
   add_label(root);
+  add_gait(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

@@ -66,6 +66,12 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
     if (coordinate.observed < 0.5) hidden.push_back(coordinate.name);
   }
   if (!hidden.empty()) fmt::print(stderr, "not observed, no marker shows them to 10°: {}\n", joined(hidden, 12));
+  if (summary.overall_scale) {
+    fmt::print(stderr, "calibrated: {:.3f} times as large as the skeleton was; markers lay {:.1f} mm RMS away before\n",
+               *summary.overall_scale, 1000 * summary.rms_before_m);
+    if (!summary.undetermined.empty())
+      fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
+  }
   if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
   if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
   if (!summary.not_recorded.empty())
@@ -95,6 +101,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"rms_mm", 1000 * summary.rms_m},
           {"worst_mm", 1000 * summary.worst_m},
           {"starts", summary.starts},
+          {"overall_scale", summary.overall_scale},
           {"markers", markers},
           {"coordinates", coordinates},
           {"not_recorded", summary.not_recorded},
@@ -147,11 +154,21 @@ void add_solve(Command& program) {
   Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file("--skeleton", options->skeleton, "OpenSim's .osim, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)")
-      .required();
+  command.input_file("--skeleton", options->skeleton, "OpenSim's .osim, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
+  command.input_file(
+      "--static", options->options.static_trial,
+      "the person standing still with Plug-in Gait's markers: makes the human skeleton, where no --skeleton is given");
+  command.flag("--calibrate", options->options.calibrate,
+               "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
+  command.flag(
+      "--smooth", options->options.smooth,
+      "a second pass over the whole motion: what was hidden is bent to both ends, and joints move as smoothly as people do");
+  command.output_file("--write-skeleton", options->options.write_skeleton, "skeleton.toml of the skeleton that was used")
+      .ends_in({".toml"});
   command
       .texts("-o,--output", options->outputs,
-             "what to write, may be given often: .mot or .sto (angles), .bvh (bones), or the recording with its bodies: .marey, "
+             "what to write, may be given often: .mot or .sto (angles), .bvh or .glb (bones), or the recording with its bodies: "
+             ".marey, "
              ".c3d, ...")
       .required()
       .check(pipeline::check_skeleton_output);

@@ -12,15 +12,21 @@
 
 #include "marey/core/error.h"
 #include "marey/core/track_names.h"
+#include "marey/core/whole_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
+#include "marey/pipeline/gait_markers.h"
+#include "marey/solve/skeleton/calibrate.h"
+#include "marey/solve/skeleton/smooth.h"
 
 namespace marey::pipeline {
 namespace {
 
 using format::Content;
 using format::UpAxis;
+constexpr std::size_t kMostCalibrationFrames = 4096;
 
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
@@ -208,6 +214,7 @@ void replay_with_bodies(const std::string& recording, const SolvedRecording& sol
 void write_output(const std::string& path, const std::string& recording, const SolvedRecording& solved,
                   const SolveOptions& options) {
   if (ends_with_any(path, {".mot", ".sto"})) return format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
+  if (path.ends_with(".glb")) return replay_with_bodies(recording, solved, options, *format::skeleton::create_glb(path));
   if (path.ends_with(".bvh"))
     return replay_with_bodies(recording, solved, options, *format::skeleton::create_bvh(path, options.bvh));
   const format::Format& format = format::format_to_write(path, "", Content::space);
@@ -219,13 +226,14 @@ void write_output(const std::string& path, const std::string& recording, const S
 }  // namespace
 
 void check_skeleton_output(const std::string& path) {
-  if (ends_with_any(path, {".mot", ".sto", ".bvh"})) return;
+  if (ends_with_any(path, {".mot", ".sto", ".bvh", ".glb"})) return;
   try {
     format::format_to_write(path, "", Content::space);
   } catch (const format::WrongFormat&) {
     throw format::WrongFormat(
-        "{}: unknown ending; a solved skeleton is written as .mot or .sto (angles), .bvh (bones), or with the markers as {}", path,
-        format::endings_of_written(Content::space));
+        "{}: unknown ending; a solved skeleton is written as .mot or .sto (angles), .bvh or .glb (bones), or with the markers as "
+        "{}",
+        path, format::endings_of_written(Content::space));
   }
 }
 
@@ -241,13 +249,16 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   solve::skeleton::PoseSolver solver(solved.skeleton, options.pose);
   SolveCounts counts(solved.skeleton);
   std::vector<std::optional<Vector<3>>> seen(solved.skeleton.markers.size());
+  std::vector<solve::skeleton::SeenMarkers> all;
   solved.motion.rate_hz = summary.rate_hz = reader->header().rate_hz;
   std::optional<Timestamp> before;
   while (const auto instant = reader->next()) {
     labels.add(instant->named);
     std::fill(seen.begin(), seen.end(), std::nullopt);
     for (const Sample& sample : instant->samples) {
-      if (const auto j = labels.marker(sample.track); j && sample.provenance != Provenance::predicted) seen[*j] = sample.position;
+      // Some systems write 0, 0, 0 where a marker is missing.
+      if (sample.provenance == Provenance::predicted || sample.position.isZero()) continue;
+      if (const auto j = labels.marker(sample.track)) seen[*j] = sample.position;
     }
     const auto& pose = solver.step(before ? seconds(instant->time - *before) : 1 / solved.motion.rate_hz, seen);
     before = instant->time;
@@ -256,6 +267,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
     solved.motion.rows.push_back(pose.coordinates);
     solved.observed.push_back(pose.observed);
     solved.residual_m.push_back(pose.rms_m);
+    if (options.smooth) all.push_back(seen);
     if (hooks.report({.step = "solving", .done = ++summary.frames, .total = reader->instant_count()}) == Continue::no) {
       summary.stopped = true;
       break;
@@ -264,6 +276,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   if (!labels.any())
     throw Error("{}: none of its labels is a marker of the skeleton {}; it has {}, the skeleton {}", recording,
                 solved.skeleton.name, first_of(labels.unknown()), first_of(labels.not_recorded()));
+  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, all, solved.motion.rate_hz);
   for (const std::string& warning : reader->warnings()) summary.warnings.push_back(warning);
   summary.not_recorded = labels.not_recorded();
   summary.not_known = labels.unknown();
@@ -272,15 +285,82 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   return solved;
 }
 
+namespace {
+
+/// The markers of all frames, for a calibration.
+std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording, const Skeleton& skeleton,
+                                                   const SolveOptions& options) {
+  const auto reader = open_markers(recording, options);
+  MarkersByLabel labels(skeleton, options.leave_out);
+  labels.add(reader->tracks());
+  std::vector<solve::skeleton::SeenMarkers> frames;
+  std::size_t step = 1, count = 0;
+  while (const auto instant = reader->next()) {
+    labels.add(instant->named);
+    if (count++ % step != 0) continue;
+    solve::skeleton::SeenMarkers seen(skeleton.markers.size());
+    for (const Sample& sample : instant->samples) {
+      if (sample.provenance == Provenance::predicted || sample.position.isZero()) continue;
+      if (const auto j = labels.marker(sample.track)) seen[*j] = sample.position;
+    }
+    frames.push_back(std::move(seen));
+    if (frames.size() < kMostCalibrationFrames) continue;
+    for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
+    frames.resize((frames.size() + 1) / 2);
+    step *= 2;
+  }
+  return frames;
+}
+
+format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const SolveOptions& options, const Hooks& hooks) {
+  if (!skeleton.empty()) {
+    format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
+    if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
+    return file;
+  }
+  if (options.static_trial.empty())
+    throw Error("a skeleton is wanted: --skeleton FILE, or --static of the person standing with Plug-in Gait's markers");
+  format::skeleton::SkeletonFile file;
+  file.skeleton = human_from_static(options.static_trial, options.up, hooks);
+  return file;
+}
+
+void write_skeleton_file(const std::string& path, const Skeleton& skeleton) {
+  WholeFile file(path);
+  file.write(format::skeleton::to_toml(skeleton));
+  file.finish();
+}
+
+}  // namespace
+
+SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& given,
+                                    const Hooks& hooks) {
+  SolveOptions options = given;
+  format::skeleton::SkeletonFile file = skeleton_of(skeleton, options, hooks);
+  options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
+  std::optional<solve::skeleton::Calibration> calibration;
+  if (options.calibrate) {
+    calibration = solve::skeleton::calibrate(file.skeleton, all_seen(recording, file.skeleton, options));
+    file.skeleton = calibration->skeleton;
+  }
+  SolvedRecording solved = solve_recording(recording, file, options, hooks);
+  if (calibration) {
+    solved.summary.overall_scale = calibration->overall_scale;
+    solved.summary.rms_before_m = calibration->rms_before_m;
+    solved.summary.undetermined = calibration->undetermined;
+  }
+  return solved;
+}
+
 SolveSummary solve_skeleton(const std::string& recording, const std::string& skeleton, const std::vector<std::string>& outputs,
                             const SolveOptions& given, const Hooks& hooks) {
   for (const std::string& path : outputs) check_skeleton_output(path);
-  SolveOptions options = given;
-  const format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
-  options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
-  const SolvedRecording solved = solve_recording(recording, file, options, hooks);
+  const SolvedRecording solved = solve_with_skeleton(recording, skeleton, given, hooks);
   if (solved.summary.stopped) return solved.summary;
+  SolveOptions options = given;
+  options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   for (const std::string& path : outputs) write_output(path, recording, solved, options);
+  if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
   return solved.summary;
 }
 

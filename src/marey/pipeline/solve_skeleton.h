@@ -22,7 +22,10 @@ struct SolveOptions {
   std::vector<std::string> leave_out;  ///< labels of markers that are not used
   format::skeleton::BvhDialect bvh;
   solve::skeleton::PoseOptions pose;
-  bool smooth = false;  ///< a second pass over the whole recording
+  bool smooth = false;         ///< a second pass over the whole motion
+  std::string static_trial;    ///< of the same person standing: makes the human skeleton, where none is given
+  bool calibrate = false;      ///< first fits the skeleton to the person, from the recording itself
+  std::string write_skeleton;  ///< skeleton.toml of what was solved with; empty: none
 };
 
 /// What came of it.
@@ -50,6 +53,9 @@ struct SolveSummary {
   std::vector<std::string> not_recorded;  ///< the skeleton's markers that the recording has not
   std::vector<std::string> not_known;     ///< the recording's labels that the skeleton has not
   std::vector<std::string> warnings;
+  std::optional<double> overall_scale;  ///< of a calibration; with what it found:
+  double rms_before_m = 0;
+  std::vector<std::string> undetermined;  ///< segments whose size the recording does not determine
   bool stopped = false;
 };
 
@@ -66,8 +72,13 @@ struct SolvedRecording {
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& skeleton,
                                 const SolveOptions& options, const Hooks& hooks = {});
 
-/// The same, and writes `outputs`, each in the format of its ending. Throws WrongFormat, before anything is read, for an ending
-/// that holds no skeleton.
+/// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial; calibrated where the options say
+/// so.
+SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
+                                    const Hooks& hooks = {});
+
+/// The same, and writes `outputs`, each in the format of its ending. `skeleton` is a file, or empty where a static trial is given.
+/// Throws WrongFormat, before anything is read, for an ending that holds no skeleton.
 SolveSummary solve_skeleton(const std::string& recording, const std::string& skeleton, const std::vector<std::string>& outputs,
                             const SolveOptions& options, const Hooks& hooks = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -13,6 +14,7 @@
 #include "marey/core/error.h"
 #include "marey/format/read_file.h"
 #include "marey/format/skeleton/bvh.h"
+#include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
 
 #include "support/data.h"
@@ -184,6 +186,29 @@ TEST(Bvh, AnglesFollowOnWhereTheyPassHalfATurn) {
   const SkeletonFile again = read_skeleton(here / "turn.bvh");
   const auto turn = static_cast<std::size_t>(again.skeleton.coordinate("a_Zrotation").value());
   for (std::size_t r = 1; r < 3; ++r) EXPECT_LT(std::abs(again.motion->rows[r][turn] - again.motion->rows[r - 1][turn]), 0.4);
+}
+
+TEST(Glb, IsOneWholeFileWithASkin) {
+  const SkeletonFile file = parse_bvh(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT b\n{\nOFFSET 0 10 0\nCHANNELS 3 "
+      "Zrotation Xrotation "
+      "Yrotation\nEnd Site\n{\nOFFSET 0 5 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.01\n0 0 0 0 0 0\n10 0 0 0 20 0\n",
+      "two.bvh");
+  const test::TemporaryFolder here;
+  write_again(file, *create_glb(here / "two.glb"));
+  const std::string bytes = test::read_file(here / "two.glb");
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  ASSERT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(word(4), 2U);
+  EXPECT_EQ(word(8), bytes.size());
+  const std::string json = bytes.substr(20, word(12));
+  EXPECT_EQ(word(20 + word(12)) + 28 + word(12), bytes.size()) << "what follows is one buffer";
+  EXPECT_NE(json.find("\"joints\":[0,1]"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"path\":\"rotation\""), std::string::npos);
 }
 
 TEST(Bvh, SaysWhereItIsWrong) {

@@ -15,19 +15,10 @@ namespace {
 
 constexpr double kSmallestSigmaM = 1e-4, kLargestSigmaM = 0.03;
 constexpr double kSmallestStep = 1e-6;  // rad, m
-constexpr double kColdRobustM = 0.5;    // while nothing is known of the pose
-constexpr double kGoodStartM = 0.03;    // RMS with which a start is believed without another
-constexpr int kRandomStarts = 12;
-constexpr double kWeakest = 1;  // 1/rad²: what is not seen at all deviates by a radian
+constexpr double kWeakest = 1;          // 1/rad²: what is not seen at all deviates by a radian
 
 double geman_mcclure(double squared, double scale) {
   return squared * scale * scale / (scale * scale + squared);
-}
-
-/// The same for all runs: a number in [−1, 1).
-double next_random(std::uint64_t& state) {
-  state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-  return static_cast<double>(state >> 11) / static_cast<double>(1ULL << 52) - 1;
 }
 
 }  // namespace
@@ -220,69 +211,6 @@ double PoseSolver::minimise(Seen seen, int most) {
   return cost;
 }
 
-/// A rigid motion of the resting skeleton onto what is seen: of the root's own markers, or of all.
-std::optional<Rigid3> PoseSolver::root_from(Seen seen, bool root_alone, const SkeletonState& rest) {
-  articulation_.place(rest);
-  const auto& markers = articulation_.skeleton().markers;
-  Eigen::Matrix3Xd model(3, markers.size()), there(3, markers.size());
-  Eigen::Index count = 0;
-  for (std::size_t j = 0; j < markers.size(); ++j) {
-    if (!seen[j] || (root_alone && markers[j].segment != 0)) continue;
-    model.col(count) = articulation_.world_from_segment()[static_cast<std::size_t>(markers[j].segment)] * markers[j].position;
-    there.col(count++) = *seen[j];
-  }
-  if (count < 3) return std::nullopt;
-  const Eigen::Matrix4d moved = Eigen::umeyama(model.leftCols(count), there.leftCols(count), false);
-  return Rigid3{moved.topLeftCorner<3, 3>(), moved.topRightCorner<3, 1>()} * articulation_.world_from_segment().front();
-}
-
-std::vector<SkeletonState> PoseSolver::starts(Seen seen) {
-  const SkeletonState rest = articulation_.state_of(articulation_.skeleton().rest());
-  std::vector<SkeletonState> all;
-  for (const bool root_alone : {true, false}) {
-    const auto root = root_from(seen, root_alone, rest);
-    if (!root) continue;
-    if (auto state = articulation_.with_root_at(rest, *root)) all.push_back(std::move(*state));
-  }
-  if (all.empty()) all.push_back(rest);
-  return all;
-}
-
-/// From rest, put where the markers are; then from poses near it, until one fits.
-void PoseSolver::cold_start(Seen seen) {
-  sigma_m_ = options_.marker_sigma_m;
-  prior_information_.setConstant(kWeakest);
-  for (int d = 0; d < articulation_.dofs(); ++d) {
-    if (!articulation_.dof()[static_cast<std::size_t>(d)].turns) prior_information_[d] = 1e-4;
-  }
-  const std::vector<SkeletonState> first = starts(seen);
-  SkeletonState best;
-  double best_rms = 0;
-  std::uint64_t random = 15;
-  const auto attempt = [&](const SkeletonState& from) {
-    state_ = predicted_ = from;
-    for (const double scale : {kColdRobustM, options_.robust_m}) {
-      robust_m_ = scale;
-      minimise(seen, 2 * options_.max_iterations);
-    }
-    const double rms = rms_of(seen);
-    if (best.coordinates.empty() || rms < best_rms) {
-      best = state_;
-      best_rms = rms;
-    }
-  };
-  for (const SkeletonState& from : first) attempt(from);
-  for (int i = 0; i < kRandomStarts && best_rms > kGoodStartM; ++i) {
-    SkeletonState from;
-    Eigen::VectorXd off(articulation_.dofs());
-    for (int d = 0; d < articulation_.dofs(); ++d)
-      off[d] = articulation_.dof()[static_cast<std::size_t>(d)].turns ? 0.8 * next_random(random) : 0;
-    articulation_.move(first[static_cast<std::size_t>(i) % first.size()], off, from);
-    attempt(from);
-  }
-  state_ = predicted_ = best;
-}
-
 double PoseSolver::rms_of(Seen seen) {
   articulation_.place(state_);
   const auto& markers = articulation_.skeleton().markers;
@@ -300,6 +228,13 @@ double PoseSolver::rms_of(Seen seen) {
   pose_.seen = count;
   pose_.rms_m = count > 0 ? std::sqrt(sum / count) : 0;
   return pose_.rms_m;
+}
+
+/// Most markers are far away: that is no wrong label.
+bool PoseSolver::lost() const {
+  const auto far =
+      std::count_if(pose_.residuals.begin(), pose_.residuals.end(), [&](const auto& off) { return off && *off > options_.lost_m; });
+  return pose_.seen >= 6 && 2 * far > pose_.seen;
 }
 
 /// σ of a marker's coordinate, from what is left over; markers beyond the robust scale do not count.
@@ -334,7 +269,8 @@ const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
     predict(std::max(1e-6, seconds));
     state_ = predicted_;
     if (any) minimise(seen, options_.max_iterations);
-    if (rms_of(seen) > options_.lost_m && pose_.seen >= 6) {
+    rms_of(seen);
+    if (lost()) {
       pose_.started = true;
       const SkeletonState before = state_;
       const double rms = pose_.rms_m;
@@ -370,6 +306,21 @@ void PoseSolver::judge(Seen seen) {
     variance_[d] = 1 / (1 / std::max(1e-12, covariance_(d, d)) + 1 / std::max(1e-12, variance_[d] > 0 ? variance_[d] : 1.0));
     if (const auto& c = articulation_.dof()[at].coordinate) pose_.deviations[static_cast<std::size_t>(*c)] = dof_deviation_[d];
   }
+  judge_balls();
+  const auto& coordinates = articulation_.skeleton().coordinates;
+  for (std::size_t c = 0; c < coordinates.size(); ++c) {
+    if (coordinates[c].locked) {
+      pose_.observed[c] = true;
+      continue;
+    }
+    const std::size_t from = coordinates[c].coupling ? static_cast<std::size_t>(coordinates[c].coupling->to) : c;
+    pose_.deviations[c] = pose_.deviations[from];
+    pose_.observed[c] = pose_.deviations[c] < (coordinates[c].turns ? options_.not_observed_rad : options_.not_observed_m);
+  }
+}
+
+/// Of joints that turn freely: how far each of their angles may be off.
+void PoseSolver::judge_balls() {
   for (const Articulation::Ball& ball : articulation_.balls()) {
     // The small turn's part in each angle: turns about the axes as they now stand, seen from the segment.
     Matrix<3> axes, turned = Matrix<3>::Identity();
@@ -386,16 +337,6 @@ void PoseSolver::judge(Seen seen) {
     for (int i = 0; i < 3; ++i)
       pose_.deviations[static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)])] =
           std::sqrt(std::max(0.0, spread(i, i)));
-  }
-  const auto& coordinates = articulation_.skeleton().coordinates;
-  for (std::size_t c = 0; c < coordinates.size(); ++c) {
-    if (coordinates[c].locked) {
-      pose_.observed[c] = true;
-      continue;
-    }
-    const std::size_t from = coordinates[c].coupling ? static_cast<std::size_t>(coordinates[c].coupling->to) : c;
-    pose_.deviations[c] = pose_.deviations[from];
-    pose_.observed[c] = pose_.deviations[c] < (coordinates[c].turns ? options_.not_observed_rad : options_.not_observed_m);
   }
 }
 

@@ -34,7 +34,7 @@ struct PoseOptions {
   double not_observed_rad = 0.174532925;  ///< 10°
   double not_observed_m = 0.1;
   int max_iterations = 30;
-  double lost_m = 0.12;  ///< RMS beyond which it starts anew
+  double lost_m = 0.12;  ///< where most markers are farther away, it starts anew
 };
 
 /// A skeleton at one instant.
@@ -100,8 +100,10 @@ class PoseSolver {
   std::vector<SkeletonState> starts(Seen seen);
   std::optional<Rigid3> root_from(Seen seen, bool root_alone, const SkeletonState& rest);
   double rms_of(Seen seen);
+  bool lost() const;
   void learn_noise(Seen seen);
   void judge(Seen seen);
+  void judge_balls();
   void learn_velocity(double seconds);
 
   Articulation articulation_;

@@ -1,0 +1,102 @@
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "marey/format/register.h"
+#include "marey/pipeline/measure_gait.h"
+
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+struct GaitCommand {
+  std::string recording;
+  pipeline::GaitOutput output;
+  pipeline::GaitOptions options;
+  std::optional<double> leg_length, knee_width, ankle_width;
+  bool json = false;
+  bool quiet = false;
+};
+
+namespace gait = analyse::gait;
+
+void print_gait(const pipeline::GaitMeasure& measure) {
+  int strikes = 0, offs = 0;
+  for (const gait::GaitEvent& event : measure.events) ++(event.strike ? strikes : offs);
+  fmt::print("{} frames at {:g} Hz: {} strikes, {} offs, {} whole cycles\n", measure.frames, measure.rate_hz, strikes, offs,
+             measure.cycles.cycles.size());
+  fmt::print("{:<22} {:>10} {:>10}\n", "", "left", "right");
+  for (const gait::GaitFigure& figure : measure.cycles.figures) {
+    const auto shown = [&](std::size_t side) {
+      return figure.mean[side] ? fmt::format("{:.3g}", *figure.mean[side]) : std::string("-");
+    };
+    fmt::print("{:<22} {:>10} {:>10} {}\n", figure.name, shown(0), shown(1), figure.unit);
+  }
+}
+
+Json gait_json(const pipeline::GaitMeasure& measure) {
+  Json events = Json::array(), figures = Json::object();
+  for (const gait::GaitEvent& event : measure.events) {
+    events.push_back({{"side", event.side == gait::Side::left ? "left" : "right"},
+                      {"event", event.strike ? "strike" : "off"},
+                      {"time_s", measure.begin_s + event.time_s},
+                      {"deviation_s", event.deviation_s}});
+  }
+  for (const gait::GaitFigure& figure : measure.cycles.figures)
+    figures[figure.name] = {{"left", figure.mean[0]}, {"right", figure.mean[1]}, {"unit", figure.unit}};
+  return {{"frames", measure.frames}, {"rate_hz", measure.rate_hz}, {"cycles", measure.cycles.cycles.size()},
+          {"events", events},         {"figures", figures},         {"warnings", measure.warnings}};
+}
+
+void run(GaitCommand& command) {
+  gait::GaitSubject& subject = command.options.subject;
+  subject.leg_length.fill(command.leg_length);
+  subject.knee_width.fill(command.knee_width);
+  subject.ankle_width.fill(command.ankle_width);
+  const pipeline::GaitMeasure measure = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::measure_gait(command.recording, command.output, command.options, hooks);
+  });
+  warn(measure.warnings);
+  if (command.json) {
+    print(gait_json(measure));
+  } else if (!command.quiet) {
+    print_gait(measure);
+  }
+}
+
+}  // namespace
+
+void add_gait(Command& program) {
+  auto options = std::make_shared<GaitCommand>();
+  Command command = program.subcommand("gait", "Joint angles, steps and gait cycles of a walk, from Plug-in Gait's markers");
+  command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
+      .required();
+  command.input_file("--static", options->options.static_trial,
+                     "the same person, standing: for the feet's neutral position and the legs' lengths");
+  command.output_file("-o,--output", options->output.cycles, "CSV: every angle at 100 points of the cycle, mean and deviation")
+      .ends_in({".csv"});
+  command.output_file("--angles", options->output.angles, "CSV: every angle at every frame, degrees").ends_in({".csv"});
+  command.output_file("--report", options->output.report, "a page with the curves, the walk's figures and its events")
+      .ends_in({".html"});
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING, z where it is left out");
+  command.group("The person, where the files do not say");
+  command.number("--leg-length", options->leg_length, "m", above(0, 2), "from the hip's front spine to the inner ankle");
+  command.number("--knee-width", options->knee_width, "m", above(0, 0.5), "across its sides");
+  command.number("--ankle-width", options->ankle_width, "m", above(0, 0.5), "across its sides");
+  command.group("");
+  command.reports(options->json, options->quiet, "figures");
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace marey::cli

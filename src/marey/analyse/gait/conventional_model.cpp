@@ -1,0 +1,254 @@
+#include "marey/analyse/gait/conventional_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace marey::analyse::gait {
+namespace {
+
+constexpr double kHipTheta = 0.5, kHipBeta = 0.314;                                    // rad: Davis 1991
+constexpr double kShoulderOffset = 0.045, kElbowWidth = 0.07, kHandThickness = 0.025;  // m, of an adult
+
+std::optional<Vector<3>> place(const MarkerPlaces& markers, std::string_view label) {
+  const auto found = markers.find(label);
+  return found == markers.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<Vector<3>> place(const MarkerPlaces& markers, Side side, std::string_view label) {
+  return place(markers, std::string(1, side == Side::left ? 'L' : 'R').append(label));
+}
+
+std::optional<Vector<3>> middle(const std::optional<Vector<3>>& a, const std::optional<Vector<3>>& b) {
+  if (!a || !b) return a ? a : b;
+  return Vector<3>(0.5 * (*a + *b));
+}
+
+/// The frame whose first axis is along `first`, and whose third is perpendicular to both.
+std::optional<Matrix<3>> axes_from(int first_axis, const Vector<3>& first, int second_axis, const Vector<3>& second) {
+  const int third_axis = 3 - first_axis - second_axis;
+  const double hand = (second_axis - first_axis + 3) % 3 == 1 ? 1 : -1;
+  const Vector<3> a = first.normalized(), c = hand * a.cross(second);
+  if (!(first.norm() > 1e-6) || !(c.norm() > 1e-6)) return std::nullopt;
+  Matrix<3> axes;
+  axes.col(first_axis) = a;
+  axes.col(third_axis) = c.normalized();
+  axes.col(second_axis) = hand * axes.col(third_axis).cross(a);
+  return axes;
+}
+
+/// The joint's centre below `above`: `offset` from the marker on its outside, with a right angle there, in the plane of a third
+/// marker on the outside of the segment.
+std::optional<Vector<3>> chord(const Vector<3>& above, const Vector<3>& outer, const Vector<3>& marker, double offset) {
+  const Vector<3> along = marker - above;
+  const double length = along.norm();
+  if (!(length > offset)) return std::nullopt;
+  const Vector<3> down = along / length, to_outer = outer - above, aside = to_outer - down * down.dot(to_outer);
+  if (!(aside.norm() > 1e-6)) return std::nullopt;
+  const double cosine = offset / length;
+  return Vector<3>(marker - offset * (cosine * down + std::sqrt(1 - cosine * cosine) * aside.normalized()));
+}
+
+double leg_length(const GaitSubject& subject, Side side) {
+  const auto& own = subject.leg_length[static_cast<std::size_t>(side)];
+  return own.value_or(subject.leg_length[1 - static_cast<std::size_t>(side)].value_or(0.85));
+}
+
+/// A joint's width where it was not measured: shares of the leg's length, of the children and youths of the biomechZoo study.
+double knee_width(const GaitSubject& subject, Side side) {
+  return subject.knee_width[static_cast<std::size_t>(side)].value_or(0.115 * leg_length(subject, side));
+}
+double ankle_width(const GaitSubject& subject, Side side) {
+  return subject.ankle_width[static_cast<std::size_t>(side)].value_or(0.083 * leg_length(subject, side));
+}
+
+struct Hips {
+  Rigid3 pelvis;
+  std::array<Vector<3>, 2> centres;
+};
+
+std::optional<Hips> hips_of(const MarkerPlaces& markers, const GaitSubject& subject) {
+  const auto left = place(markers, "LASI"), right = place(markers, "RASI");
+  const auto sacrum = place(markers, "SACR") ? place(markers, "SACR") : middle(place(markers, "LPSI"), place(markers, "RPSI"));
+  if (!left || !right || !sacrum) return std::nullopt;
+  const Vector<3> front = 0.5 * (*left + *right);
+  const auto axes = axes_from(1, *left - *right, 0, front - *sacrum);
+  if (!axes) return std::nullopt;
+  Hips hips{.pelvis = {*axes, front}, .centres = {}};
+  const double mean_leg = 0.5 * (leg_length(subject, Side::left) + leg_length(subject, Side::right));
+  const double c = 0.115 * mean_leg - 0.0153, half = 0.5 * subject.asis_distance.value_or((*left - *right).norm());
+  for (const Side side : kSides) {
+    const double to_trochanter = 0.1288 * leg_length(subject, side) - 0.04856 + subject.marker_radius;
+    const double x = c * std::cos(kHipTheta) * std::sin(kHipBeta) - to_trochanter * std::cos(kHipBeta);
+    const double y = half - c * std::sin(kHipTheta);
+    const double z = -c * std::cos(kHipTheta) * std::cos(kHipBeta) - to_trochanter * std::sin(kHipBeta);
+    hips.centres[static_cast<std::size_t>(side)] = hips.pelvis * Vector<3>(x, side == Side::left ? y : -y, z);
+  }
+  return hips;
+}
+
+/// The line from ankle to toe as a foot's x, before the sole is known.
+std::optional<Matrix<3>> ankle_toe_axes(const Vector<3>& ankle, const Vector<3>& toe, const Matrix<3>& shank) {
+  return axes_from(0, toe - ankle, 1, shank.col(1));
+}
+
+/// Of one leg: thigh, shank, foot.
+void add_leg(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Vector<3>& hip, GaitPose& pose) {
+  const double outwards = side == Side::left ? 1 : -1;
+  const auto thigh_marker = place(markers, side, "THI"), knee_marker = place(markers, side, "KNE");
+  if (!thigh_marker || !knee_marker) return;
+  const auto knee = chord(hip, *thigh_marker, *knee_marker, 0.5 * knee_width(subject, side) + subject.marker_radius);
+  if (!knee) return;
+  if (const auto axes = axes_from(2, hip - *knee, 1, outwards * (*knee_marker - *knee)))
+    pose[of_side(SegmentId::left_thigh, side)] = Rigid3{*axes, hip};
+  const auto shank_marker = place(markers, side, "TIB"), ankle_marker = place(markers, side, "ANK");
+  if (!shank_marker || !ankle_marker) return;
+  const auto ankle = chord(*knee, *shank_marker, *ankle_marker, 0.5 * ankle_width(subject, side) + subject.marker_radius);
+  if (!ankle) return;
+  const auto shank = axes_from(2, *knee - *ankle, 1, outwards * (*ankle_marker - *ankle));
+  if (!shank) return;
+  pose[of_side(SegmentId::left_shank, side)] = Rigid3{*shank, *knee};
+  const auto toe = place(markers, side, "TOE");
+  if (!toe) return;
+  if (const auto foot = ankle_toe_axes(*ankle, *toe, *shank))
+    pose[of_side(SegmentId::left_foot, side)] = Rigid3{*foot * subject.sole_from_ankle_toe[static_cast<std::size_t>(side)], *ankle};
+}
+
+void add_trunk(const MarkerPlaces& markers, GaitPose& pose) {
+  const auto c7 = place(markers, "C7"), t10 = place(markers, "T10"), clav = place(markers, "CLAV"), strn = place(markers, "STRN");
+  if (c7 && clav && strn && t10) {
+    if (const auto axes = axes_from(2, 0.5 * (*c7 + *clav) - 0.5 * (*t10 + *strn), 0, 0.5 * (*clav + *strn) - 0.5 * (*c7 + *t10)))
+      pose[SegmentId::trunk] = Rigid3{*axes, 0.5 * (*t10 + *strn)};
+  }
+  const auto lf = place(markers, "LFHD"), rf = place(markers, "RFHD"), lb = place(markers, "LBHD"), rb = place(markers, "RBHD");
+  if (!lf || !rf || !lb || !rb) return;
+  if (const auto axes = axes_from(0, *lf + *rf - *lb - *rb, 1, *lf + *lb - *rf - *rb))
+    pose[SegmentId::head] = Rigid3{*axes, 0.25 * (*lf + *rf + *lb + *rb)};
+}
+
+void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
+  const auto shoulder_marker = place(markers, side, "SHO"), elbow_marker = place(markers, side, "ELB");
+  const auto thumb = place(markers, side, "WRA"), little = place(markers, side, "WRB");
+  const auto& trunk = pose[SegmentId::trunk];
+  if (!shoulder_marker || !elbow_marker || !thumb || !little || !trunk) return;
+  const double size = leg_length(subject, side) / 0.9;  // of an adult
+  const Vector<3> shoulder = *shoulder_marker - (kShoulderOffset * size + subject.marker_radius) * trunk->rotation.col(2);
+  const Vector<3> wrist = 0.5 * (*thumb + *little);
+  // The elbow's centre is inwards of its marker: beside the plane of shoulder, marker and wrist.
+  Vector<3> inwards = (*elbow_marker - shoulder).cross(wrist - *elbow_marker);
+  if (inwards.norm() < 1e-4) inwards = trunk->rotation.col(1);
+  if (inwards.dot(trunk->rotation.col(1)) * (side == Side::left ? 1 : -1) > 0) inwards = -inwards;
+  const Vector<3> elbow = *elbow_marker + (0.5 * kElbowWidth * size + subject.marker_radius) * inwards.normalized();
+  const double outwards = side == Side::left ? 1 : -1;
+  if (const auto axes = axes_from(2, shoulder - elbow, 1, -outwards * inwards))
+    pose[of_side(SegmentId::left_upper_arm, side)] = Rigid3{*axes, shoulder};
+  const auto forearm = axes_from(2, elbow - wrist, 0, *thumb - *little);
+  if (!forearm) return;
+  pose[of_side(SegmentId::left_forearm, side)] = Rigid3{*forearm, elbow};
+  const auto finger = place(markers, side, "FIN");
+  if (!finger) return;
+  const Vector<3> hand = *finger - 0.5 * kHandThickness * size * forearm->col(1) * outwards;
+  if (const auto axes = axes_from(2, wrist - hand, 0, *thumb - *little))
+    pose[of_side(SegmentId::left_hand, side)] = Rigid3{*axes, wrist};
+}
+
+constexpr std::array<std::pair<std::string_view, SegmentId>, 39> kMarkers = {{
+    {"LFHD", SegmentId::head},
+    {"RFHD", SegmentId::head},
+    {"LBHD", SegmentId::head},
+    {"RBHD", SegmentId::head},
+    {"C7", SegmentId::trunk},
+    {"T10", SegmentId::trunk},
+    {"CLAV", SegmentId::trunk},
+    {"STRN", SegmentId::trunk},
+    {"RBAK", SegmentId::trunk},
+    {"LSHO", SegmentId::trunk},
+    {"RSHO", SegmentId::trunk},
+    {"LELB", SegmentId::left_upper_arm},
+    {"LWRA", SegmentId::left_forearm},
+    {"LWRB", SegmentId::left_forearm},
+    {"LFIN", SegmentId::left_hand},
+    {"RELB", SegmentId::right_upper_arm},
+    {"RWRA", SegmentId::right_forearm},
+    {"RWRB", SegmentId::right_forearm},
+    {"RFIN", SegmentId::right_hand},
+    {"LASI", SegmentId::pelvis},
+    {"RASI", SegmentId::pelvis},
+    {"LPSI", SegmentId::pelvis},
+    {"RPSI", SegmentId::pelvis},
+    {"SACR", SegmentId::pelvis},
+    {"LTHI", SegmentId::left_thigh},
+    {"LKNE", SegmentId::left_thigh},
+    {"LTIB", SegmentId::left_shank},
+    {"LANK", SegmentId::left_shank},
+    {"LHEE", SegmentId::left_foot},
+    {"LTOE", SegmentId::left_foot},
+    {"RTHI", SegmentId::right_thigh},
+    {"RKNE", SegmentId::right_thigh},
+    {"RTIB", SegmentId::right_shank},
+    {"RANK", SegmentId::right_shank},
+    {"RHEE", SegmentId::right_foot},
+    {"RTOE", SegmentId::right_foot},
+    {"LUPA", SegmentId::left_upper_arm},
+    {"RUPA", SegmentId::right_upper_arm},
+    {"LFRM", SegmentId::left_forearm},
+}};
+
+}  // namespace
+
+std::string_view name_of(SegmentId segment) {
+  constexpr std::array<std::string_view, kSegments> names = {
+      "pelvis",    "trunk",       "head",        "left_thigh", "left_shank",      "left_foot",     "left_upper_arm", "left_forearm",
+      "left_hand", "right_thigh", "right_shank", "right_foot", "right_upper_arm", "right_forearm", "right_hand"};
+  return names[static_cast<std::size_t>(segment)];
+}
+
+SegmentId of_side(SegmentId left, Side side) {
+  return side == Side::left ? left : static_cast<SegmentId>(static_cast<int>(left) + 6);
+}
+
+void GaitSubject::learn_from(const MarkerPlaces& standing) {
+  for (const Side side : kSides) {
+    const auto i = static_cast<std::size_t>(side);
+    const auto asis = place(standing, side, "ASI"), ankle = place(standing, side, "ANK");
+    if (!leg_length[i] && asis && ankle) leg_length[i] = (*asis - *ankle).norm();
+    sole_from_ankle_toe[i].setIdentity();
+  }
+  const GaitPose pose = pose_of(standing, *this);
+  for (const Side side : kSides) {
+    const auto& foot = pose[of_side(SegmentId::left_foot, side)];
+    const auto& shank = pose[of_side(SegmentId::left_shank, side)];
+    const auto heel = place(standing, side, "HEE"), toe = place(standing, side, "TOE");
+    if (!foot || !shank || !heel || !toe) continue;
+    if (const auto sole = axes_from(0, *toe - *heel, 1, shank->rotation.col(1)))
+      sole_from_ankle_toe[static_cast<std::size_t>(side)] = foot->rotation.transpose() * *sole;
+  }
+}
+
+GaitPose pose_of(const MarkerPlaces& markers, const GaitSubject& subject) {
+  GaitPose pose;
+  add_trunk(markers, pose);
+  for (const Side side : kSides) add_arm(markers, subject, side, pose);
+  const auto hips = hips_of(markers, subject);
+  if (!hips) return pose;
+  pose[SegmentId::pelvis] = hips->pelvis;
+  for (const Side side : kSides) add_leg(markers, subject, side, hips->centres[static_cast<std::size_t>(side)], pose);
+  return pose;
+}
+
+std::span<const std::string_view> plug_in_gait_markers() {
+  static const auto labels = [] {
+    std::array<std::string_view, kMarkers.size()> all;
+    std::transform(kMarkers.begin(), kMarkers.end(), all.begin(), [](const auto& marker) { return marker.first; });
+    return all;
+  }();
+  return labels;
+}
+
+std::optional<SegmentId> segment_of_marker(std::string_view label) {
+  const auto found = std::find_if(kMarkers.begin(), kMarkers.end(), [&](const auto& marker) { return marker.first == label; });
+  return found == kMarkers.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace marey::analyse::gait

@@ -1,0 +1,175 @@
+#include "marey/analyse/gait/gait_cycles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marey::analyse::gait {
+namespace {
+
+constexpr double kShortestS = 0.4, kLongestS = 3;
+
+/// Between rows, straight; nothing where one of them is not known.
+template <typename T>
+std::optional<T> value_at(const std::vector<std::optional<T>>& values, double row) {
+  if (row < 0 || row > static_cast<double>(values.size()) - 1) return std::nullopt;
+  const auto i = static_cast<std::size_t>(row);
+  const double share = row - static_cast<double>(i);
+  if (share < 1e-9) return values[i];
+  if (!values[i] || !values[i + 1]) return std::nullopt;
+  return T((1 - share) * *values[i] + share * *values[i + 1]);
+}
+
+Side side_of(const std::string& name) {
+  return name.starts_with("left_") ? Side::left : Side::right;
+}
+
+std::vector<GaitCycles::Cycle> find_cycles(std::span<const GaitEvent> events) {
+  std::vector<GaitCycles::Cycle> cycles;
+  for (const Side side : kSides) {
+    std::optional<double> begin, off;
+    for (const GaitEvent& event : events) {
+      if (event.side != side) continue;
+      if (!event.strike) {
+        off = event.time_s;
+        continue;
+      }
+      if (begin && event.time_s - *begin >= kShortestS && event.time_s - *begin <= kLongestS)
+        cycles.push_back({side, *begin, event.time_s, off && *off > *begin ? off : std::nullopt});
+      begin = event.time_s;
+      off.reset();
+    }
+  }
+  return cycles;
+}
+
+CycleCurve curve_of(const AngleCurve& angle, std::span<const GaitCycles::Cycle> cycles, double rate_hz) {
+  CycleCurve curve{.name = angle.name, .cycles = {}};
+  for (const GaitCycles::Cycle& cycle : cycles) {
+    if (cycle.side != side_of(angle.name)) continue;
+    std::array<double, kCyclePoints> points{};
+    bool known = true;
+    for (std::size_t p = 0; p < kCyclePoints && known; ++p) {
+      const double time = cycle.begin_s + (cycle.end_s - cycle.begin_s) * static_cast<double>(p) / kCyclePoints;
+      const auto value = value_at(angle.values, time * rate_hz);
+      known = value.has_value();
+      points[p] = value.value_or(0);
+    }
+    if (known) curve.cycles.push_back(points);
+  }
+  const auto count = static_cast<double>(curve.cycles.size());
+  for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
+    double sum = 0, squares = 0;
+    for (const auto& cycle : curve.cycles) sum += cycle[p];
+    curve.mean[p] = sum / count;
+    for (const auto& cycle : curve.cycles) squares += (cycle[p] - curve.mean[p]) * (cycle[p] - curve.mean[p]);
+    curve.deviation[p] = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
+  }
+  return curve;
+}
+
+/// Mean and deviation of what each cycle of a side gives.
+template <typename Of>
+GaitFigure figure(const char* name, const char* unit, std::span<const GaitCycles::Cycle> cycles, Of&& of) {
+  GaitFigure result{.name = name, .unit = unit, .mean = {}, .deviation = {}};
+  for (const Side side : kSides) {
+    std::vector<double> values;
+    for (const GaitCycles::Cycle& cycle : cycles) {
+      if (cycle.side != side) continue;
+      if (const std::optional<double> value = of(cycle)) values.push_back(*value);
+    }
+    if (values.empty()) continue;
+    double sum = 0, squares = 0;
+    for (const double v : values) sum += v;
+    const double mean = sum / static_cast<double>(values.size());
+    for (const double v : values) squares += (v - mean) * (v - mean);
+    result.mean[static_cast<std::size_t>(side)] = mean;
+    if (values.size() > 1)
+      result.deviation[static_cast<std::size_t>(side)] = std::sqrt(squares / static_cast<double>(values.size() - 1));
+  }
+  return result;
+}
+
+/// What one cycle says of lengths and times.
+class CycleMeasure {
+ public:
+  CycleMeasure(std::span<const GaitEvent> events, const FeetPaths& feet, double rate_hz)
+      : events_(events), feet_(feet), rate_hz_(rate_hz) {}
+
+  std::optional<Vector<2>> stride(const GaitCycles::Cycle& cycle) const {
+    const auto from = heel(cycle.side, cycle.begin_s), to = heel(cycle.side, cycle.end_s);
+    if (!from || !to) return std::nullopt;
+    return Vector<2>(*to - *from);
+  }
+  /// The other foot's strike within the cycle.
+  std::optional<double> other_strike(const GaitCycles::Cycle& cycle) const { return other(cycle, true); }
+  std::optional<double> other_off(const GaitCycles::Cycle& cycle) const { return other(cycle, false); }
+
+  /// Ahead, and aside, of the other foot's last place at this foot's next strike.
+  std::optional<Vector<2>> step(const GaitCycles::Cycle& cycle) const {
+    const auto way = stride(cycle), at = heel(cycle.side, cycle.end_s);
+    const auto strike = other_strike(cycle);
+    const auto there = strike ? heel(cycle.side == Side::left ? Side::right : Side::left, cycle.end_s) : std::nullopt;
+    if (!way || !at || !there || way->norm() < 1e-6) return std::nullopt;
+    const Vector<2> ahead = way->normalized(), between = *at - *there;
+    return Vector<2>(ahead.dot(between), std::abs(ahead.x() * between.y() - ahead.y() * between.x()));
+  }
+
+ private:
+  std::optional<Vector<2>> heel(Side side, double time) const {
+    const auto place = value_at(feet_.heel[static_cast<std::size_t>(side)], time * rate_hz_);
+    return place ? std::optional(Vector<2>(place->head<2>())) : std::nullopt;
+  }
+  std::optional<double> other(const GaitCycles::Cycle& cycle, bool strike) const {
+    for (const GaitEvent& event : events_) {
+      if (event.side != cycle.side && event.strike == strike && event.time_s > cycle.begin_s && event.time_s < cycle.end_s)
+        return event.time_s;
+    }
+    return std::nullopt;
+  }
+
+  std::span<const GaitEvent> events_;
+  const FeetPaths& feet_;
+  double rate_hz_;
+};
+
+}  // namespace
+
+GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet,
+                       double rate_hz) {
+  using Cycle = GaitCycles::Cycle;
+  GaitCycles result;
+  result.cycles = find_cycles(events);
+  for (const AngleCurve& angle : angles) result.curves.push_back(curve_of(angle, result.cycles, rate_hz));
+  const CycleMeasure measure(events, feet, rate_hz);
+  const auto time = [](const Cycle& c) { return c.end_s - c.begin_s; };
+  const auto add = [&](const char* name, const char* unit, auto&& of) {
+    result.figures.push_back(figure(name, unit, result.cycles, of));
+  };
+  add("stride time", "s", [&](const Cycle& c) { return std::optional(time(c)); });
+  add("cadence", "steps/min", [&](const Cycle& c) { return std::optional(120 / time(c)); });
+  add("stride length", "m", [&](const Cycle& c) {
+    const auto s = measure.stride(c);
+    return s ? std::optional(s->norm()) : std::nullopt;
+  });
+  add("speed", "m/s", [&](const Cycle& c) {
+    const auto s = measure.stride(c);
+    return s ? std::optional(s->norm() / time(c)) : std::nullopt;
+  });
+  add("step length", "m", [&](const Cycle& c) {
+    const auto s = measure.step(c);
+    return s ? std::optional(s->x()) : std::nullopt;
+  });
+  add("step width", "m", [&](const Cycle& c) {
+    const auto s = measure.step(c);
+    return s ? std::optional(s->y()) : std::nullopt;
+  });
+  add("stance", "% of cycle",
+      [&](const Cycle& c) { return c.off_s ? std::optional(100 * (*c.off_s - c.begin_s) / time(c)) : std::nullopt; });
+  add("first double support", "% of cycle", [&](const Cycle& c) {
+    const auto off = measure.other_off(c);
+    return off && c.off_s && *off < *c.off_s ? std::optional(100 * (*off - c.begin_s) / time(c)) : std::nullopt;
+  });
+  return result;
+}
+
+}  // namespace marey::analyse::gait

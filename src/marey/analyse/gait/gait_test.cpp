@@ -1,0 +1,145 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "marey/analyse/gait/conventional_model.h"
+#include "marey/analyse/gait/gait_cycles.h"
+#include "marey/analyse/gait/joint_angles.h"
+
+namespace marey::analyse::gait {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Matrix<3> about(const Vector<3>& axis, double degrees) {
+  return Eigen::AngleAxisd(degrees * kDegree, axis).toRotationMatrix();
+}
+
+double angle(const GaitPose& pose, const std::string& name) {
+  const auto names = angle_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(at, names.end()) << name;
+  return angles_of(pose, {1, 0})[static_cast<std::size_t>(at - names.begin())].value() / kDegree;
+}
+
+TEST(JointAngles, AreSignedAlikeLeftAndRight) {
+  GaitPose pose;
+  pose[SegmentId::pelvis] = Rigid3{};
+  // Thighs ahead by 30°: knees go forward, so that the thigh's upper end leans back.
+  for (const Side side : kSides)
+    pose[of_side(SegmentId::left_thigh, side)] = Rigid3{about(Vector<3>::UnitY(), -30), Vector<3>::Zero()};
+  EXPECT_NEAR(angle(pose, "left_hip_flexion"), 30, 1e-9);
+  EXPECT_NEAR(angle(pose, "right_hip_flexion"), 30, 1e-9);
+  // Both knees 10° towards the middle: the left one to the right.
+  pose[SegmentId::left_thigh]->rotation = about(Vector<3>::UnitX(), -10);
+  pose[SegmentId::right_thigh]->rotation = about(Vector<3>::UnitX(), 10);
+  EXPECT_NEAR(angle(pose, "left_hip_adduction"), 10, 1e-9);
+  EXPECT_NEAR(angle(pose, "right_hip_adduction"), 10, 1e-9);
+  // Both toes 15° inwards.
+  pose[SegmentId::left_thigh]->rotation = about(Vector<3>::UnitZ(), -15);
+  pose[SegmentId::right_thigh]->rotation = about(Vector<3>::UnitZ(), 15);
+  EXPECT_NEAR(angle(pose, "left_hip_rotation"), 15, 1e-9);
+  EXPECT_NEAR(angle(pose, "right_hip_rotation"), 15, 1e-9);
+  // A knee bends backwards, a toe goes up.
+  pose[SegmentId::left_shank] = Rigid3{pose[SegmentId::left_thigh]->rotation * about(Vector<3>::UnitY(), 60), Vector<3>::Zero()};
+  pose[SegmentId::left_foot] = Rigid3{pose[SegmentId::left_shank]->rotation * about(Vector<3>::UnitY(), -20), Vector<3>::Zero()};
+  EXPECT_NEAR(angle(pose, "left_knee_flexion"), 60, 1e-9);
+  EXPECT_NEAR(angle(pose, "left_ankle_dorsiflexion"), 20, 1e-9);
+}
+
+TEST(JointAngles, ShouldersHavePlaneAndElevation) {
+  GaitPose pose;
+  pose[SegmentId::trunk] = Rigid3{};
+  pose[SegmentId::left_upper_arm] = Rigid3{about(Vector<3>::UnitX(), 80), Vector<3>::Zero()};    // the left arm out to the left
+  pose[SegmentId::right_upper_arm] = Rigid3{about(Vector<3>::UnitY(), -70), Vector<3>::Zero()};  // the right arm ahead
+  EXPECT_NEAR(angle(pose, "left_shoulder_elevation"), 80, 1e-9);
+  EXPECT_NEAR(angle(pose, "left_shoulder_plane"), 0, 1e-9);
+  EXPECT_NEAR(angle(pose, "right_shoulder_elevation"), 70, 1e-9);
+  EXPECT_NEAR(angle(pose, "right_shoulder_plane"), 90, 1e-9);
+}
+
+TEST(JointAngles, GoOnOverHalfATurn) {
+  std::vector<std::optional<double>> angles = {3.0, std::nullopt, -3.0, -2.9};
+  unwrap(angles);
+  EXPECT_NEAR(*angles[2], 2 * std::numbers::pi - 3.0, 1e-12);
+  EXPECT_NEAR(*angles[3], 2 * std::numbers::pi - 2.9, 1e-12);
+}
+
+/// A walker at 1.2 m/s, a cycle a second: feet stand for 0.6 of it.
+FeetPaths walker(double rate_hz, double seconds, double turn) {
+  FeetPaths feet;
+  const auto place = [&](double along, double aside) {
+    const double angle = turn * along;
+    return Vector<3>(along * std::cos(angle) - aside * std::sin(angle), along * std::sin(angle) + aside * std::cos(angle), 0.1);
+  };
+  for (int i = 0; i < static_cast<int>(seconds * rate_hz); ++i) {
+    const double t = i / rate_hz;
+    feet.sacrum.emplace_back(place(1.2 * t, 0));
+    for (const Side side : kSides) {
+      const double phase = t + (side == Side::left ? 0 : 0.5), cycle = std::floor(phase), part = phase - cycle;
+      const double swing = std::clamp((part - 0.6) / 0.4, 0.0, 1.0),
+                   ahead = 1.2 * (cycle - (side == Side::left ? 0 : 0.5) + swing -
+                                  std::sin(2 * std::numbers::pi * swing) / (2 * std::numbers::pi));
+      feet.heel[static_cast<std::size_t>(side)].emplace_back(place(ahead, side == Side::left ? 0.1 : -0.1));
+      feet.toe[static_cast<std::size_t>(side)].emplace_back(place(ahead + 0.2, side == Side::left ? 0.1 : -0.1));
+    }
+  }
+  return feet;
+}
+
+TEST(GaitEvents, AreFoundWhereverTheWalkGoes) {
+  for (const double turn : {0.0, 0.3}) {
+    FeetPaths feet = walker(100, 5, turn);
+    for (std::size_t i = 130; i < 140; ++i) feet.heel[0][i].reset();
+    const auto events = gait_events(feet, 100);
+    int found = 0;
+    for (const GaitEvent& event : events) {
+      const double phase = event.time_s + (event.side == Side::left ? 0 : 0.5), part = phase - std::floor(phase);
+      const double off = event.strike ? std::min(part, 1 - part) : std::abs(part - 0.6);
+      EXPECT_LT(off, 0.12) << event.time_s;
+      ++found;
+    }
+    EXPECT_GE(found, 17) << "two feet, five cycles, a strike and an off each, some at the rim";
+  }
+  EXPECT_TRUE(gait_events({}, 100).empty());
+  FeetPaths still = walker(100, 3, 0);
+  for (auto* path : {&still.heel[0], &still.heel[1], &still.toe[0], &still.toe[1], &still.sacrum})
+    std::fill(path->begin(), path->end(), Vector<3>(1, 2, 0));
+  EXPECT_TRUE(gait_events(still, 100).empty()) << "who stands takes no steps";
+}
+
+TEST(GaitCycles, MeasureTheWalk) {
+  const FeetPaths feet = walker(100, 6, 0);
+  const auto events = gait_events(feet, 100);
+  std::vector<AngleCurve> angles = {{"left_knee_flexion", {}}};
+  for (int i = 0; i < 600; ++i) angles[0].values.emplace_back(std::sin(2 * std::numbers::pi * i / 100));
+  const GaitCycles cycles = gait_cycles(events, angles, feet, 100);
+  ASSERT_GE(cycles.curves.at(0).cycles.size(), 3U);
+  EXPECT_LT(cycles.curves[0].deviation[20], 0.02);
+  const auto figure = [&](const std::string& name) {
+    return *std::find_if(cycles.figures.begin(), cycles.figures.end(), [&](const GaitFigure& f) {
+              return f.name == name;
+            })->mean[0];
+  };
+  EXPECT_NEAR(figure("stride length"), 1.2, 0.01);
+  EXPECT_NEAR(figure("cadence"), 120, 0.5);
+  EXPECT_NEAR(figure("speed"), 1.2, 0.01);
+  EXPECT_NEAR(figure("step width"), 0.2, 0.01);
+  EXPECT_NEAR(figure("step length"), 0.6, 0.05);
+}
+
+TEST(LowPass, KeepsWhatIsSlowAndItsPlace) {
+  std::vector<double> slow, both;
+  for (int i = 0; i < 400; ++i) {
+    slow.push_back(std::sin(2 * std::numbers::pi * i / 100.0));
+    both.push_back(slow.back() + 0.3 * std::sin(2 * std::numbers::pi * 30 * i / 100.0));
+  }
+  const auto smooth = low_pass(both, 6, 100);
+  for (std::size_t i = 50; i < 350; ++i) EXPECT_NEAR(smooth[i], slow[i], 0.01);
+}
+
+}  // namespace
+}  // namespace marey::analyse::gait

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "marey/core/sink.h"
+
+namespace marey::format::skeleton {
+
+/// Writes the bodies of a recording that form a skeleton as glTF 2.0 in one binary file (.glb): y up, metres, a node a segment, its
+/// motion as an animation, and a stick figure (an octahedron a bone) that is skinned to them, because programs show no skeleton
+/// without a mesh. Needs all of it, so that memory grows with the length.
+std::unique_ptr<Sink> create_glb(const std::string& path);
+
+}  // namespace marey::format::skeleton

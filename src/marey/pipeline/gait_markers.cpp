@@ -1,0 +1,130 @@
+#include "marey/pipeline/gait_markers.h"
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "marey/core/error.h"
+#include "marey/format/mapped_file.h"
+#include "marey/format/motion/c3d_parameters.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+#include "marey/solve/skeleton/human.h"
+
+namespace marey::pipeline {
+namespace {
+
+constexpr std::int64_t kMostRows = 10'000'000;
+constexpr double kStandsStillM = 0.03;
+
+}  // namespace
+
+GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks) {
+  format::ReadOptions how;
+  how.up = up.value_or(format::UpAxis::z);
+  const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
+  GaitMarkers markers;
+  markers.rate_hz = reader->header().rate_hz;
+  std::map<TrackId, std::string> labels;
+  const auto learn = [&](std::span<const TrackName> named) {
+    for (const TrackName& track : named) {
+      const std::string label = track.label.substr(track.label.find_last_of(':') + 1);
+      if (gait::segment_of_marker(label)) labels[track.id] = label;
+    }
+  };
+  learn(reader->tracks());
+  std::optional<std::int64_t> first;
+  while (const auto instant = reader->next()) {
+    learn(instant->named);
+    if (!first) {
+      first = instant->index;
+      markers.begin_s = seconds(instant->time);
+    }
+    const std::int64_t row = instant->index - *first;
+    if (row >= kMostRows) throw Error("{}: frame {} is beyond what one walk has", path, instant->index);
+    markers.rows.resize(static_cast<std::size_t>(row) + 1);
+    for (const Sample& sample : instant->samples) {
+      const auto label = labels.find(sample.track);
+      if (label != labels.end() && !sample.position.isZero()) markers.rows.back()[label->second] = sample.position;
+    }
+    hooks.advance({.step = "reading", .done = row + 1, .total = reader->instant_count()});
+  }
+  markers.warnings = reader->warnings();
+  return markers;
+}
+
+gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name) {
+  gait::MarkerPlaces means;
+  std::map<std::string, int> counts;
+  for (const gait::MarkerPlaces& row : markers.rows) {
+    for (const auto& [label, place] : row) {
+      means.try_emplace(label, Vector<3>::Zero()).first->second += place;
+      ++counts[label];
+    }
+  }
+  for (auto& [label, place] : means) place /= counts[label];
+  for (const gait::MarkerPlaces& row : markers.rows) {
+    for (const auto& [label, place] : row) {
+      const auto segment = *gait::segment_of_marker(label);
+      const bool held =
+          segment == gait::SegmentId::pelvis || label.ends_with("KNE") || label.ends_with("ANK") || label.ends_with("HEE");
+      const double off = (place - means.at(label)).norm();
+      if (held && off > kStandsStillM)
+        throw Error("{}: {} moves by {:.0f} mm; a static trial is of a person who stands still", name, label, 1000 * off);
+    }
+  }
+  return means;
+}
+
+void take_measures(const std::string& path, gait::GaitSubject& subject) {
+  if (format::format_to_read(path, format::Content::space).name != "c3d") return;
+  const format::MappedFile file(path);
+  const auto head = format::motion::read_c3d_head(file.bytes(), path);
+  const auto take = [&](const std::string& name, std::optional<double>& into) {
+    const auto value = head.number("PROCESSING:" + name);
+    if (!into && value && *value > 0) into = *value / 1000;
+  };
+  for (const gait::Side side : gait::kSides) {
+    const auto i = static_cast<std::size_t>(side);
+    const std::string letter = side == gait::Side::left ? "L" : "R";
+    take(letter + "LEGLENGTH", subject.leg_length[i]);
+    take(letter + "KNEEWIDTH", subject.knee_width[i]);
+    take(letter + "ANKLEWIDTH", subject.ankle_width[i]);
+  }
+  take("INTERASISDISTANCE", subject.asis_distance);
+  if (const auto diameter = head.number("PROCESSING:MARKERDIAMETER"); diameter && *diameter > 0)
+    subject.marker_radius = *diameter / 2000;
+}
+
+void take_soles(const std::string& path, gait::GaitSubject& subject) {
+  if (format::format_to_read(path, format::Content::space).name != "c3d") return;
+  const format::MappedFile file(path);
+  const auto head = format::motion::read_c3d_head(file.bytes(), path);
+  for (const gait::Side side : gait::kSides) {
+    const auto above =
+        head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICPLANTFLEX"));
+    if (!above || *above == 0) continue;
+    subject.sole_from_ankle_toe[static_cast<std::size_t>(side)] = Eigen::AngleAxisd(-*above, Vector<3>::UnitY()).toRotationMatrix();
+  }
+}
+
+Skeleton human_from_static(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks) {
+  gait::GaitSubject subject;
+  take_measures(path, subject);
+  const gait::MarkerPlaces standing = standing_places(read_gait_markers(path, up, hooks), path);
+  subject.learn_from(standing);
+  const gait::GaitPose pose = gait::pose_of(standing, subject);
+  std::vector<solve::skeleton::StandingSegment> segments;
+  for (std::size_t s = 0; s < gait::kSegments; ++s) {
+    if (pose.world_from[s]) segments.push_back({std::string(gait::name_of(static_cast<gait::SegmentId>(s))), *pose.world_from[s]});
+  }
+  std::vector<solve::skeleton::StandingMarker> markers;
+  for (const auto& [label, place] : standing)
+    markers.push_back({label, std::string(gait::name_of(*gait::segment_of_marker(label))), place});
+  return solve::skeleton::human_skeleton(std::filesystem::path(path).stem().string(), segments, markers);
+}
+
+}  // namespace marey::pipeline

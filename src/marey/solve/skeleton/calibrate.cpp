@@ -1,0 +1,223 @@
+#include "marey/solve/skeleton/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+
+#include "marey/core/error.h"
+
+namespace marey::solve::skeleton {
+namespace {
+
+/// "femur_r" and "femur_l", "right_thigh" and "left_thigh", "RightLeg" and "LeftLeg" are one.
+std::string without_side(std::string name) {
+  for (const auto& [right, left] : {std::pair<std::string, std::string>{"right", "left"}, {"Right", "Left"}}) {
+    for (const std::string& word : {right, left}) {
+      if (const auto at = name.find(word); at != std::string::npos) return name.erase(at, word.size());
+    }
+  }
+  if (name.size() > 2 && (name.ends_with("_r") || name.ends_with("_l"))) name.resize(name.size() - 2);
+  return name;
+}
+
+class Calibrator {
+ public:
+  Calibrator(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options)
+      : base_(skeleton), options_(options) {
+    const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, options.frames)));
+    for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
+    std::map<std::string, int> groups;
+    for (const Segment& segment : skeleton.segments)
+      group_of_.push_back(groups.try_emplace(without_side(segment.name), static_cast<int>(groups.size())).first->second);
+    group_scale_.assign(groups.size(), Vector<3>::Ones());
+    offsets_.assign(skeleton.markers.size(), Vector<3>::Zero());
+    centre_.setOnes(3 * std::ssize(group_scale_));
+  }
+
+  Calibration run() {
+    if (frames_.empty()) throw Error("{}: there are no frames to fit the skeleton to", base_.name);
+    Calibration result;
+    solve_poses();
+    result.rms_before_m = rms_;
+    if (options_.overall) result.overall_scale = find_overall();
+    for (int round = 0; round < options_.rounds; ++round) {
+      solve_poses();
+      if (!improve(result)) break;
+    }
+    solve_poses();
+    result.rms_after_m = rms_;
+    result.skeleton = now_;
+    for (std::size_t s = 0; s < base_.segments.size(); ++s) result.scales.push_back(scale_of(s));
+    for (std::size_t j = 0; j < offsets_.size(); ++j) result.marker_moved_m.push_back(offsets_[j].norm());
+    return result;
+  }
+
+ private:
+  const Vector<3>& scale_of(std::size_t segment) const { return group_scale_[static_cast<std::size_t>(group_of_[segment])]; }
+
+  void apply() {
+    std::vector<Vector<3>> scales;
+    for (std::size_t s = 0; s < base_.segments.size(); ++s) scales.push_back(scale_of(s));
+    now_ = scaled(base_, scales);
+    for (std::size_t j = 0; j < offsets_.size(); ++j) now_.markers[j].position += offsets_[j];
+  }
+
+  void solve_poses() {
+    apply();
+    PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m, .robust_m = 0.2});
+    poses_.clear();
+    double sum = 0;
+    int count = 0;
+    for (const SeenMarkers* frame : frames_) {
+      const SolvedPose& pose = solver.step(0.1, *frame);
+      poses_.push_back(pose.coordinates);
+      sum += pose.rms_m * pose.rms_m * pose.seen;
+      count += pose.seen;
+    }
+    if (count == 0) throw Error("{}: none of the frames shows one of the skeleton's markers", base_.name);
+    rms_ = std::sqrt(sum / count);
+  }
+
+  /// The one scale of the whole person, by golden section: poses are solved anew for each.
+  double find_overall() {
+    const auto rms_at = [&](double scale) {
+      std::fill(group_scale_.begin(), group_scale_.end(), Vector<3>::Constant(scale));
+      solve_poses();
+      return rms_;
+    };
+    constexpr double kGolden = 0.6180339887498949;
+    double low = 0.6, high = 1.4;
+    double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = rms_at(a), at_b = rms_at(b);
+    while (high - low > 0.005) {
+      if (at_a < at_b) {
+        high = std::exchange(b, a);
+        at_b = std::exchange(at_a, rms_at(a = high - kGolden * (high - low)));
+        at_a = rms_;
+      } else {
+        low = std::exchange(a, b);
+        at_a = std::exchange(at_b, rms_at(b = low + kGolden * (high - low)));
+        at_b = rms_;
+      }
+    }
+    const double best = 0.5 * (low + high);
+    centre_.setConstant(best);
+    rms_at(best);
+    return best;
+  }
+
+  /// How marker `j` moves with the scales of the segments between it and the root, and with its own offset.
+  void add_derivatives(std::size_t j, const std::vector<Rigid3>& pose, Eigen::MatrixXd& by) const {
+    const auto own = static_cast<std::size_t>(now_.markers[j].segment);
+    const auto columns = [&](std::size_t s) { return by.middleCols(3 * group_of_[s], 3); };
+    columns(own) += pose[own].rotation * base_.markers[j].position.asDiagonal();
+    for (std::size_t s = own; base_.segments[s].parent; s = static_cast<std::size_t>(*base_.segments[s].parent)) {
+      const auto parent = static_cast<std::size_t>(*base_.segments[s].parent);
+      columns(parent) += pose[parent].rotation * base_.segments[s].joint.parent_from_joint.translation.asDiagonal();
+    }
+    by.middleCols(3 * (std::ssize(group_scale_) + static_cast<Eigen::Index>(j)), 3) = pose[own].rotation;
+  }
+
+  /// One Gauss–Newton step of scales and offsets; false where it is small.
+  bool improve(Calibration& result) {
+    const Eigen::Index scales = 3 * std::ssize(group_scale_), unknowns = scales + 3 * std::ssize(offsets_);
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns);
+    Articulation articulation(now_);
+    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(articulation, *frames_[f], poses_[f], information, gradient);
+    const Eigen::VectorXd data = information.diagonal();
+    const double of_scale = 1 / (options_.scale_sigma * options_.scale_sigma),
+                 of_offset = 1 / (options_.offset_sigma_m * options_.offset_sigma_m);
+    for (Eigen::Index u = 0; u < unknowns; ++u) {
+      const bool scale = u < scales;
+      const double now = scale ? group_scale_[static_cast<std::size_t>(u / 3)][u % 3]
+                               : offsets_[static_cast<std::size_t>((u - scales) / 3)][(u - scales) % 3];
+      const double weight = scale ? (options_.scale_sigma > 0 ? of_scale : 1e12) : of_offset;
+      information(u, u) += weight;
+      gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
+    }
+    const Eigen::VectorXd step = information.ldlt().solve(gradient);
+    for (Eigen::Index u = 0; u < scales; ++u)
+      group_scale_[static_cast<std::size_t>(u / 3)][u % 3] =
+          std::clamp(group_scale_[static_cast<std::size_t>(u / 3)][u % 3] + step[u], 0.3, 3.0);
+    for (std::size_t j = 0; j < offsets_.size(); ++j) offsets_[j] += step.segment<3>(scales + 3 * static_cast<Eigen::Index>(j));
+    result.undetermined.clear();
+    for (std::size_t s = 0; s < base_.segments.size(); ++s) {
+      if (data.segment<3>(3 * group_of_[s]).maxCoeff() < of_scale) result.undetermined.push_back(base_.segments[s].name);
+    }
+    return step.cwiseAbs().maxCoeff() > 1e-5;
+  }
+
+  /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ.
+  void add_frame(Articulation& articulation, const SeenMarkers& seen, const std::vector<double>& coordinates,
+                 Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
+    const int n = articulation.dofs();
+    articulation.place(articulation.state_of(coordinates));
+    const auto& pose = articulation.world_from_segment();
+    const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
+    Eigen::MatrixXd by_pose = Eigen::MatrixXd::Zero(3, n), by_model(3, gradient.size());
+    Eigen::MatrixXd h = Eigen::MatrixXd::Identity(n, n), e = Eigen::MatrixXd::Zero(n, gradient.size());
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+      if (!seen[j]) continue;
+      const auto own = static_cast<std::size_t>(now_.markers[j].segment);
+      const Vector<3> p = pose[own] * now_.markers[j].position, off = *seen[j] - p;
+      by_pose.setZero();
+      for (std::optional<int> s = static_cast<int>(own); s; s = base_.segments[static_cast<std::size_t>(*s)].parent) {
+        for (const Driver& driver : articulation.drivers(static_cast<std::size_t>(*s)))
+          by_pose.col(driver.dof) += driver.shift + driver.turn.cross(p);
+      }
+      by_model.setZero();
+      add_derivatives(j, pose, by_model);
+      h.noalias() += weight * by_pose.transpose() * by_pose;
+      e.noalias() += weight * by_pose.transpose() * by_model;
+      b.noalias() += weight * by_pose.transpose() * off;
+      information.noalias() += weight * by_model.transpose() * by_model;
+      gradient.noalias() += weight * by_model.transpose() * off;
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> pose_solver(h);
+    information.noalias() -= e.transpose() * pose_solver.solve(e);
+    gradient.noalias() -= e.transpose() * pose_solver.solve(b);
+  }
+
+  const Skeleton& base_;
+  CalibrateOptions options_;
+  std::vector<const SeenMarkers*> frames_;
+  std::vector<int> group_of_;
+  std::vector<Vector<3>> group_scale_, offsets_;
+  Eigen::VectorXd centre_;
+  Skeleton now_;
+  std::vector<std::vector<double>> poses_;
+  double rms_ = 0;
+};
+
+}  // namespace
+
+Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
+  Skeleton result = skeleton;
+  for (std::size_t s = 0; s < result.segments.size(); ++s) {
+    Segment& segment = result.segments[s];
+    Joint& joint = segment.joint;
+    if (segment.end) segment.end = scales[s].cwiseProduct(*segment.end);
+    // joint_from_segment places the joint in the segment: it is there that the scale counts.
+    Rigid3 segment_from_joint = joint.joint_from_segment.inverse();
+    segment_from_joint.translation = scales[s].cwiseProduct(segment_from_joint.translation);
+    joint.joint_from_segment = segment_from_joint.inverse();
+    if (!segment.parent) continue;
+    const Vector<3>& parent = scales[static_cast<std::size_t>(*segment.parent)];
+    joint.parent_from_joint.translation = parent.cwiseProduct(joint.parent_from_joint.translation);
+    for (JointAxis& axis : joint.axes) {
+      if (!axis.turns) axis.amount = axis.amount.times(parent.cwiseProduct(joint.parent_from_joint.rotation * axis.axis).norm());
+    }
+  }
+  for (SkeletonMarker& marker : result.markers)
+    marker.position = scales[static_cast<std::size_t>(marker.segment)].cwiseProduct(marker.position);
+  return result;
+}
+
+Calibration calibrate(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options) {
+  return Calibrator(skeleton, frames, options).run();
+}
+
+}  // namespace marey::solve::skeleton

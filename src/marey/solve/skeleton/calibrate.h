@@ -1,0 +1,47 @@
+// Fits a skeleton to a person: how large its segments are and where its markers sit, from frames of a motion, poses and all at
+// once.
+//
+// Minimises Σ |p(x_f, s, o) − m|² / σ² over frames f, with priors: segments' scales s (along each of a segment's axes; left and
+// right tied) near the person's overall size, markers' offsets o near where the skeleton has them. Poses are eliminated frame by
+// frame (Schur's complement), as points are in bundle adjustment, so that the cost is linear in the frames. Method: Reinbolt et al.
+// 2005; Andersen et al. 2010.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "marey/core/skeleton.h"
+#include "marey/solve/skeleton/pose_solver.h"
+
+namespace marey::solve::skeleton {
+
+struct CalibrateOptions {
+  double marker_sigma_m = 0.005;
+  double scale_sigma = 0.05;     ///< of a segment's scale along one of its axes, against the person's; 0: scales stay
+  double offset_sigma_m = 0.01;  ///< of a marker's place on its segment
+  bool overall = true;           ///< first finds the person's size as a whole
+  int frames = 60;               ///< so many of those given, evenly
+  int rounds = 8;
+};
+
+using SeenMarkers = std::vector<std::optional<Vector<3>>>;  ///< one place for each of the skeleton's markers
+
+struct Calibration {
+  Skeleton skeleton;
+  double overall_scale = 1;
+  double rms_before_m = 0, rms_after_m = 0;  ///< of the frames used
+  std::vector<Vector<3>> scales;             ///< by segment
+  std::vector<double> marker_moved_m;        ///< by marker
+  std::vector<std::string> undetermined;     ///< segments whose scale the frames do not determine: less than the prior said
+};
+
+/// Throws Error where there are no frames, or they do not show the skeleton.
+Calibration calibrate(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options = {});
+
+/// The skeleton with its segments larger along their own axes: joints that hang on them, markers, and shifts of the joints that
+/// hang on them.
+Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales);
+
+}  // namespace marey::solve::skeleton
