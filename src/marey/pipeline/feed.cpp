@@ -253,21 +253,25 @@ std::optional<CameraFrame> Feed::next() {
   if (!result) return std::nullopt;
   result->decode_s = decoding.seconds();
   if (options_.steady_times) result->frame.time = timestamp_from_seconds(steady(seconds(result->frame.time)));
-  return taken_in(std::move(*result));
-}
-
-/// By the rig's clock, and searched where the feed does that.
-CameraFrame Feed::taken_in(CameraFrame given) {
-  given.frame.camera = id_;
-  given.frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
-  if (detector_ == nullptr || given.detections) return given;
-  const Stopwatch detecting;
-  given.detections = detector_->detect(given.frame, {}).detections;
-  given.detect_s = detecting.seconds();
+  CameraFrame given = by_rig_clock(std::move(*result));
+  search(given);
   return given;
 }
 
-std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy) {
+CameraFrame Feed::by_rig_clock(CameraFrame given) const {
+  given.frame.camera = id_;
+  given.frame.time += duration_from_seconds(camera_.offset_s.value_or(0));
+  return given;
+}
+
+void Feed::search(CameraFrame& given) {
+  if (detector_ == nullptr || given.detections) return;
+  const Stopwatch detecting;
+  given.detections = detector_->detect(given.frame, {}).detections;
+  given.detect_s = detecting.seconds();
+}
+
+std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy, bool all) {
   std::vector<CameraFrame> frames;
   for (CameraFrame& given : live_->arrived()) {
     Picture& picture = given.frame.picture;
@@ -275,7 +279,10 @@ std::vector<CameraFrame> Feed::arrived(const source::LivePolicy& policy) {
       if ((*camera_.region & cv::Rect({}, picture.size())) != *camera_.region) continue;
       picture = picture.part(*camera_.region);
     }
-    frames.push_back(taken_in(std::move(given)));
+    frames.push_back(by_rig_clock(std::move(given)));
+  }
+  for (CameraFrame& given : frames) {
+    if (all) search(given);
   }
   if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
   return frames;

@@ -59,8 +59,11 @@ class Feed {
 
   /// The next frame; nothing at the end. Its time is by the rig's clock: the camera's with `offset_s` added.
   std::optional<CameraFrame> next();
-  /// Of a live camera, what has come since the last call, in order; never waits for it.
-  std::vector<CameraFrame> arrived(const source::LivePolicy& policy);
+  /// Of a live camera, what has come since the last call, in order; never waits for it. Searched at once, where the feed does that,
+  /// only with `all`: who falls behind lets go most of them.
+  std::vector<CameraFrame> arrived(const source::LivePolicy& policy, bool all = true);
+  /// Looks for things in a frame of this camera, where that has not been done.
+  void search(CameraFrame& given);
   /// Of a live camera: whether it is there, and what became of its frames.
   bool is_connected() const { return live_ == nullptr || live_->connected(); }
   LiveReport report() const { return live_ != nullptr ? live_->report() : LiveReport{}; }
@@ -94,7 +97,7 @@ class Feed {
 
   Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input);
   double steady(double time);
-  CameraFrame taken_in(CameraFrame frame);
+  CameraFrame by_rig_clock(CameraFrame frame) const;
 
   RigCamera camera_;
   CameraId id_;

@@ -34,6 +34,12 @@ std::optional<FrameSet> Clock::next_live() {
         set.cameras.push_back(take(i, set.time));
         if (!set.cameras.back()) ++lanes_[i].missed;
       }
+      tbb::parallel_for(std::size_t{0}, lanes_.size(), [&](std::size_t i) {
+        if (set.cameras[i]) feeds_[i].search(*set.cameras[i]);
+      });
+      for (const auto& camera : set.cameras) {
+        if (camera && camera->detections && !options_.interpolate) detecting_.add(camera->detect_s);
+      }
       next_ = *index + 1;
       forget_before(set.time);
       follow(set);
@@ -48,7 +54,8 @@ std::optional<FrameSet> Clock::next_live() {
 /// Takes in what has come; the first frame of all begins the moments.
 void Clock::gather() {
   std::vector<std::vector<CameraFrame>> came(feeds_.size());
-  tbb::parallel_for(std::size_t{0}, feeds_.size(), [&](std::size_t i) { came[i] = feeds_[i].arrived(*options_.live); });
+  tbb::parallel_for(std::size_t{0}, feeds_.size(),
+                    [&](std::size_t i) { came[i] = feeds_[i].arrived(*options_.live, options_.interpolate); });
   for (const auto& frames : came) {
     if (start_ || frames.empty()) continue;
     start_ = frames.front().frame.time;
@@ -60,7 +67,7 @@ void Clock::gather() {
     Lane& lane = lanes_[i];
     for (CameraFrame& frame : came[i]) {
       decoding_.add(frame.decode_s);
-      detecting_.add(frame.detect_s);
+      if (options_.interpolate) detecting_.add(frame.detect_s);
       ++lane.frames;
       if (frame.frame.time < moment(next_) - duration_from_seconds(kHalf / rate_hz_)) {
         ++drops_.late_frames;

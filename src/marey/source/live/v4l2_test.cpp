@@ -80,6 +80,14 @@ class FakeKernel final : public Kernel {
         controls.emplace_back(set.id, set.value);
         return 0;
       }
+      default:
+        return stream(request, argument);
+    }
+  }
+
+ private:
+  int stream(unsigned long request, void* argument) {
+    switch (request) {
       case VIDIOC_REQBUFS:
         return 0;
       case VIDIOC_QUERYBUF: {
@@ -102,7 +110,6 @@ class FakeKernel final : public Kernel {
     }
   }
 
- private:
   int deliver(v4l2_buffer& buffer) {
     const FakeDelivery now = coming.front();
     coming.pop_front();
