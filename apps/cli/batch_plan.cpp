@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #include "marey/core/error.h"
+#include "marey/core/stop.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/register.h"
@@ -347,6 +348,7 @@ BatchPlan make_plan(const PlanRequest& request) {
   const std::string ending = request.ending.empty() ? usual_ending(request.job) : request.ending;
   std::set<std::string> names;
   for (const Found& found : fs::is_directory(request.from, error) ? in_folder(request, plan.results()) : in_table(request)) {
+    stop_point();
     BatchTask& task = plan.tasks.emplace_back();
     task.number = static_cast<int>(plan.tasks.size());
     task.name = found.name;

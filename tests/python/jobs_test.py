@@ -71,7 +71,8 @@ class Jobs(unittest.TestCase):
         tracks = marey.track(self.film, sinks=[self.folder / "beside.marey"])
         tracks.write(self.folder / "python.txt")
         self.assertEqual((self.folder / "python.txt").read_bytes(), (self.folder / "shell.txt").read_bytes())
-        self.assertEqual((self.folder / "beside.marey").read_bytes(), (self.folder / "shell.marey").read_bytes())
+        beside, shell = marey.read(self.folder / "beside.marey"), marey.read(self.folder / "shell.marey")
+        np.testing.assert_array_equal(beside.to_numpy(), shell.to_numpy())  # what a take leaves unused within a page of its own may differ
         self.assertEqual(len(tracks.tracks), 3)
         self.assertEqual(tracks.summary["frames"], 80)
         self.assertEqual(tracks.made_by["inputs"][0][0], "video.mp4")

@@ -228,8 +228,11 @@ class ReportPage {
 
   void write_person(const MatchReport::Person& person) {
     const std::string own = std::to_string(person.number);
-    add("<details><summary>{}{} {}</summary><div class=\"two\"><div>", person.name == own ? "" : person.name.empty() ? own : own + " · ", escaped(person.name),
-        escaped(person.team));
+    add("<details><summary>{}{} {}</summary><div class=\"two\"><div>",
+        person.name == own    ? ""
+        : person.name.empty() ? own
+                              : own + " · ",
+        escaped(person.name), escaped(person.team));
     open_pitch();
     draw_heat(person);
     draw_paths(person, 0.3, opacity_of({&person, 1}, 0.3));

@@ -99,8 +99,8 @@ void Page::add(const PageTable& table) {
   for (const auto& row : table.rows) {
     body_ += "<tr>";
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const bool bar =
-          columns[i].numbers && columns[i].largest > 0 && static_cast<int>(i) >= table.bars_from && static_cast<int>(i) < table.bars_end && !row[i].empty();
+      const bool bar = columns[i].numbers && columns[i].largest > 0 && static_cast<int>(i) >= table.bars_from &&
+                       static_cast<int>(i) < table.bars_end && !row[i].empty();
       if (bar) {
         const double share = std::max(0.0, *number_of(row[i])) / columns[i].largest;
         fmt::format_to(out, "<td class=\"n\" style=\"--w:{:.0f}%\">{}</td>", 100 * share, row[i]);
