@@ -226,7 +226,12 @@ void check_written_name(const std::string& name) {
 }
 
 std::string names_of_read(Contents wanted) {
-  return names_of([&](const Format& format) { return format.is_read() && format.holds.any_of(wanted); });
+  // Of some recordings it is told what they hold, and no more; that counts where everything is asked for.
+  const bool only_told = wanted.has(Content::labels);
+  return names_of([&](const Format& format) {
+    const bool recording = format.open != nullptr || format.read != nullptr;
+    return format.is_read() && format.holds.any_of(wanted) && (recording || only_told || !format.holds.any_of(kRecordings));
+  });
 }
 
 std::string names_of_written(Contents wanted) {

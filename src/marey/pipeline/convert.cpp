@@ -108,7 +108,10 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     summary.warnings.push_back(
         fmt::format("{}: says that y is up; {} turns it so that z is", from, out.z_up ? "--up y" : "--from-up y"));
   }
-  if (options.labelled) std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
+  if (options.labelled) {
+    std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
+    if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);
+  }
   const auto reader = format::open_recording(from, in, how);
   const auto sink = format::create_recording(to, out, plan);
   sink->begin(plan.info.header);

@@ -119,6 +119,22 @@ void BodyBoot::try_pair(std::span<const Vector<3>> points, int body, const Edge&
   }
 }
 
+bool BodyBoot::fits_better_mirrored(std::span<const Vector<3>> points, const BootCandidate& candidate) const {
+  std::vector<Vector<3>> mirrored = layouts_[static_cast<std::size_t>(candidate.body)], from, to;
+  for (Vector<3>& marker : mirrored) marker.x() = -marker.x();
+  for (std::size_t m = 0; m < mirrored.size(); ++m) {
+    if (!candidate.point_of[m]) continue;
+    from.push_back(mirrored[m]);
+    to.push_back(points[static_cast<std::size_t>(*candidate.point_of[m])]);
+  }
+  const Rigid3 world_from_mirrored = geometry::rigid_fit(from, to);
+  const auto is_there = [&](const Vector<3>& marker) {
+    const Vector<3> place = world_from_mirrored * marker;
+    return std::any_of(points.begin(), points.end(), [&](const Vector<3>& point) { return (point - place).norm() < tolerance_; });
+  };
+  return std::count_if(mirrored.begin(), mirrored.end(), is_there) > candidate.matched;
+}
+
 void BodyBoot::confirm(std::span<const Vector<3>> points, int body, Rigid3 pose) {
   const auto& layout = layouts_[static_cast<std::size_t>(body)];
   BootCandidate candidate{body, pose, {}, 0, 0};
@@ -144,6 +160,7 @@ void BodyBoot::confirm(std::span<const Vector<3>> points, int body, Rigid3 pose)
     candidate.rms = std::sqrt(squares / candidate.matched);
     candidate.world_from_body = geometry::rigid_fit(from, to);
   }
+  if (candidate.matched < std::ssize(layout) && fits_better_mirrored(points, candidate)) return;
   const std::vector<int> mine = points_of(candidate);
   if (std::adjacent_find(mine.begin(), mine.end()) != mine.end()) return;  // one point for two markers
   for (BootCandidate& other : found_) {

@@ -51,6 +51,9 @@ class BodyBoot {
   std::vector<Edge> rarest_edges(const std::vector<Vector<3>>& layout) const;
   void try_pair(std::span<const Vector<3>> points, int body, const Edge& edge, int p, int q);
   void confirm(std::span<const Vector<3>> points, int body, Rigid3 pose);
+  /// Of a body that is there in part: its markers that are almost in a plane lie in its mirror image's places too, and that image
+  /// has more.
+  bool fits_better_mirrored(std::span<const Vector<3>> points, const BootCandidate& candidate) const;
 
   struct Pair {
     double length;

@@ -1,0 +1,52 @@
+#include "marey/solve/bodies/body_boot.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/solve/bodies/moving_bodies_test.h"
+
+namespace marey::solve::bodies {
+namespace {
+
+constexpr double kWithin_m = 0.005;
+
+/// The layout somewhere in space; mirrored where asked for.
+std::vector<Vector<3>> placed(const std::vector<Vector<3>>& layout, bool mirrored, moving::Random& random) {
+  const geometry::Rigid3 pose{geometry::rotation_from(random.in_box(2)), random.in_box(1)};
+  std::vector<Vector<3>> points;
+  for (const Vector<3>& marker : layout)
+    points.push_back(pose * Vector<3>(mirrored ? -marker.x() : marker.x(), marker.y(), marker.z()));
+  return points;
+}
+
+TEST(BodyBoot, FindsABodyAndNotItsMirrorImage) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    moving::Random random(seed);
+    const std::vector<Vector<3>> layout = moving::scattered(random, 5, 0.12, 0.05);
+    BodyBoot boot({layout}, kWithin_m);
+    const int wanted[] = {0};
+    found += !boot.find(placed(layout, false, random), wanted).empty();
+    EXPECT_TRUE(boot.find(placed(layout, true, random), wanted).empty());
+  }
+  EXPECT_EQ(found, 100);
+}
+
+TEST(BodyBoot, FindsABodyOfWhichAMarkerIsHidden) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    moving::Random random(seed);
+    const std::vector<Vector<3>> layout = moving::scattered(random, 5, 0.12, 0.05);
+    BodyBoot boot({layout}, kWithin_m);
+    std::vector<Vector<3>> points = placed(layout, false, random);
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(seed % 5));
+    const int wanted[] = {0};
+    found += !boot.find(points, wanted).empty();
+  }
+  EXPECT_EQ(found, 100);
+}
+
+}  // namespace
+}  // namespace marey::solve::bodies
