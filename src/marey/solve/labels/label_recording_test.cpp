@@ -174,12 +174,17 @@ TEST(LabelRecording, PutsExchangedNamesRight) {
     wrong.add(*instant);
   }
   const Labelled labelled = label_recording(wrong, learn_markers(taught, {}));
-  for (int m = 0; m < 20; ++m) {
-    const TrackColumns* track = labelled.recording.find(TrackId{m + 1});
-    ASSERT_EQ(track->size(), 300U) << m;
+  ASSERT_EQ(labelled.health.size(), 20U);
+  for (int name = 0; name < 20; ++name) {
+    const MarkerHealth& health = labelled.health[static_cast<std::size_t>(name)];
+    SCOPED_TRACE(health.label);
+    const int marker = std::stoi(health.label.substr(1));  // names come in the order of their letters
+    const TrackColumns* track = labelled.recording.find(TrackId{name + 1});
+    ASSERT_EQ(track->name.label, health.label);
+    ASSERT_EQ(track->size(), 300U);
     for (std::size_t row = 0; row < 300; ++row)
-      ASSERT_NEAR((track->position(row) - figure.at(m, 5 + static_cast<double>(row) / 100)).norm(), 0, 1e-9) << m << " at " << row;
-    EXPECT_EQ(labelled.health[static_cast<std::size_t>(m)].renamed, m == 3 || m == 11 ? 180 : 0);
+      ASSERT_NEAR((track->position(row) - figure.at(marker, 5 + static_cast<double>(row) / 100)).norm(), 0, 1e-9) << row;
+    EXPECT_EQ(health.renamed, marker == 3 || marker == 11 ? 180 : 0);
   }
   EXPECT_EQ(labelled.renamed, 2);
 }
