@@ -6,7 +6,6 @@ Usage: bodies_labels_test.py MAREY ROOT [unittest options]
 import csv
 import json
 import pathlib
-import re
 import shlex
 import shutil
 import sqlite3
@@ -21,8 +20,13 @@ ROOT = pathlib.Path()
 
 def commands(page):
     """The lines of the page's blocks that call the program, in order."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.M | re.S)
-    return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
+    lines, inside = [], None  # within which kind of block
+    for line in page.read_text().splitlines():
+        if line.startswith("```"):
+            inside = line[3:] if inside is None else None
+        elif inside == "" and line.startswith("marey "):
+            lines.append(line)
+    return lines
 
 
 class BodiesAndLabels(unittest.TestCase):
