@@ -63,7 +63,7 @@ struct ReadOptions {
   geometry::PitchSize pitch;  ///< of a match
   double rate_hz = 25;
   bool as_recorded = false;  ///< of a take: without its edits, which are then told beside it
-  UpAxis up = UpAxis::z;  ///< of points in space, the axis that is up in the file
+  UpAxis up = UpAxis::z;     ///< of points in space, the axis that is up in the file
 };
 
 /// The beginning of a file, by which its format is known.

@@ -7,8 +7,8 @@
 
 namespace marey::format {
 
-/// A file's bytes as memory, without reading it: pages come when they are touched, and go when memory is short. What is no file, such
-/// as a pipe, is read to its end first.
+/// A file's bytes as memory, without reading it: pages come when they are touched, and go when memory is short. What is no file,
+/// such as a pipe, is read to its end first.
 class MappedFile {
  public:
   /// Throws Error where it cannot be read, and for a folder; Stopped where a pipe was waited for.
