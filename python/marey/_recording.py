@@ -16,7 +16,7 @@ from ._instant import PROVENANCE
 from ._rig import Rig
 
 if TYPE_CHECKING:
-    import pandas as pd
+    import pandas as pd  # type: ignore[import-untyped,unused-ignore]
     import xarray as xr
 
 COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#e377c2")
@@ -247,8 +247,8 @@ class Recording:
             joined = np.concatenate(parts)
             if not np.isnan(joined).all():
                 whole[name] = joined
-        table = pandas.DataFrame(whole).sort_values(["frame", "id"], kind="stable").reset_index(drop=True)
-        return table  # type: ignore[no-any-return]
+        table: pd.DataFrame = pandas.DataFrame(whole).sort_values(["frame", "id"], kind="stable").reset_index(drop=True)
+        return table
 
     @staticmethod
     def _extras(track: Track, axes: list[str]) -> list[tuple[str, NDArray[np.float64]]]:
