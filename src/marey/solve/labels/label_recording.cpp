@@ -4,12 +4,12 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
 #include "marey/geometry/layout.h"
+#include "marey/solve/labels/labelled_result.h"
 #include "marey/solve/labels/named_chains.h"
 
 namespace marey::solve::labels {
@@ -17,10 +17,8 @@ namespace {
 
 using assign::kNoIndex;
 
-constexpr double kBootS = 0.15;          // s: a chain that a name is looked for from nothing is at least so long
-constexpr double kFewestBooted = 0.4;    // of the set's markers, below which nothing is told
-constexpr double kOutlier = 4;           // deviations
-constexpr double kLeastOutlier = 0.012;  // m
+constexpr double kBootS = 0.15;        // s: a chain that a name is looked for from nothing is at least so long
+constexpr double kFewestBooted = 0.4;  // of the set's markers, below which nothing is told
 constexpr std::size_t kMostPointsToBoot = 160;
 
 std::pair<double, double> extent_of(std::vector<double> heights) {
@@ -53,7 +51,7 @@ class Labelling {
     chains_.gather();
     refine();
     judge();
-    return result();
+    return labelled_result(recording_, learned_, chains_, *model_, doubts_, scale_);
   }
 
  private:
@@ -62,7 +60,6 @@ class Labelling {
   void share_out();
   void cut_strangers();
   void judge();
-  Labelled result();
   std::vector<std::size_t> boot_instants() const;
   std::vector<double> scales(std::size_t instant) const;
   BootAnswer boot_again(const BootScene& scene, const BootAnswer& first, DistanceModel model, const Matrix<3>& turn) const;
@@ -77,10 +74,6 @@ class Labelling {
   NamedChains chains_;
   std::unique_ptr<DistanceModel> model_;
   double scale_ = 1;
-  struct Doubt {
-    int best = kNoIndex, next = kNoIndex;
-    double fit = 0, margin = 0;
-  };
   std::map<int, Doubt> doubts_;            // by chain without a name
   std::vector<std::vector<int>> bearers_;  // by name, of the last round
 };
@@ -307,101 +300,6 @@ void Labelling::judge() {
   }
   for (const int chain : dropped) chains_.set_name(chain, kNoIndex);
   chains_.gather();
-}
-
-Labelled Labelling::result() {
-  Labelled labelled;
-  labelled.scale = scale_;
-  labelled.recording = Recording(recording_.header);
-  labelled.recording.edits = recording_.edits;
-  labelled.recording.head = recording_.head;
-  for (const Recording::Moment& moment : recording_.instants()) labelled.recording.add_moment(moment);
-  std::map<std::string, int> index;
-  for (std::size_t name = 0; name < learned_.size(); ++name) index[learned_.labels[name]] = static_cast<int>(name);
-  const auto given = [&](const TrackColumns& track) {
-    std::string label = track.name.label;
-    if (!index.contains(label) && label.find(':') != std::string::npos) label = label.substr(label.find(':') + 1);
-    const auto found = index.find(label);
-    return found == index.end() ? kNoIndex : found->second;
-  };
-  std::vector<std::vector<int>> of_name(learned_.size());
-  std::map<TrackId, std::vector<int>> rest;
-  labelled.health.resize(learned_.size());
-  for (int t = 0; t < std::ssize(chains_.tracklets()); ++t) {
-    for (const auto& point : chains_.at(static_cast<std::size_t>(chains_.tracklets()[static_cast<std::size_t>(t)].first))) {
-      if (point.tracklet != t) continue;
-      const int name = chains_.chains()[static_cast<std::size_t>(point.chain)].name;
-      if (name == kNoIndex) {
-        rest[chains_.tracklets()[static_cast<std::size_t>(t)].track].push_back(t);
-      } else {
-        of_name[static_cast<std::size_t>(name)].push_back(t);
-      }
-    }
-  }
-  const auto put = [&](TrackName name, std::vector<int> tracklets) {
-    std::sort(tracklets.begin(), tracklets.end(), [&](int a, int b) {
-      return chains_.tracklets()[static_cast<std::size_t>(a)].first < chains_.tracklets()[static_cast<std::size_t>(b)].first;
-    });
-    TrackColumns track(std::move(name), recording_.dimensions());
-    for (const int t : tracklets) {
-      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
-      const TrackColumns& from = *recording_.find(its.track);
-      for (std::size_t row = its.first_row; row <= its.last_row; ++row) {
-        Sample sample = from.sample(row);
-        sample.track = track.id();
-        track.add(from.at()[row], sample);
-      }
-    }
-    labelled.recording.put(std::move(track));
-  };
-  int next_id = 1;
-  for (std::size_t name = 0; name < learned_.size(); ++name) {
-    MarkerHealth& health = labelled.health[name];
-    health.label = learned_.labels[name];
-    std::set<std::int32_t> ends;
-    for (const int t : of_name[name]) {
-      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
-      health.seen += its.length();
-      const int was = given(*recording_.find(its.track));
-      if (was == kNoIndex || was == static_cast<int>(name)) continue;
-      health.renamed += its.length();
-      ++labelled.renamed;
-    }
-    put({.id = TrackId{next_id++}, .label = learned_.labels[name], .team = {}}, of_name[name]);
-    const auto at = labelled.recording.find(TrackId{next_id - 1})->at();
-    for (std::size_t row = 1; row < at.size(); ++row) health.gaps += at[row] != at[row - 1] + 1;
-    for (std::size_t row = 0; row < at.size(); ++row) {
-      const auto instant = static_cast<std::size_t>(at[row]);
-      std::vector<double> off;
-      for (const std::size_t other : model_->partners(name)) {
-        if (chains_.holder(instant, other).chain == kNoIndex) continue;
-        const double distance = (chains_.holder(instant, name).place - chains_.holder(instant, other).place).norm();
-        off.push_back(std::abs(distance - model_->mean(name, other)) /
-                      std::max(model_->deviation(name, other), kLeastOutlier / kOutlier));
-        if (off.size() == 5) break;
-      }
-      if (off.size() < 3) continue;
-      std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
-      health.outliers += off[off.size() / 2] > kOutlier;
-    }
-  }
-  for (auto& [track, tracklets] : rest) {
-    const TrackId id{next_id++};
-    for (const int t : tracklets) {
-      const Tracklet& its = chains_.tracklets()[static_cast<std::size_t>(t)];
-      int chain = kNoIndex;
-      for (const auto& point : chains_.at(static_cast<std::size_t>(its.first))) {
-        if (point.tracklet == t) chain = point.chain;
-      }
-      const Doubt& doubt = doubts_[chain];
-      const auto word = [&](int name) {
-        return name == kNoIndex ? std::string() : learned_.labels[static_cast<std::size_t>(name)];
-      };
-      labelled.unnamed.push_back({id, its.first, its.last, word(doubt.best), word(doubt.next), doubt.fit, doubt.margin});
-    }
-    put({.id = id, .label = {}, .team = {}}, tracklets);
-  }
-  return labelled;
 }
 
 }  // namespace

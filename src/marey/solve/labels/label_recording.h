@@ -4,8 +4,7 @@
 // 2. At some instants with many markers, spread over the recording, names are found from distances alone (boot_labels.h); the
 //    answer that fits best is the seed.
 // 3. Every chain is asked how well each name fits it over its whole life: by its distances to the markers that are named already,
-// of
-//    which the tightest count. At each instant names are then shared out so that each is given once; instants vote, and a chain
+//    of which the tightest count. At each instant names are then shared out so that each is given once; instants vote, and a chain
 //    bears the name that most gave it, as long as nobody who is there at the same time bears it. What was found refines what
 //    distances are expected, and the round begins again. A tracklet that fits another name much better than its chain's is cut off.
 // 4. What fits badly, or hardly better than another name that was free, stays without a name, and its two best names are told.

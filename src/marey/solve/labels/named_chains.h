@@ -31,6 +31,7 @@ class NamedChains {
 
   const std::vector<Tracklet>& tracklets() const { return tracklets_; }
   const std::vector<Chain>& chains() const { return chains_; }
+  int chain_of(int tracklet) const { return chain_of_[static_cast<std::size_t>(tracklet)]; }
   std::span<const Point> at(std::size_t instant) const { return points_[instant]; }
   std::size_t instants() const { return points_.size(); }
 
