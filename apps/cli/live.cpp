@@ -75,7 +75,7 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
     const pipeline::LiveStatus::Camera& camera = summary.last.cameras[i];
     Json& told = json["cameras"][camera.name];
-    told = {{"state", pipeline::to_string(camera.state)},
+    told = {{"state", to_string(camera.state)},
             {"frames", camera.frames},
             {"lost", camera.lost},
             {"damaged", camera.damaged},

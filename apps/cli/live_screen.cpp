@@ -93,7 +93,7 @@ void LiveScreen::show(const pipeline::LiveStatus& status) {
     const bool told = is_silent(camera.state) || is_silent(states_[i]);
     states_[i] = camera.state;
     const std::string why = is_silent(camera.state) && !camera.trouble.empty() ? ": " + camera.trouble : "";
-    if (told) say(fmt::format("camera \"{}\" is {}{}", camera.name, pipeline::to_string(camera.state), why));
+    if (told) say(fmt::format("camera \"{}\" is {}{}", camera.name, to_string(camera.state), why));
   }
   for (const std::string& trouble : status.troubles) {
     if (std::find(troubles_.begin(), troubles_.end(), trouble.substr(0, trouble.find(':'))) != troubles_.end()) continue;
@@ -112,7 +112,7 @@ std::string LiveScreen::line(const pipeline::LiveStatus& status) const {
   for (const auto& camera : status.cameras) {
     const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
     text += is_silent(camera.state) || camera.state == FeedState::ended
-                ? fmt::format(" {} {}", camera.name, pipeline::to_string(camera.state))
+                ? fmt::format(" {} {}", camera.name, to_string(camera.state))
                 : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
     if (gone > 0) text += fmt::format(" -{}", gone);
   }

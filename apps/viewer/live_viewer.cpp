@@ -36,24 +36,6 @@ WebServer::Message text_message(int topic, std::string text) {
   return {.topic = topic, .bytes = bytes_of(std::move(text)), .text = true};
 }
 
-const char* state_name(FeedState state) {
-  switch (state) {
-    case FeedState::connecting:
-      return "connecting";
-    case FeedState::live:
-      return "live";
-    case FeedState::stalled:
-      return "stalled";
-    case FeedState::lost:
-      return "lost";
-    case FeedState::back:
-      return "back";
-    case FeedState::ended:
-      break;
-  }
-  return "ended";
-}
-
 std::string status_text(const LiveReport& report) {
   cli::Json status{{"cameras", cli::Json::array()},
                    {"steps", cli::Json::array()},
@@ -61,7 +43,7 @@ std::string status_text(const LiveReport& report) {
                    {"notes", cli::Json(report.notes)}};
   for (const LiveReport::Camera& camera : report.cameras) {
     status["cameras"].push_back(
-        {{"state", state_name(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}});
+        {{"state", to_string(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}});
   }
   for (const LiveReport::Step& step : report.steps)
     status["steps"].push_back({{"name", step.name}, {"median", step.median}, {"p99", step.p99}});

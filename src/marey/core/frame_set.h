@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "marey/core/detection.h"
@@ -26,6 +27,12 @@ enum class FeedState {
   back,        ///< it gives frames again after it was stalled or lost, since a short while
   ended,       ///< nothing will come any more
 };
+
+/// "connecting", "live", …
+constexpr std::string_view to_string(FeedState state) {
+  constexpr std::string_view kNames[] = {"connecting", "live", "stalled", "lost", "back", "ended"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 /// What all cameras of a rig gave to one moment. A camera that had nothing is a gap.
 struct FrameSet {

@@ -16,24 +16,6 @@ Summary::StepTime step_of(const char* name, const StageTimes& times) {
 
 }  // namespace
 
-std::string_view to_string(FeedState state) {
-  switch (state) {
-    case FeedState::connecting:
-      return "connecting";
-    case FeedState::live:
-      return "live";
-    case FeedState::stalled:
-      return "stalled";
-    case FeedState::lost:
-      return "lost";
-    case FeedState::back:
-      return "back";
-    case FeedState::ended:
-      break;
-  }
-  return "ended";
-}
-
 LiveMonitor::LiveMonitor(std::shared_ptr<source::LiveTime> time, Tell tell)
     : time_(std::move(time)), tell_(std::move(tell)), begin_(time_->now()) {}
 

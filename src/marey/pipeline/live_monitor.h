@@ -37,9 +37,6 @@ struct LiveStatus {
   std::vector<std::string> troubles;  ///< of sinks, one sentence each
 };
 
-/// "connecting", "live", …
-std::string_view to_string(FeedState state);
-
 /// Watches a clock and what is made of its moments. All from the run's own thread.
 class LiveMonitor {
  public:

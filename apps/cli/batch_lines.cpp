@@ -1,0 +1,47 @@
+// The command lines that do all of a plan: here, over GNU parallel, over Slurm.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "batch_plan.h"
+
+namespace marey::cli {
+namespace {
+
+constexpr std::size_t kMostArrayTasks = 1000;  // Slurm takes 1001 of them where nobody has changed it
+
+/// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool plain =
+      !word.empty() &&
+      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads) {
+  int memory = 0;
+  for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.memory_mb);
+  const std::size_t parts = std::min(plan.tasks.size(), kMostArrayTasks);
+  const std::string run = fmt::format("{} batch run {} -q --task-threads {}", quoted(program), quoted(plan.path), threads);
+  const std::string reduce =
+      fmt::format("{} batch reduce {} -o {}", quoted(program), quoted(plan.path), quoted(plan.path + ".csv"));
+  constexpr double kSpare = 1.3;  // what is expected is right within 30 %
+  const std::string log = quoted(plan.results() + "/log/%a.txt");
+  BatchLines lines;
+  lines.loop = run;
+  lines.parallel = fmt::format("parallel --joblog {} --resume-failed {} --part {{}}/{} ::: $(seq {})",
+                               quoted(plan.results() + "/jobs.log"), run, plan.tasks.size(), plan.tasks.size());
+  lines.slurm_array = fmt::format(
+      "sbatch --parsable --job-name=marey --array=1-{} --requeue --cpus-per-task={} --mem={}M --output={} --wrap={}", parts,
+      threads, static_cast<int>(kSpare * memory), log, quoted(fmt::format("exec {} --part $SLURM_ARRAY_TASK_ID/{}", run, parts)));
+  lines.slurm_reduce = fmt::format("sbatch --parsable --job-name=marey-reduce --dependency=afterany:ARRAY --output={} --wrap={}",
+                                   quoted(plan.results() + "/log/reduce.txt"), quoted("exec " + reduce));
+  return lines;
+}
+
+}  // namespace marey::cli
