@@ -61,6 +61,7 @@ Ended run_process(const std::vector<std::string>& words) {
   if (process < 0) throw Error("no further process can be started: {}", std::strerror(errno));
   if (process == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
+    std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when nobody reads what it says any more
     const int nowhere = open("/dev/null", O_RDWR);
     dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(ends[1], STDERR_FILENO);
     execv(arguments[0], arguments.data());

@@ -3,32 +3,37 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <set>
 
 #include "marey/assign/no_index.h"
+#include "marey/solve/labels/four_points.h"
 
 namespace marey::solve::labels {
 namespace {
 
 using assign::kNoIndex;
 
-constexpr double kRigid = 0.02;                                // m: what varies less has a side that stays
-constexpr std::size_t kSides = 2;                              // triples by name that are asked for its side
+constexpr double kRigid = 0.005;                               // m: what varies less has a side that stays
+constexpr double kRigidShare = 0.5;                            // of its height, at most
+constexpr double kSideShift = 0.015, kSideShare = 0.06;        // m, and of a distance: by how much it may be another than learned
+constexpr std::size_t kSideNeighbours = 8;                     // of each name that sides are taken of
 constexpr std::size_t kNearest = 6;                            // neighbours whose directions count
 constexpr double kDirectionTop = 0.5, kDirectionFloor = -1.5;  // log-likelihood ratio of a direction
 constexpr double kLeastDirection = 0.01;                       // m, of its deviation
-constexpr int kSweeps = 6;                                     // of exchanges
+constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
+constexpr int kSweeps = 6;  // of exchanges
 
-/// The signed height of a point over the plane of three others, m.
-double height_over(const Vector<3>& point, const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
-  const Vector<3> normal = (b - a).cross(c - a);
-  return normal.dot(point - a) / std::max(normal.norm(), 1e-9);
+/// Whether a height is that of the mirror image: what is nearly a plane, or higher by far, says nothing.
+bool is_mirrored(double height, double learned) {
+  return height * learned < 0 && std::abs(height) > 0.5 * std::abs(learned) && std::abs(height) < 2.5 * std::abs(learned);
 }
 
-/// On which side of three others a name's point is.
+/// Four names, in rising order, that are no plane.
 struct Side {
-  std::array<std::size_t, 3> others{};
-  double height = 0;  // m
+  std::array<std::size_t, 4> names{};
+  double height = 0;  // m, where the set was learned
 };
 
 class Beam {
@@ -37,11 +42,7 @@ class Beam {
        const std::optional<Matrix<3>>& learned_from_scene)
       : scene_(scene), learned_(learned), model_(model), options_(options), turn_(learned_from_scene), sides_(model.size()) {
     if (turn_) find_nearest();
-    std::vector<std::size_t> before;
-    for (const std::size_t name : model.order()) {
-      find_sides(name, before);
-      before.push_back(name);
-    }
+    find_sides();
   }
 
   BootAnswer run() {
@@ -60,51 +61,60 @@ class Beam {
  private:
   std::size_t points() const { return scene_.places.size(); }
 
-  /// Triples of names given before it, rigid with it as far as is known, over which it stands high.
-  void find_sides(std::size_t name, const std::vector<std::size_t>& before) {
-    std::vector<std::size_t> near;
-    for (const std::size_t other : model_.partners(name)) {
-      if (near.size() < 6 && std::find(before.begin(), before.end(), other) != before.end() && !learned_.places[other].isZero(0))
-        near.push_back(other);
-    }
-    if (learned_.places[name].isZero(0)) return;
-    std::vector<Side> found;
-    for (std::size_t i = 2; i < near.size(); ++i) {
-      for (std::size_t j = 1; j < i; ++j) {
-        for (std::size_t k = 0; k < j; ++k) {
-          const auto& places = learned_.places;
-          const Vector<3> normal = (places[near[j]] - places[near[i]]).cross(places[near[k]] - places[near[i]]);
-          const double longest = std::max((places[near[j]] - places[near[i]]).norm(), (places[near[k]] - places[near[i]]).norm());
-          if (normal.norm() < 0.2 * longest * longest) continue;
-          const double height = height_over(places[name], places[near[i]], places[near[j]], places[near[k]]);
-          if (std::abs(height) > options_.height) found.push_back({{near[i], near[j], near[k]}, height});
+  bool has_place(std::size_t name) const { return !learned_.places[name].isZero(0); }
+
+  /// Fours of neighbours that stand high over each other.
+  void find_sides() {
+    std::set<std::array<std::size_t, 4>> tried;
+    for (std::size_t name = 0; name < model_.size(); ++name) {
+      std::vector<std::size_t> near;
+      for (const std::size_t other : model_.partners(name)) {
+        if (near.size() < kSideNeighbours && has_place(other)) near.push_back(other);
+      }
+      if (!has_place(name)) continue;
+      for (std::size_t i = 2; i < near.size(); ++i) {
+        for (std::size_t j = 1; j < i; ++j) {
+          for (std::size_t k = 0; k < j; ++k) {
+            std::array<std::size_t, 4> names{name, near[i], near[j], near[k]};
+            std::sort(names.begin(), names.end());
+            if (tried.insert(names).second) add_side(names);
+          }
         }
       }
     }
-    const auto looseness = [&](const Side& side) {
-      double worst = 0;
-      for (const std::size_t other : side.others) worst = std::max(worst, model_.deviation(name, other));
-      return worst / std::abs(side.height);
-    };
-    std::stable_sort(found.begin(), found.end(), [&](const Side& a, const Side& b) { return looseness(a) < looseness(b); });
-    if (found.size() > kSides) found.resize(kSides);
-    sides_[name] = std::move(found);
   }
 
-  double side_cost(const BootAnswer& answer, std::size_t name, std::size_t point) const {
+  void add_side(const std::array<std::size_t, 4>& names) {
+    const auto& places = learned_.places;
+    const double height = signed_height({places[names[0]], places[names[1]], places[names[2]], places[names[3]]});
+    if (std::abs(height) < options_.height) return;
+    for (const std::size_t name : names) sides_[name].push_back({names, height});
+  }
+
+  /// Whether two names' points are on one segment: they keep their distance, and it is the learned one, or one that an exchange
+  /// among neighbours makes of it.
+  bool is_rigid(std::size_t name, std::size_t other, std::size_t point, std::size_t its, double height) const {
+    const DistanceSeen& seen = scene_.between(point, its);
+    const double most = std::min(kRigid, kRigidShare * height), mean = model_.mean(name, other);
+    return seen.variance < most * most && std::abs(seen.mean - mean) < kSideShift + kSideShare * mean;
+  }
+
+  /// What the sides cost on which the points lie that `name` and its neighbours have; those of which `besides` is one are left out.
+  double side_cost(const BootAnswer& answer, std::size_t name, std::size_t point, std::size_t besides) const {
     double cost = 0;
     for (const Side& side : sides_[name]) {
-      std::array<std::size_t, 3> others{};
+      std::array<std::size_t, 4> its{};
       bool known = true;
-      for (std::size_t i = 0; i < 3 && known; ++i) {
-        const int other = answer.point_of[side.others[i]];
-        known = other != kNoIndex && scene_.between(point, static_cast<std::size_t>(other)).variance < kRigid * kRigid;
-        if (known) others[i] = static_cast<std::size_t>(other);
+      for (std::size_t i = 0; i < 4 && known; ++i) {
+        const std::size_t other = side.names[i];
+        its[i] = other == name ? point : static_cast<std::size_t>(answer.point_of[other]);
+        known = other != besides && (other == name || answer.point_of[other] != kNoIndex);
+        for (std::size_t j = 0; j < i && known; ++j) known = is_rigid(other, side.names[j], its[i], its[j], std::abs(side.height));
       }
       if (!known) continue;
       const double height =
-          height_over(scene_.places[point], scene_.places[others[0]], scene_.places[others[1]], scene_.places[others[2]]);
-      if (height * side.height < 0 && std::abs(height) > options_.height / 2) cost += options_.wrong_side;
+          signed_height({scene_.places[its[0]], scene_.places[its[1]], scene_.places[its[2]], scene_.places[its[3]]});
+      if (is_mirrored(height, side.height)) cost += options_.wrong_side;
     }
     return cost;
   }
@@ -137,14 +147,15 @@ class Beam {
     return sum;
   }
 
-  double gain(const BootAnswer& answer, std::size_t name, std::size_t point, const std::vector<std::size_t>& others) const {
+  double gain(const BootAnswer& answer, std::size_t name, std::size_t point, const std::vector<std::size_t>& others,
+              std::size_t besides = kNobody) const {
     double sum = 0;
     for (const std::size_t other : others) {
       const int its = answer.point_of[other];
       if (its != kNoIndex && other != name) sum += model_.ratio(name, other, scene_.between(point, static_cast<std::size_t>(its)));
     }
     if (turn_) sum += direction_gain(answer, name, point);
-    return sum - side_cost(answer, name, point);
+    return sum - side_cost(answer, name, point, besides);
   }
 
   void extend(std::vector<BootAnswer>& answers, std::size_t name, const std::vector<std::size_t>& before) {
@@ -209,9 +220,9 @@ class Beam {
     }
   }
 
-  double worth(const BootAnswer& answer, std::size_t name) const {
-    return answer.point_of[name] == kNoIndex ? 0
-                                             : gain(answer, name, static_cast<std::size_t>(answer.point_of[name]), model_.order());
+  double worth(const BootAnswer& answer, std::size_t name, std::size_t besides = kNobody) const {
+    if (answer.point_of[name] == kNoIndex) return 0;
+    return gain(answer, name, static_cast<std::size_t>(answer.point_of[name]), model_.order(), besides);
   }
 
   bool try_exchange(BootAnswer& answer, std::size_t name, int point, int holder) const {
@@ -219,7 +230,7 @@ class Beam {
       double sum = worth(answer, name);
       if (holder == kNoIndex) return sum;
       const auto other = static_cast<std::size_t>(holder);
-      sum += worth(answer, other);
+      sum += worth(answer, other, name);
       if (answer.point_of[name] != kNoIndex && answer.point_of[other] != kNoIndex)  // counted twice
         sum -= model_.ratio(
             name, other,

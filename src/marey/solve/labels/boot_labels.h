@@ -3,10 +3,9 @@
 // Names are given in an order in which each is as well tied to those before it as may be. A beam search keeps the best partial
 // answers: each is continued by every point that is still free, and by none; what that adds is the sum over the names that are
 // given already of how well the two points' distance fits (distance_model.h), and a penalty where a point lies on the wrong side of
-// three that are rigid with it: distances alone do not tell a body from its mirror image. Distances are not those of the instant
-// alone but of all instants at which both points are there, so that what is rigid is known to be. At the end single names are
-// exchanged as long as that gains.
-// Cost: names × points × answers × names.
+// three that are rigid with it: distances alone do not tell a body from its mirror image, nor two markers of one wrist. Distances
+// are not those of the instant alone but of all instants at which both points are there, so that what is rigid is known to be. At
+// the end single names are exchanged as long as that gains. Cost: names × points × answers × names.
 #pragma once
 
 #include <optional>
@@ -22,7 +21,7 @@ struct BootOptions {
   int answers = 400;        ///< that are kept
   double wrong_side = 12;   ///< log-likelihood that a point on the wrong side costs
   double direction = 0.35;  ///< of the distance: by how much the way from a neighbour differs between two like postures
-  double height = 0.02;     ///< m: of a marker above three others: less has no side
+  double height = 0.012;    ///< m: of a marker above three others: less has no side
 };
 
 /// What is known of the points of one instant.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over so much
 constexpr int kOftenEnough = 40;      // instants
 constexpr std::size_t kTies = 3;      // to those before it, that say how well a label is tied
-constexpr double kStillCount = 1.5;   // times a distance's own deviation counts where nothing else is known
+constexpr double kStillCount = 2;     // times a variance counts against being rigid
 
 /// log of a normal density at its mean against that of any distance.
 double top_of(double deviation) {
@@ -44,13 +44,15 @@ double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceSeen& se
   const Term& term = terms_[LearnedMarkers::index_of(a, b)];
   const double off = seen.mean - term.mean;
   if (moves_ || term.adopted) return std::max(term.top - (off * off + seen.variance) * term.weight, options_.floor);
-  // What varies here was not rigid where it was learned either, and what does not is.
-  const double share = options_.still_share * term.mean;
-  const double variance = kStillCount * kStillCount * seen.variance + options_.still_shift * options_.still_shift + share * share;
-  // Across joints all distances change together with the posture: what they say is said many times, and counts little.
-  const double rigid = options_.still_rigid * options_.still_rigid;
-  const double weight = std::clamp(rigid / std::max(seen.variance, 1e-12), 0.05, 1.0);
-  return weight * std::max(top_of(std::sqrt(variance)) - (off * off + seen.variance) / (2 * variance), options_.floor);
+  // Learned from one who stood still: either both are on one segment, and the distance is as it was; or the posture is another.
+  const double share = options_.still_share * term.mean, other = options_.still_spread * term.mean + options_.still_joint;
+  const double rigid = options_.still_shift * options_.still_shift + share * share, loose = other * other;
+  const double same = options_.same_segment * std::exp(-term.mean / options_.segment);
+  const double square = off * off + seen.variance;
+  const double as_segment = std::log(same) + top_of(std::sqrt(rigid)) - (off * off + kStillCount * seen.variance) / (2 * rigid);
+  const double as_posture = std::log(1 - same) + options_.posture * (top_of(other) - square / (2 * loose));
+  const double most = std::max(as_segment, as_posture);
+  return std::max(most + std::log1p(std::exp(-std::abs(as_segment - as_posture))), options_.floor);
 }
 
 void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceSeen& seen) {

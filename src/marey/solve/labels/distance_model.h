@@ -3,7 +3,8 @@
 //
 // A distribution is normal, as wide as the distance varied where the set was learned, and wider by what differs from one recording
 // to the next: where markers sit, how skin moves. Where the set was learned from somebody who stood still, what is rigid is not
-// known from there; then it is taken from the distances themselves: what stays the same in the recording at hand is.
+// known from there: a distance is then of one segment, the more probably the shorter it is, and is what it was and stays; or it
+// goes across a joint, and may be any that another posture makes of it.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +19,11 @@ struct DistanceOptions {
   double share = 0.008;        ///< of a distance, besides
   double still_shift = 0.008;  ///< the same where the set was learned from one who stood still
   double still_share = 0.02;
-  double still_spread =
-      0.15;  ///< of a distance: how much it is taken to vary there, while nothing is known of the recording at hand
-  double still_rigid = 0.012;  ///< m: what varies more in the recording at hand counts less there
+  double still_spread = 0.15;  ///< of a distance: how much another posture changes it
+  double still_joint = 0.05;   ///< m, besides
+  double posture = 0.2;        ///< what such a distance counts: all distances across a joint tell the same, again and again
+  double same_segment = 0.9;   ///< how probable it is that two markers close to each other are on one segment, which the distance
+  double segment = 0.3;        ///< m: makes less so, by e
   double floor = -4;           ///< of a log-likelihood ratio
 };
 

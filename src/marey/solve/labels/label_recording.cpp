@@ -44,8 +44,8 @@ class Labelling {
       if (round > 0) {
         cut_strangers();  // before they spoil what is learned
         chains_.gather();
-        refine();
       }
+      if (round > 0 || !learned_.moves) refine();  // who stood still told nothing of what is rigid: the first names do
       share_out();
     }
     chains_.gather();
@@ -114,9 +114,10 @@ std::vector<double> Labelling::scales(std::size_t instant) const {
   return {ratio, 0.95 * ratio, 1.05 * ratio, 0.9 * ratio, 1.1 * ratio};
 }
 
-/// Where what was learned is a posture more than a way to move: how that lies to the subject as it was named first.
+/// Where what was learned stems from others, their posture tells left from right: how that lies to the subject as it was named
+/// first. (One's own posture, standing still, tells less than one's own distances.)
 std::optional<Matrix<3>> Labelling::turn_to_learned(const BootScene& scene, const BootAnswer& answer) const {
-  if (learned_.moves && !learned_.scaled) return std::nullopt;
+  if (!learned_.scaled) return std::nullopt;
   std::vector<Vector<3>> from, to;
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (answer.point_of[name] == kNoIndex || learned_.places[name].isZero(0)) continue;

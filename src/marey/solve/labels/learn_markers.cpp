@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
+#include "marey/solve/labels/four_points.h"
 
 namespace marey::solve::labels {
 namespace {
@@ -15,6 +17,8 @@ namespace {
 constexpr std::size_t kMostInstants = 1500;  // of a recording, evenly spread
 constexpr double kStill = 0.010;             // m: distances that vary by less
 constexpr double kStillShare = 0.6;          // of all: with more the subject stood still
+constexpr double kSided = 0.01;              // m: what stands out less of a plane has no side
+constexpr std::size_t kAsked = 6;            // neighbours, the steadiest, of which sides are compared
 constexpr double kUnknownDeviation = 0.25;   // m: of two markers that were never seen together
 
 std::string without_prefix(const std::string& label, const std::string& prefix) {
@@ -139,6 +143,47 @@ std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& t
   return places;
 }
 
+/// Of how many fours of neighbours two postures agree on the side, less those on which they do not.
+int agreement(const std::vector<Vector<3>>& one, const std::vector<Vector<3>>& other,
+              const std::vector<std::vector<std::size_t>>& near) {
+  int sum = 0;
+  for (std::size_t m = 0; m < near.size(); ++m) {
+    const auto& its = near[m];
+    for (std::size_t i = 2; i < its.size(); ++i) {
+      for (std::size_t j = 1; j < i; ++j) {
+        for (std::size_t k = 0; k < j; ++k) {
+          const double here = signed_height({one[m], one[its[i]], one[its[j]], one[its[k]]});
+          const double there = signed_height({other[m], other[its[i]], other[its[j]], other[its[k]]});
+          if (std::abs(here) > kSided && std::abs(there) > kSided) sum += here * there > 0 ? 1 : -1;
+        }
+      }
+    }
+  }
+  return sum;
+}
+
+/// The posture that agrees best with all others: of one in whose recording two names are exchanged the rest should not suffer.
+std::size_t most_agreed(const std::vector<std::vector<Vector<3>>>& postures, const LearnedMarkers& learned) {
+  std::vector<std::vector<std::size_t>> near(learned.size());
+  for (std::size_t m = 0; m < learned.size(); ++m) {
+    for (std::size_t other = 0; other < learned.size(); ++other) {
+      if (other != m) near[m].push_back(other);
+    }
+    std::stable_sort(near[m].begin(), near[m].end(), [&](std::size_t a, std::size_t b) {
+      return learned.between(m, a).deviation < learned.between(m, b).deviation;
+    });
+    if (near[m].size() > kAsked) near[m].resize(kAsked);
+  }
+  std::size_t best = 0;
+  int most = std::numeric_limits<int>::min();
+  for (std::size_t r = 0; r < postures.size(); ++r) {
+    int sum = 0;
+    for (const auto& other : postures) sum += agreement(postures[r], other, near);
+    if (sum > most) most = sum, best = r;
+  }
+  return best;
+}
+
 }  // namespace
 
 LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options) {
@@ -182,8 +227,12 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
     still += std::sqrt(within / takes) < kStill;
   }
   learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
-  learned.places = fullest_posture(tracks[0], recordings[0].instants().size());
-  for (Vector<3>& place : learned.places) place *= mean_size / size[0];
+  std::vector<std::vector<Vector<3>>> postures;
+  for (std::size_t r = 0; r < recordings.size(); ++r)
+    postures.push_back(fullest_posture(tracks[r], recordings[r].instants().size()));
+  const std::size_t chosen = most_agreed(postures, learned);
+  learned.places = std::move(postures[chosen]);
+  for (Vector<3>& place : learned.places) place *= mean_size / size[chosen];
   return learned;
 }
 
