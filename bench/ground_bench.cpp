@@ -70,7 +70,7 @@ void instant_of_a_match(benchmark::State& state) {
   double spent = 0, bound = 0;
   std::size_t observations = 0;
   for (auto _ : state) {
-    const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(0))}, views);
+    const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(0))}, ground_views(views));
     std::vector<filter::Kalman<2>> known(simulate::match::kMatchPeople,
                                          filter::Kalman<2>({2, 3, 3}, Vector<2>::Zero(), Matrix<2>::Identity()));
     double here = 0;
@@ -115,7 +115,7 @@ void tracker_alone(benchmark::State& state) {
   Matrix<3> ground_from_image;
   ground_from_image << 0.1, 0, 0, 0, -0.1, side, 0, 0, 1;
   const GroundView view(ground_from_image, cv::Size(static_cast<int>(10 * side), static_cast<int>(10 * side)));
-  const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(1))}, {view});
+  const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(1))}, ground_views({view}));
   simulate::Random random(1);
   std::vector<Vector<2>> places, velocities;
   std::vector<filter::Kalman<2>> known;

@@ -66,7 +66,7 @@ struct Followed {
 Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Association& method,
                 track::ground::GroundTrackerOptions options) {
   options.associate = method.association;
-  const auto tracker = track::ground::make_ground_tracker(options, {view_of(scene.options)});
+  const auto tracker = track::ground::make_ground_tracker(options, ground_views({view_of(scene.options)}));
   std::vector<evaluate::PersonPlace> said;
   std::int32_t decided = 0;
   Followed outcome;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include <Eigen/LU>
 
 #include "marey/core/error.h"
+#include "marey/geometry/butterworth.h"
 #include "marey/geometry/decompositions.h"
 
 namespace marey::analyse {
@@ -55,46 +55,9 @@ std::vector<Vector<2>> slope(const std::vector<Vector<2>>& values, double step) 
   return result;
 }
 
-// --- Butterworth, forwards and backwards
-// ---------------------------------------------------------------------------------------------------
-
-struct Butterworth {
-  double b0, b1, b2, a1, a2;
-};
-
-/// Order 2; the bilinear transform with its frequency put right.
-Butterworth butterworth(double cutoff_hz, double rate_hz) {
-  const double w = std::tan(std::numbers::pi * cutoff_hz / rate_hz);
-  const double n = 1 / (1 + std::numbers::sqrt2 * w + w * w);
-  return {w * w * n, 2 * w * w * n, w * w * n, 2 * (w * w - 1) * n, (1 - std::numbers::sqrt2 * w + w * w) * n};
-}
-
-/// Begins as if the first value had been there for ever.
-void filter(const Butterworth& f, std::vector<Vector<2>>& values) {
-  Vector<2> x1 = values.front(), x2 = x1, y1 = x1, y2 = x1;
-  for (Vector<2>& value : values) {
-    const Vector<2> y = f.b0 * value + f.b1 * x1 + f.b2 * x2 - f.a1 * y1 - f.a2 * y2;
-    x2 = x1, x1 = value, y2 = y1, y1 = y;
-    value = y;
-  }
-}
-
-/// The ends are continued point-symmetrically, so that a person in motion is so beyond them too.
 void low_pass(std::vector<Vector<2>>& values, double cutoff_hz, double rate_hz) {
-  // Two passes let half of the power through at (√2 − 1)^¼ of each one's cut-off.
-  const double each = std::min(cutoff_hz / std::pow(std::numbers::sqrt2 - 1, 0.25), 0.45 * rate_hz);
-  const auto margin = std::min(values.size() - 1, static_cast<std::size_t>(std::ceil(2 * rate_hz / cutoff_hz)));
-  std::vector<Vector<2>> wide;
-  wide.reserve(values.size() + 2 * margin);
-  for (std::size_t i = margin; i > 0; --i) wide.emplace_back(2 * values.front() - values[i]);
-  wide.insert(wide.end(), values.begin(), values.end());
-  for (std::size_t i = 1; i <= margin; ++i) wide.emplace_back(2 * values.back() - values[values.size() - 1 - i]);
-  const Butterworth f = butterworth(each, rate_hz);
-  for (int pass = 0; pass < 2; ++pass) {
-    filter(f, wide);
-    std::reverse(wide.begin(), wide.end());
-  }
-  std::copy_n(wide.begin() + static_cast<std::ptrdiff_t>(margin), values.size(), values.begin());
+  const double each = std::min(geometry::cutoff_of_one_pass(cutoff_hz), 0.45 * rate_hz);
+  geometry::low_pass(std::span(values), each / rate_hz, static_cast<std::size_t>(std::ceil(2 * rate_hz / cutoff_hz)));
 }
 
 // --- Savitzky-Golay

@@ -1,5 +1,5 @@
-// Butterworth's low pass of second order, forwards and backwards, so that nothing lags: together of fourth order.
-// Source: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (the cut-off of two passes, residual analysis).
+// Paths of markers through Butterworth's low pass (geometry/butterworth.h), and the cut-off that fits them.
+// Source: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (residual analysis).
 #pragma once
 
 #include <cstdint>

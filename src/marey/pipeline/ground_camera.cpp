@@ -57,7 +57,9 @@ Box moved(const Box& box, const cv::Point& by) {
   return {box.left + by.x, box.top + by.y, box.width, box.height};
 }
 
-GroundView view_of(const RigCamera& camera) {
+}  // namespace
+
+GroundView ground_view_of(const RigCamera& camera) {
   if (!camera.camera_from_world && !camera.ground_from_image)
     throw Error("camera \"{}\": how it sees the ground is not known; run marey calibrate pitch, or give its ground_from_image",
                 camera.name);
@@ -68,13 +70,13 @@ GroundView view_of(const RigCamera& camera) {
   throw Error("camera \"{}\": its lens or the size of its pictures is not known; calibrate it", camera.name);
 }
 
-}  // namespace
-
-GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options)
-    : camera_(feed.camera()), id_(feed.id()), area_(area), view_(view_of(camera_)) {
+GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
+                           const GroundCameraOptions& options)
+    : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)) {
+  const Camera* whole = view_at(Timestamp{}).camera();
   if (feed.has_pictures()) {
     detect::DetectorOptions detector = options.detector;
-    if (const Camera* whole = view_.camera()) {
+    if (whole != nullptr) {
       const cv::Rect part = part_with_people(*whole, area);
       if (part.size() != whole->size()) part_ = part;
       if (auto* people = std::get_if<detect::people::PeopleDetectorOptions>(&detector))
@@ -82,7 +84,7 @@ GroundCamera::GroundCamera(const Feed& feed, const reconstruct::GroundArea& area
     }
     detector_ = detect::make_detector(detector);
   }
-  const bool sizes_known = view_.camera() != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
+  const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
   if (!sizes_known) learned_.emplace();
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
@@ -114,7 +116,7 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
   } else {
     found.detections = *given.detections;
   }
-  if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_.size());
+  if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_at(frame.time).size());
   place(frame, found);
   return {id_, given.frame.time, seen_};
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/ground_views.h"
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
@@ -21,16 +22,20 @@ struct GroundCameraOptions {
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
 };
 
+/// How a camera sees the ground at the beginning. Throws Error, with the camera's name, where that is not known.
+GroundView ground_view_of(const RigCamera& camera);
+
 class GroundCamera {
  public:
-  /// Of the feed's pictures only the part is looked at in which people may be who count. Throws Error, with the camera's name,
-  /// where it does not know how it sees the ground.
-  GroundCamera(const Feed& feed, const reconstruct::GroundArea& area, const GroundCameraOptions& options);
+  /// `views`: of all cameras of the rig, this one's among them. Of the feed's pictures only the part is looked at in which people
+  /// may be who count.
+  GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
+               const GroundCameraOptions& options);
   ~GroundCamera();
   GroundCamera(GroundCamera&&) noexcept;
 
-  /// How it sees the ground at this time: always the same, while no camera turns.
-  const GroundView& view_at(Timestamp /*time*/) const { return view_; }
+  /// How it sees the ground at this time, by the rig's clock.
+  const GroundView& view_at(Timestamp time) const { return views_->view_at(id_, time); }
 
   /// Finds people where `expected` are (m, world), or takes what another program found, and places them. Valid until the next call.
   track::ground::CameraObservations observe(const CameraFrame& given, std::span<const Track<2>> expected);
@@ -52,7 +57,7 @@ class GroundCamera {
   RigCamera camera_;
   CameraId id_;
   reconstruct::GroundArea area_;
-  GroundView view_;
+  std::shared_ptr<const GroundViews> views_;
   std::optional<cv::Rect> part_;                            // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::Detector> detector_;              // none where another program's detections come
   std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are

@@ -23,8 +23,9 @@ class SingleCamera {
  public:
   SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
       : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
-        camera_(feed_, area, {.detector = options.detector}),
-        tracker_(track::ground::make_ground_tracker(options.tracker, {camera_.view_at(Timestamp{})})),
+        views_(ground_views({ground_view_of(feed_.camera())})),
+        camera_(feed_, views_, area, {.detector = options.detector}),
+        tracker_(track::ground::make_ground_tracker(options.tracker, views_)),
         seconds_(options.seconds) {}
 
   std::optional<std::int64_t> frames() const {
@@ -53,6 +54,7 @@ class SingleCamera {
   }
 
   Feed feed_;
+  std::shared_ptr<const GroundViews> views_;
   GroundCamera camera_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   double seconds_;

@@ -70,9 +70,7 @@ class GroundStage final : public PeopleOnGround {
         logs_(feeds.size()),
         observations_(feeds.size()) {
     open_cameras(feeds);
-    std::vector<GroundView> views;
-    for (const GroundCamera& camera : cameras_) views.push_back(camera.view_at(Timestamp{}));
-    tracker_ = track::ground::make_ground_tracker(options.tracker, std::move(views));
+    tracker_ = track::ground::make_ground_tracker(options.tracker, views_);
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
     header_.made_by.program = "marey track";
@@ -164,9 +162,12 @@ class GroundStage final : public PeopleOnGround {
   void open_cameras(const std::vector<Feed>& feeds) {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
+    std::vector<GroundView> views;
+    for (const RigCamera& camera : rig_.cameras) views.push_back(ground_view_of(camera));
+    views_ = ground_views(std::move(views));
     const GroundCameraOptions how{.detector = options_.detector, .prime = !options_.live};
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
-    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], area_, how); });
+    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], views_, area_, how); });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
   }
 
@@ -231,7 +232,8 @@ class GroundStage final : public PeopleOnGround {
 
   /// The second pass: the tracks of the whole recording, in the user's coordinates, without those who never were in the area.
   void join() {
-    auto joined = std::move(recorder_).join(options_.join, [&](const Vector<2>& place) { return in_sight(place); });
+    auto joined =
+        std::move(recorder_).join(options_.join, [&](const Vector<2>& place, Timestamp time) { return in_sight(place, time); });
     const std::size_t all = joined.recording.tracks().size();
     reconstruct::KeptPeople people =
         reconstruct::people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
@@ -255,10 +257,10 @@ class GroundStage final : public PeopleOnGround {
     }
   }
 
-  bool in_sight(const Vector<2>& place) const {
+  bool in_sight(const Vector<2>& place, Timestamp time) const {
     if (!area_.holds(place)) return false;
     return std::any_of(cameras_.begin(), cameras_.end(), [&](const GroundCamera& camera) {
-      const GroundView& view = camera.view_at(Timestamp{});
+      const GroundView& view = camera.view_at(time);
       const auto pixel = view.pixel(place);
       return pixel && cv::Rect2d({-0.5, -0.5}, cv::Size2d(view.size())).contains({pixel->x(), pixel->y()});
     });
@@ -274,16 +276,17 @@ class GroundStage final : public PeopleOnGround {
 
   /// Where everybody is in each camera's picture: as it saw them, else as somebody who stands there would be seen.
   void add_boxes(Instant& instant) const {
+    const Timestamp time = instant.time + first_offset();  // by the rig's clock
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       const auto own = logs_[i].frame_at(instant.index);
       if (!own) continue;
-      const GroundView& view = cameras_[i].view_at(instant.time);
+      const GroundView& view = cameras_[i].view_at(time);
       const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
       for (const Sample& sample : instant.samples) {
         const Vector<2> place = area_.world(sample.position.head<2>());
         std::optional<Box> box = logs_[i].box(instant.index, sample.track);
         if (!box) {
-          const auto whole = cameras_[i].box_at(place, instant.time);
+          const auto whole = cameras_[i].box_at(place, time);
           if (!whole) continue;
           box = geometry::intersection(*whole, picture);
           if (box->empty()) continue;
@@ -303,6 +306,7 @@ class GroundStage final : public PeopleOnGround {
   Rig rig_;
   reconstruct::GroundArea area_;
   RecordingHeader header_;
+  std::shared_ptr<GroundViews> views_;
   std::vector<GroundCamera> cameras_;
   std::unique_ptr<track::ground::GroundTracker> tracker_;
   GroundPathLog paths_;

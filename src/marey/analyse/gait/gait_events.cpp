@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <span>
+
+#include "marey/geometry/butterworth.h"
 
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kTwoPasses = 0.802;  // (√2 − 1)^¼
 constexpr std::size_t kMirrored = 20;
 constexpr double kWalkCutoffHz = 3;  // of the body's own path
-
-std::vector<double> one_pass(const std::vector<double>& x, double w) {
-  const double k1 = std::numbers::sqrt2 * w, k2 = w * w, a = k2 / (1 + k1 + k2), b1 = 2 * a * (1 / k2 - 1), b2 = 1 - 4 * a - b1;
-  std::vector<double> y(x);
-  for (std::size_t i = 2; i < x.size(); ++i) y[i] = a * (x[i] + 2 * x[i - 1] + x[i - 2]) + b1 * y[i - 1] + b2 * y[i - 2];
-  return y;
-}
 
 /// A marker's speed over the ground at each row, m/s; its first and last known values hold beyond them. Empty where it is never
 /// seen.
@@ -77,19 +71,9 @@ void add_events(Side side, const std::vector<double>& heel, const std::vector<do
 }  // namespace
 
 std::vector<double> low_pass(std::vector<double> values, double cutoff_hz, double rate_hz) {
-  if (values.size() < 3 || !(cutoff_hz / kTwoPasses < 0.5 * rate_hz)) return values;
-  const std::size_t more = std::min(kMirrored, values.size() - 1), n = values.size();
-  std::vector<double> longer;
-  longer.reserve(n + 2 * more);
-  for (std::size_t i = more; i > 0; --i) longer.push_back(2 * values.front() - values[i]);
-  longer.insert(longer.end(), values.begin(), values.end());
-  for (std::size_t i = 1; i <= more; ++i) longer.push_back(2 * values.back() - values[n - 1 - i]);
-  const double w = std::tan(std::numbers::pi * cutoff_hz / kTwoPasses / rate_hz);
-  for (int pass = 0; pass < 2; ++pass) {
-    longer = one_pass(longer, w);
-    std::reverse(longer.begin(), longer.end());
-  }
-  return {longer.begin() + static_cast<std::ptrdiff_t>(more), longer.begin() + static_cast<std::ptrdiff_t>(more + n)};
+  const double each = geometry::cutoff_of_one_pass(cutoff_hz) / rate_hz;
+  if (values.size() >= 3 && each < 0.5) geometry::low_pass(std::span(values), each, kMirrored);
+  return values;
 }
 
 std::vector<GaitEvent> gait_events(const FeetPaths& feet, double rate_hz, const GaitEventOptions& options) {

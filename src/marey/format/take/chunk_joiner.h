@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/chunk_writer.h"
 #include "marey/format/take/take_chunk.h"
 
 namespace marey::format::take {
 
-/// Chunks of a take up to here, in the file and in memory.
-constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
+/// Chunks of a take up to here, in the file and in memory: few enough that a track lies in few places, small enough to be gathered
+/// and encoded while the processor still has them at hand.
+constexpr std::size_t kLargestChunk = std::size_t{4} << 20;
 constexpr Duration kLongestChunk = std::chrono::seconds(60);
 
 /// Keeps what short chunks hold, so that they can be replaced by one of about a minute without being read again. Memory is that of

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/take/body_definition.h"
-#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/chunk_reader.h"
 #include "marey/format/take/frame_names.h"
 #include "marey/format/take/take_cursor.h"
 #include "marey/format/take/take_schema.h"

@@ -47,6 +47,22 @@ void append_column(const OptionalColumn& from, std::size_t first, OptionalColumn
   to.add_rows(first, from.values(), known);
 }
 
+/// At once where all know the value, as they do mostly.
+void set_known(std::span<const SeenPoint> points, std::optional<double> SeenPoint::* value, std::size_t first,
+               OptionalColumn& column) {
+  const auto knows = [&](const SeenPoint& point) { return (point.*value).has_value(); };
+  if (std::all_of(points.begin(), points.end(), knows)) {
+    std::vector<double> values;
+    values.reserve(points.size());
+    for (const SeenPoint& point : points) values.push_back(*(point.*value));
+    column.add_rows(first, values, {});
+    return;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (knows(points[i])) column.set(first + i, {&*(points[i].*value), 1});
+  }
+}
+
 std::vector<std::int32_t> moved_by(std::int32_t offset, std::span<const std::int32_t> at) {
   std::vector<std::int32_t> moved(at.begin(), at.end());
   for (std::int32_t& instant : moved) instant += offset;
@@ -65,14 +81,20 @@ void SeenColumns::append(const SeenColumns& other, std::int32_t offset) {
   put(track, other.track);
 }
 
-void SeenColumns::add(std::int32_t instant, const SeenPoint& point) {
-  const std::size_t row = at.size();
-  at.push_back(instant);
-  x.push_back(point.pixel.x());
-  y.push_back(point.pixel.y());
-  if (point.sigma) sigma.set(row, {&*point.sigma, 1});
-  if (point.area) area.set(row, {&*point.area, 1});
-  track.push_back(point.track ? static_cast<std::uint64_t>(number(*point.track)) : 0);
+void SeenColumns::add(std::int32_t instant, std::span<const SeenPoint> points) {
+  const std::size_t first = at.size(), all = first + points.size();
+  at.resize(all, instant);
+  x.resize(all);
+  y.resize(all);
+  track.resize(all);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SeenPoint& point = points[i];
+    x[first + i] = point.pixel.x();
+    y[first + i] = point.pixel.y();
+    track[first + i] = point.track ? static_cast<std::uint64_t>(number(*point.track)) : 0;
+  }
+  set_known(points, &SeenPoint::sigma, first, sigma);
+  set_known(points, &SeenPoint::area, first, area);
 }
 
 SeenPoint SeenColumns::point(CameraId camera, std::size_t row) const {
@@ -106,12 +128,11 @@ void Chunk::add(const Instant& instant, int dimensions) {
     bytes += 28 + (sample.velocity ? 12 : 0) + (sample.covariance ? 24 : 0) + (sample.box ? 32 : 0);
     if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();
   }
-  SeenColumns* seen_by = nullptr;
-  std::optional<CameraId> camera;
-  for (const SeenPoint& point : instant.seen) {
-    if (camera != point.camera) seen_by = &seen[point.camera];
-    camera = point.camera;
-    seen_by->add(at, point);
+  for (auto begin = instant.seen.begin(); begin != instant.seen.end();) {
+    const auto of_another = [&](const SeenPoint& point) { return point.camera != begin->camera; };
+    const auto end = std::find_if(begin, instant.seen.end(), of_another);
+    seen[begin->camera].add(at, {begin, end});
+    begin = end;
   }
   for (const BodyPose& pose : instant.bodies) bodies.try_emplace(pose.body, pose.body).first->second.add(at, pose);
   bytes += 16 + 32 * instant.seen.size() + 190 * instant.bodies.size();
@@ -161,12 +182,17 @@ std::optional<std::string> problem_of(const Sample& sample) {
   return std::nullopt;
 }
 
+bool is_sound(const SeenPoint& point) {
+  const int camera = number(point.camera);
+  return camera >= 0 && camera <= 63 && point.pixel.allFinite() && is_number(point.sigma) && is_number(point.area) &&
+         (!point.track || number(*point.track) > 0);
+}
+
 std::optional<std::string> problem_of(const SeenPoint& point) {
+  if (is_sound(point)) return std::nullopt;
   const int camera = number(point.camera);
   if (camera < 0 || camera > 63) return fmt::format("camera {} cannot be; a rig has 64 at most", camera);
-  if (!point.pixel.allFinite() || !is_number(point.sigma) || !is_number(point.area) || (point.track && number(*point.track) <= 0))
-    return fmt::format("camera {} has seen what no camera sees", camera);
-  return std::nullopt;
+  return fmt::format("camera {} has seen what no camera sees", camera);
 }
 
 std::optional<std::string> problem_of(const BodyPose& pose) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct SeenColumns {
   std::vector<std::uint64_t> track;  ///< 0: nobody's
 
   std::size_t size() const { return at.size(); }
-  void add(std::int32_t instant, const SeenPoint& point);
+  /// All of one instant.
+  void add(std::int32_t instant, std::span<const SeenPoint> points);
   SeenPoint point(CameraId camera, std::size_t row) const;
   /// `offset` is added to the instants.
   void append(const SeenColumns& other, std::int32_t offset);
@@ -42,6 +44,9 @@ struct Chunk {
   TrackColumns& track(TrackId id, int dimensions);
   void clear();
 };
+
+/// Whether reading would take it.
+bool is_sound(const SeenPoint& point);
 
 /// Why reading would refuse it; nothing where it is sound.
 std::optional<std::string> problem_of(const Sample& sample);

@@ -17,39 +17,21 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_joiner.h"
-#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/chunk_writer.h"
 #include "marey/format/take/frame_names.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_chunk.h"
 #include "marey/format/take/take_file.h"
+#include "marey/format/take/take_place.h"
 #include "marey/format/take/take_schema.h"
 
 namespace marey::format::take {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
-
-/// Clears the way for a new take. What is no take is somebody's work, named by mistake.
-std::string place_for(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return path;
-  if (!fs::is_regular_file(status)) throw Error("{}: is no file; name one for the take", path);
-  if (fs::file_size(path, error) > 0 && !is_take(path)) {
-    throw Error("{}: exists and is no take; it is not overwritten, choose another name", path);
-  }
-  return fs::canonical(path).string();
-}
-
-void remove_old(const std::string& path) {
-  std::error_code error;
-  fs::remove(path + "-journal", error);
-  fs::remove(path, error);
-  if (error) throw Error("{}: cannot be replaced ({})", path, error.message());
-}
+constexpr std::size_t kLargestTransaction = std::size_t{16} << 20;
 
 void require_valid(const RecordingHeader& header, const std::string& path) {
   if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
@@ -62,9 +44,9 @@ void require_valid(const RecordingHeader& header, const std::string& path) {
 class TakeWriter::Recorder {
  public:
   Recorder(const std::string& path, const RecordingHeader& header)
-      : path_(place_for(path)),
+      : path_(place_for_take(path)),
         lock_(path_),
-        database_((require_valid(header, path), remove_old(path_), path_), Database::Mode::create),
+        database_((require_valid(header, path), remove_old_take(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
         dimensions_(header.frame.dimensions()),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
@@ -74,7 +56,7 @@ class TakeWriter::Recorder {
         joiner_(dimensions_) {
     open_ = true;
     began_ = Clock::now();
-    set("name", header.name.empty() ? fs::path(path).stem().string() : header.name);
+    set("name", header.name.empty() ? std::filesystem::path(path).stem().string() : header.name);
     set("recorded_at", header.recorded_at);
     set("rate_hz", header.rate_hz);
     set("frame", name_of(header.frame.kind));
@@ -103,7 +85,8 @@ class TakeWriter::Recorder {
     last_index_ = instant.index;
     if (!first_index_) first_index_ = instant.index;
     gathered();
-    if (chunk_.bytes + written_ >= kLargestChunk || Clock::now() - began_ >= kLongestTransaction) flush();
+    if (chunk_.bytes >= kLargestChunk) cut();
+    if (chunk_.bytes + written_ >= kLargestTransaction || Clock::now() - began_ >= kLongestTransaction) flush();
   }
 
   void add_edit(const Edit& edit) {
@@ -202,7 +185,7 @@ class TakeWriter::Recorder {
       ids_.push_back(sample.track);
     }
     for (const SeenPoint& point : instant.seen) {
-      if (const auto problem = problem_of(point)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
+      if (!is_sound(point)) throw Error("{}: frame {}: {}", path_, instant.index, problem_of(point).value());
     }
     for (const BodyPose& pose : instant.bodies) {
       if (const auto problem = problem_of(pose)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);

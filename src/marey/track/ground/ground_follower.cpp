@@ -7,8 +7,8 @@
 
 namespace marey::track::ground {
 
-GroundFollower::GroundFollower(const GroundTrackerOptions& options, std::vector<GroundView> views)
-    : rules_(options, static_cast<int>(views.size())), visibility_(std::move(views)) {}
+GroundFollower::GroundFollower(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views)
+    : rules_(options, views->cameras()), visibility_(std::move(views)) {}
 
 std::span<const Track<2>> GroundFollower::step(Timestamp now, std::span<const CameraObservations> views) {
   check_time(now, now_);
@@ -46,7 +46,7 @@ void GroundFollower::predict_to(Timestamp now) {
 
 void GroundFollower::take_in(int index, const CameraObservations& view) {
   const double late = seconds(view.time - *now_);
-  visibility_.set_view(view.camera, view.seen, rules_.options().evidence.confident);
+  visibility_.set_view(view, rules_.options().evidence.confident);
   target_of_.assign(view.seen.size(), std::nullopt);
   explained_.assign(view.seen.size(), 0);
   find_pairs(view.seen, late);

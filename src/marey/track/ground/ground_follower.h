@@ -24,7 +24,7 @@ struct GroundPair {
 
 class GroundFollower : public ImmediateTracker<2> {
  public:
-  GroundFollower(const GroundTrackerOptions& options, std::vector<GroundView> views);
+  GroundFollower(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views);
 
   using ImmediateTracker<2>::step;
   std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations> views) final;

@@ -30,7 +30,7 @@ class GroundGnn final : public GroundFollower {
 
 }  // namespace
 
-std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views) {
+std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views) {
   return std::make_unique<GroundGnn>(options, std::move(views));
 }
 

@@ -5,6 +5,6 @@
 namespace marey::track::ground {
 
 /// Follows people on the ground by global nearest neighbour: in each view the one assignment of greatest likelihood.
-std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::vector<GroundView> views);
+std::unique_ptr<GroundTracker> make_ground_gnn(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views);
 
 }  // namespace marey::track::ground

@@ -48,12 +48,12 @@ double colour_log_normal(const Appearance& a, const Appearance& b) {
 }
 
 /// Whether somebody there may be about to be out of sight: some place a second's way around is.
-bool near_border(const GroundState& state, double direction, const InSight& in_sight) {
+bool near_border(const GroundState& state, Timestamp time, double direction, const InSight& in_sight) {
   if (!in_sight) return false;
   const Vector<2> ahead = state.place() + direction * 0.7 * state.velocity();
   for (int k = 0; k < 8; ++k) {
     const double angle = k * std::numbers::pi / 4;
-    if (!in_sight(ahead + 1.5 * Vector<2>(std::cos(angle), std::sin(angle)))) return true;
+    if (!in_sight(ahead + 1.5 * Vector<2>(std::cos(angle), std::sin(angle)), time)) return true;
   }
   return false;
 }
@@ -72,8 +72,8 @@ class Chainer {
       tail.time = times[samples.back().instant];
       head.state = first_state(samples, times, options.motion, end_span);
       tail.state = last_state(samples, times, options.motion, end_span);
-      head.at_border = near_border(head.state, -1, in_sight);
-      tail.at_border = near_border(tail.state, 1, in_sight);
+      head.at_border = near_border(head.state, head.time, -1, in_sight);
+      tail.at_border = near_border(tail.state, tail.time, 1, in_sight);
       heads_.push_back(head);
       tails_.push_back(tail);
     }

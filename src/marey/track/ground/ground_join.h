@@ -25,8 +25,8 @@
 
 namespace marey::track::ground {
 
-/// Whether somebody who stands there would be seen and reported: within some camera's picture, and on the pitch.
-using InSight = std::function<bool(const Vector<2>&)>;
+/// Whether somebody who stands there at that time would be seen and reported: within some camera's picture, and on the pitch.
+using InSight = std::function<bool(const Vector<2>&, Timestamp)>;
 
 struct GroundChainOptions {
   double longest_gap = 20;  ///< s

@@ -76,7 +76,7 @@ TEST(GroundJoin, ClothesTellWhoIsWhoWhereWaysDoNot) {
 TEST(GroundJoin, AtTheBorderOfSightPeopleLeaveAndOthersCome) {
   const std::vector<GroundTracklet> tracklets = {walk(1, 0, 3, {94, 30}, {2, 0}), walk(2, 12, 15, {100, 34}, {-2, 0})};
   EXPECT_EQ(chains_of(tracklets), (Chains{{0, 1}})) << "on an endless pitch nobody leaves";
-  EXPECT_EQ(chains_of(tracklets, [](const Vector<2>& place) { return place.x() < 101; }), (Chains{{0}, {1}}));
+  EXPECT_EQ(chains_of(tracklets, [](const Vector<2>& place, Timestamp) { return place.x() < 101; }), (Chains{{0}, {1}}));
 }
 
 /// The best of all ways to give ends their beginnings.

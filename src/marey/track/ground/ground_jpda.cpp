@@ -91,7 +91,7 @@ class GroundJpda final : public GroundFollower {
 
 }  // namespace
 
-std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::vector<GroundView> views) {
+std::unique_ptr<GroundTracker> make_ground_jpda(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views) {
   return std::make_unique<GroundJpda>(options, std::move(views));
 }
 

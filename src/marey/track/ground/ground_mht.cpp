@@ -44,8 +44,8 @@ class GroundMht final : public GroundTracker {
  public:
   using GroundTracker::step;
 
-  GroundMht(const GroundTrackerOptions& options, std::vector<GroundView> views, const GroundMhtLimits& limits)
-      : rules_(options, static_cast<int>(views.size())),
+  GroundMht(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views, const GroundMhtLimits& limits)
+      : rules_(options, views->cameras()),
         visibility_(std::move(views)),
         hypotheses_({options.hypotheses, limits.leaves, -std::log(limits.ratio)}),
         limits_(limits) {}
@@ -102,7 +102,7 @@ class GroundMht final : public GroundTracker {
 
   void take_in(int index, const CameraObservations& view) {
     const double late = seconds(view.time - *now_);
-    visibility_.set_view(view.camera, view.seen, rules_.options().evidence.confident);
+    visibility_.set_view(view, rules_.options().evidence.confident);
     find_missed();
     find_shared(view.seen);
     find_pairs(seen_, late);
@@ -337,7 +337,7 @@ class GroundMht final : public GroundTracker {
 
 }  // namespace
 
-std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::vector<GroundView> views,
+std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views,
                                                const GroundMhtLimits& limits) {
   return std::make_unique<GroundMht>(options, std::move(views), limits);
 }

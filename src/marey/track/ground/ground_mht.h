@@ -14,7 +14,7 @@ struct GroundMhtLimits {
 };
 
 /// Follows people on the ground by multiple-hypothesis tracking (ground_mht.cpp).
-std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::vector<GroundView> views,
+std::unique_ptr<GroundTracker> make_ground_mht(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views,
                                                const GroundMhtLimits& limits = {});
 
 }  // namespace marey::track::ground

@@ -138,7 +138,7 @@ TEST(GroundMht, WithoutPruningTheBestIsThatOfAllHypotheses) {
     GroundTrackerOptions options{
         .associate = GroundAssociation::mht, .clutter = 0.01, .births = 0.05, .hypotheses = 1'000'000, .window = 100};
     const auto tracker =
-        make_ground_mht(options, {whole}, {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .doubt = false});
+        make_ground_mht(options, ground_views({whole}), {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .doubt = false});
     Enumeration twin(options);
     for (int frame = 0; frame < 4; ++frame) {
       Seen seen;
@@ -177,7 +177,7 @@ Seen passing(Random& random, int frame, double apart) {
 TEST(GroundMht, DecidesAfterAMeetingWhoIsWho) {
   int right = 0;
   for (int seed = 1; seed <= 20; ++seed) {
-    const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, {whole});
+    const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, ground_views({whole}));
     Random random(static_cast<std::uint64_t>(seed));
     std::vector<std::pair<int, int>> ids;  // of the two, as decided
     const auto take = [&](std::span<const GroundDecision> decisions) {
@@ -200,7 +200,7 @@ TEST(GroundMht, DecidesAfterAMeetingWhoIsWho) {
 }
 
 TEST(GroundMht, TellsEachInstantOnceInOrderAndNotBeforeItsWindow) {
-  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .window = 0.5}, {whole});
+  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .window = 0.5}, ground_views({whole}));
   Random random(3);
   int told = 0;
   for (int frame = 0; frame < 100; ++frame) {
@@ -222,7 +222,7 @@ TEST(GroundMht, TellsEachInstantOnceInOrderAndNotBeforeItsWindow) {
 
 TEST(GroundMht, IsTheSameAgain) {
   const auto run_once = [] {
-    const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, {whole});
+    const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, ground_views({whole}));
     Random random(5);
     std::vector<std::tuple<int, int, double, double>> rows;
     for (int frame = 0; frame < 150; ++frame) {
@@ -235,7 +235,7 @@ TEST(GroundMht, IsTheSameAgain) {
 }
 
 TEST(GroundMht, FollowsOneAndForgetsHim) {
-  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, {whole});
+  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, ground_views({whole}));
   std::set<int> ids;
   for (int frame = 0; frame < 50; ++frame) {
     const auto tracks = step(*tracker, frame, {at({0.1 * frame, 0})});
@@ -253,7 +253,7 @@ TEST(GroundMht, FollowsOneAndForgetsHim) {
 }
 
 TEST(GroundMht, NothingSeenAndNoLooksAreNothing) {
-  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, {whole});
+  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, ground_views({whole}));
   EXPECT_TRUE(tracker->expected(instant(0)).empty());
   EXPECT_TRUE(tracker->decide_all().empty());
   EXPECT_TRUE(tracker->step(instant(0), Seen{}).empty());
@@ -273,7 +273,8 @@ Seen scuffle(Random& random, int frame) {
 }
 
 TEST(GroundMht, NeedsNoMoreMemoryHoweverLongAScuffleLasts) {
-  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .hypotheses = 10, .window = 0.5}, {whole});
+  const auto tracker =
+      make_ground_mht({.associate = GroundAssociation::mht, .hypotheses = 10, .window = 0.5}, ground_views({whole}));
   Random random(11);
   int frame = 0;
   for (; frame < 2000; ++frame) step(*tracker, frame, scuffle(random, frame));
@@ -284,7 +285,7 @@ TEST(GroundMht, NeedsNoMoreMemoryHoweverLongAScuffleLasts) {
 }
 
 TEST(GroundMht, ManyFalsePointsDoNotMultiply) {
-  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .clutter = 0.05}, {whole});
+  const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .clutter = 0.05}, ground_views({whole}));
   Random random(13);
   std::set<int> ids;
   for (int frame = 0; frame < 60; ++frame) {

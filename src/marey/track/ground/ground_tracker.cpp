@@ -33,9 +33,9 @@ GroundAssociation ground_association_named(std::string_view name) {
   throw Error("association \"{}\" is not known; choose one of gnn, jpda, mht", name);
 }
 
-std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::vector<GroundView> views) {
+std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views) {
   check(options);
-  if (views.empty()) throw Error("no camera sees the ground; calibrate one over it");
+  if (views == nullptr || views->cameras() == 0) throw Error("no camera sees the ground; calibrate one over it");
   switch (options.associate) {
     case GroundAssociation::mht:
       return make_ground_mht(options, std::move(views));

@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/core/ground_views.h"
 #include "marey/filter/filters.h"
-#include "marey/geometry/ground_view.h"
 #include "marey/track/tracker.h"
 
 namespace marey::track::ground {
@@ -51,8 +51,8 @@ struct GroundTrackerOptions {
   double window = 1.0;  ///< N-scan: what is older than this is decided
 };
 
-/// `views`: how camera i of the rig sees the ground; a target outside its picture is not missed by it. Throws Error where an
-/// option is out of its domain. Camera i of the observations is views[i].
-std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::vector<GroundView> views);
+/// `views`: how the cameras of the rig see the ground, asked for at the time of each frame; a target outside a picture is not
+/// missed by it. Throws Error where an option is out of its domain, or there is no camera.
+std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views);
 
 }  // namespace marey::track::ground

@@ -18,7 +18,7 @@ using namespace ground_scene;
 class EveryAssociation : public testing::TestWithParam<GroundAssociation> {
  protected:
   std::unique_ptr<GroundTracker> make(std::vector<GroundView> views) {
-    return make_ground_tracker({.associate = GetParam()}, std::move(views));
+    return make_ground_tracker({.associate = GetParam()}, ground_views(std::move(views)));
   }
 };
 
@@ -227,9 +227,9 @@ TEST(GroundTracker, NamesItsAssociations) {
 
 TEST(GroundTracker, RefusesOptionsOutOfTheirDomain) {
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
-  EXPECT_THROW(make_ground_tracker({.detected = 1}, views), Error);
-  EXPECT_THROW(make_ground_tracker({.clutter = 0}, views), Error);
-  EXPECT_THROW(make_ground_tracker({}, {}), Error);
+  EXPECT_THROW(make_ground_tracker({.detected = 1}, ground_views(views)), Error);
+  EXPECT_THROW(make_ground_tracker({.clutter = 0}, ground_views(views)), Error);
+  EXPECT_THROW(make_ground_tracker({}, ground_views({})), Error);
 }
 
 }  // namespace

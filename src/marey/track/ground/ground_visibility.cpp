@@ -13,10 +13,10 @@ void GroundVisibility::check(const CameraObservations& view) const {
   check_finite(view.time, view.seen);
 }
 
-void GroundVisibility::set_view(CameraId camera, std::span<const Observation<2>> seen, double least_score) {
-  view_ = &views_.at(static_cast<std::size_t>(number(camera)));
+void GroundVisibility::set_view(const CameraObservations& of, double least_score) {
+  view_ = &views_->view_at(of.camera, of.time);
   boxes_.clear();
-  for (const Observation<2>& one : seen) {
+  for (const Observation<2>& one : of.seen) {
     if (one.box && !one.box->empty() && one.score >= least_score) boxes_.push_back(*one.box);
   }
 }

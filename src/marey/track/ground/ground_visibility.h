@@ -1,11 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/core/ground_views.h"
 #include "marey/core/observation.h"
-#include "marey/geometry/ground_view.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::track::ground {
@@ -13,16 +14,16 @@ namespace marey::track::ground {
 /// What each camera can see of the ground: a target outside its picture, or behind another that is nearer, is not missed by it.
 class GroundVisibility {
  public:
-  explicit GroundVisibility(std::vector<GroundView> views) : views_(std::move(views)) {}
+  explicit GroundVisibility(std::shared_ptr<const GroundViews> views) : views_(std::move(views)) {}
 
-  int cameras() const { return static_cast<int>(views_.size()); }
+  int cameras() const { return views_->cameras(); }
 
   /// Throws Error where a view is of none of the cameras, or not finite.
   void check(const CameraObservations& view) const;
 
-  /// Turns to one camera's view: `seen` are its observations, of which those with scores of at least `least_score` may stand before
-  /// others. The camera must be one of the rig's.
-  void set_view(CameraId camera, std::span<const Observation<2>> seen, double least_score);
+  /// Turns to one camera's view at the time of its frame: of its observations those with scores of at least `least_score` may stand
+  /// before others. The camera must be one of the rig's.
+  void set_view(const CameraObservations& of, double least_score);
 
   /// The probability, in [0, 1], that nothing keeps this camera from seeing a person who stands at `place`, m, and is not one of
   /// those whose boxes it sees: 0 outside the picture, ½ at its border, little behind another's box.
@@ -35,7 +36,7 @@ class GroundVisibility {
   static constexpr double hidden_share = 0.3;  // of a body behind another, from which on it is likely to be missed
   static constexpr double seen_hidden = 0.1;   // probability that a person hidden so is seen nevertheless
 
-  std::vector<GroundView> views_;
+  std::shared_ptr<const GroundViews> views_;
   const GroundView* view_ = nullptr;
   std::vector<Box> boxes_;  // of this view
 };

@@ -1,6 +1,5 @@
-#include "marey/format/take/chunk_rows.h"
+#include "marey/format/take/chunk_reader.h"
 
-#include <array>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -8,64 +7,15 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/take/chunk_fields.h"
 #include "marey/format/take/outline_blob.h"
 #include "marey/format/take/take_schema.h"
 
 namespace marey::format::take {
 namespace {
 
-using Optional = TrackColumns::Optional;
-
-/// In the order of the table's columns; boxes are kept exactly, as positions are.
-struct OptionalField {
-  Optional column;
-  bool exactly;
-};
-constexpr std::array<OptionalField, TrackColumns::kOptionals> kOptionalFields{{{Optional::velocity, false},
-                                                                               {Optional::covariance, false},
-                                                                               {Optional::score, false},
-                                                                               {Optional::box, true},
-                                                                               {Optional::residual_px, false},
-                                                                               {Optional::residual_m, false}}};
-enum SampleField {
-  id,
-  row_count,
-  at,
-  x,
-  y,
-  z,
-  provenance,
-  cameras,
-  first_optional,
-  outline = first_optional + TrackColumns::kOptionals
-};
-enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked };
-enum SeenField { seen_id, seen_rows, seen_at, seen_x, seen_y, seen_sigma, seen_area, seen_track };
-
-constexpr const char* kSampleFields =
-    "id, rows, at, x, y, z, provenance, cameras, velocity, covariance, score, box, residual_px, residual_m, outline";
-
 constexpr std::int64_t kLastIndex = std::int64_t{1} << 62;
 constexpr std::int64_t kOneChunk = std::int64_t{1} << 32;
-
-void bind_or_null(Statement& statement, int parameter, const Bytes& blob) {
-  if (blob.empty()) {
-    statement.bind_null(parameter);
-  } else {
-    statement.bind(parameter, std::span<const std::byte>(blob));
-  }
-}
-
-/// One number where all rows have the same, else a blob.
-void bind_integers(Statement& statement, int parameter, std::span<const std::uint64_t> values, Bytes& blob) {
-  const auto common = common_value(values);
-  if (common && *common <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
-    statement.bind(parameter, static_cast<std::int64_t>(*common));
-  } else {
-    encode_integers(values, blob);
-    statement.bind(parameter, std::span<const std::byte>(blob));
-  }
-}
 
 std::optional<Matrix<6>> symmetric_6(const OptionalColumn& column, std::size_t row) {
   if (!column.known(row)) return std::nullopt;
@@ -77,143 +27,7 @@ std::optional<Matrix<6>> symmetric_6(const OptionalColumn& column, std::size_t r
   return matrix;
 }
 
-bool consecutive(std::span<const std::int32_t> places) {
-  return !places.empty() && static_cast<std::size_t>(places.back() - places.front()) + 1 == places.size();
-}
-
 }  // namespace
-
-ChunkWriter::ChunkWriter(const Database& database)
-    : add_instants_(database, "INSERT INTO chunk VALUES (?, ?, ?, ?, ?, ?)"),
-      add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
-      add_seen_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
-      add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?)"),
-      remove_instants_(database, "DELETE FROM chunk WHERE id = ?"),
-      remove_samples_(database, "DELETE FROM samples WHERE id >= ? AND id < ?"),
-      remove_seen_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
-      remove_poses_(database, "DELETE FROM poses WHERE id >= ? AND id < ?"),
-      blobs_(outline + 1) {}
-
-void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
-  write_instants(chunk_id, chunk);
-  for (const auto& [track, columns] : chunk.tracks) {
-    if (!columns.empty()) write_samples(row_id(chunk_id, number(track)), columns);
-  }
-  for (const auto& [camera, columns] : chunk.seen) {
-    if (columns.size() > 0) write_seen(row_id(chunk_id, number(camera)), columns);
-  }
-  for (const auto& [body, columns] : chunk.bodies) {
-    if (!columns.empty()) write_poses(row_id(chunk_id, number(body)), columns);
-  }
-}
-
-void ChunkWriter::write_instants(std::int64_t chunk_id, const Chunk& chunk) {
-  const std::int64_t first = chunk.moments.front().index, last = chunk.moments.back().index;
-  std::vector<std::int64_t> times;
-  std::vector<std::uint32_t> indices;
-  for (const Recording::Moment& moment : chunk.moments) {
-    times.push_back(moment.time.time_since_epoch().count());
-    indices.push_back(static_cast<std::uint32_t>(moment.index - first));
-  }
-  const bool all = last - first + 1 == static_cast<std::int64_t>(times.size());
-  add_instants_.bind(0, chunk_id);
-  add_instants_.bind(1, first);
-  add_instants_.bind(2, last);
-  add_instants_.bind(3, static_cast<std::int64_t>(times.size()));
-  if (all) {
-    add_instants_.bind_null(4);
-  } else {
-    add_instants_.bind(4, std::as_bytes(std::span(indices)));
-  }
-  add_instants_.bind(5, std::as_bytes(std::span(times)));
-  add_instants_.run();
-}
-
-void ChunkWriter::write_samples(std::int64_t row, const TrackColumns& track) {
-  Statement& to = add_samples_;
-  to.bind(id, row);
-  to.bind(row_count, static_cast<std::int64_t>(track.size()));
-  if (consecutive(track.at())) {
-    to.bind(at, std::int64_t{track.at().front()});
-  } else {
-    to.bind(at, std::as_bytes(track.at()));
-  }
-  encode_exactly(track.x(), blobs_[x]);
-  encode_exactly(track.y(), blobs_[y]);
-  encode_exactly(track.z(), blobs_[z]);
-  to.bind(x, std::span<const std::byte>(blobs_[x]));
-  to.bind(y, std::span<const std::byte>(blobs_[y]));
-  bind_or_null(to, z, blobs_[z]);
-  integers_.clear();
-  for (const Provenance each : track.provenance()) integers_.push_back(static_cast<std::uint64_t>(each));
-  bind_integers(to, provenance, integers_, blobs_[provenance]);
-  bind_integers(to, cameras, track.cameras(), blobs_[cameras]);
-  int field = first_optional;
-  for (const auto& [column, exactly] : kOptionalFields) {
-    Bytes& blob = blobs_[static_cast<std::size_t>(field)];
-    encode(track.column(column), track.size(), exactly, blob);
-    bind_or_null(to, field++, blob);
-  }
-  encode_outlines(track, blobs_[outline]);
-  bind_or_null(to, outline, blobs_[outline]);
-  to.run();
-}
-
-void ChunkWriter::write_seen(std::int64_t row, const SeenColumns& seen) {
-  Statement& to = add_seen_;
-  to.bind(seen_id, row);
-  to.bind(seen_rows, static_cast<std::int64_t>(seen.size()));
-  to.bind(seen_at, std::as_bytes(std::span(seen.at)));
-  encode_exactly(seen.x, blobs_[seen_x]);
-  encode_exactly(seen.y, blobs_[seen_y]);
-  encode(seen.sigma, seen.size(), false, blobs_[seen_sigma]);
-  encode(seen.area, seen.size(), false, blobs_[seen_area]);
-  to.bind(seen_x, std::span<const std::byte>(blobs_[seen_x]));
-  to.bind(seen_y, std::span<const std::byte>(blobs_[seen_y]));
-  bind_or_null(to, seen_sigma, blobs_[seen_sigma]);
-  bind_or_null(to, seen_area, blobs_[seen_area]);
-  bind_integers(to, seen_track, seen.track, blobs_[seen_track]);
-  to.run();
-}
-
-void ChunkWriter::write_poses(std::int64_t row, const BodyColumns& body) {
-  Statement& to = add_poses_;
-  to.bind(poses_id, row);
-  to.bind(poses_rows, static_cast<std::int64_t>(body.size()));
-  if (consecutive(body.at())) {
-    to.bind(poses_at, std::int64_t{body.at().front()});
-  } else {
-    to.bind(poses_at, std::as_bytes(body.at()));
-  }
-  std::vector<double> numbers;
-  for (const Rigid3& pose : body.poses()) {
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) numbers.push_back(pose.rotation(i, k));
-      numbers.push_back(pose.translation[i]);
-    }
-  }
-  to.bind(poses_pose, std::as_bytes(std::span<const double>(numbers)));
-  encode(body.residual_m(), body.size(), false, blobs_[x]);
-  encode(body.covariance(), body.size(), false, blobs_[y]);
-  bind_or_null(to, poses_residual, blobs_[x]);
-  bind_or_null(to, poses_covariance, blobs_[y]);
-  integers_.assign(body.tracked().begin(), body.tracked().end());
-  bind_integers(to, poses_tracked, integers_, blobs_[z]);
-  to.run();
-}
-
-void ChunkWriter::remove_instants(std::int64_t chunk_id) {
-  remove_instants_.bind(0, chunk_id);
-  remove_instants_.run();
-}
-
-void ChunkWriter::remove_rows(std::int64_t chunk_id) {
-  for (Statement* statement : {&remove_samples_, &remove_seen_, &remove_poses_}) {
-    statement->bind(0, row_id(chunk_id, 0));
-    statement->bind(1, row_id(chunk_id + 1, 0));
-    statement->run();
-  }
-}
 
 ChunkReader::ChunkReader(const Database& database, int dimensions)
     : database_(&database),
@@ -292,7 +106,7 @@ void ChunkReader::read(const Row& row, bool with_seen, Chunk& chunk) {
   samples_.bind(0, row_id(row.id, 1));
   samples_.bind(1, row_id(row.id, 0) + kOneChunk);
   while (samples_.step()) {
-    const std::int64_t track = samples_.integer(id) & 0xffffffff;
+    const std::int64_t track = samples_.integer(sample_id) & 0xffffffff;
     if (track > std::numeric_limits<int>::max()) throw Error("{}: is damaged (a track's id is {})", database_->path(), track);
     decode_samples(samples_, row, offset, chunk.track(TrackId{static_cast<int>(track)}, dimensions_));
   }
@@ -384,32 +198,32 @@ void ChunkReader::decode_places(const Statement& row, int column, const Row& chu
 
 void ChunkReader::decode_samples(const Statement& row, const Row& chunk, std::int64_t offset, TrackColumns& track) {
   const std::string where = fmt::format("{}: chunk {}, track {}", database_->path(), chunk.id, number(track.id()));
-  ColumnDecoder decoder(checked_count(row.integer(row_count)), where);
-  decoder.numbers(row.blob(x), x_);  // first, as it holds that there are so many rows
-  decoder.numbers(row.blob(y), y_);
-  decode_places(row, at, chunk, offset, decoder);
+  ColumnDecoder decoder(checked_count(row.integer(sample_rows)), where);
+  decoder.numbers(row.blob(sample_x), x_);  // first, as it holds that there are so many rows
+  decoder.numbers(row.blob(sample_y), y_);
+  decode_places(row, sample_at, chunk, offset, decoder);
   z_.clear();
-  if (dimensions_ == 3) decoder.numbers(row.blob(z), z_);
-  if (row.is_number(provenance)) {
-    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(provenance)));
+  if (dimensions_ == 3) decoder.numbers(row.blob(sample_z), z_);
+  if (row.is_number(sample_provenance)) {
+    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(sample_provenance)));
   } else {
-    decoder.integers(row.blob(provenance), integers_);
+    decoder.integers(row.blob(sample_provenance), integers_);
   }
   provenance_.clear();
   for (const std::uint64_t value : integers_) {
     if (value > static_cast<std::uint64_t>(Provenance::solved)) decoder.fail("a provenance cannot be");
     provenance_.push_back(static_cast<Provenance>(value));
   }
-  if (row.is_number(cameras)) {
-    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(cameras)));
+  if (row.is_number(sample_cameras)) {
+    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(sample_cameras)));
   } else {
-    decoder.integers(row.blob(cameras), integers_);
+    decoder.integers(row.blob(sample_cameras), integers_);
   }
   const std::size_t first = track.size();
   track.add_rows({.at = at_, .x = x_, .y = y_, .z = z_, .provenance = provenance_, .cameras = integers_});
-  int field = first_optional;
+  int field = sample_first_optional;
   for (const auto& [column, exactly] : kOptionalFields) decoder.optional(row.blob(field++), first, track.column(column));
-  decode_outlines(row.blob(outline), decoder, first, track);
+  decode_outlines(row.blob(sample_outline), decoder, first, track);
 }
 
 void ChunkReader::decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen) {

@@ -1,0 +1,33 @@
+#include "marey/core/ground_views.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "marey/core/error.h"
+
+namespace marey {
+
+GroundViews::GroundViews(std::vector<GroundView> views) {
+  for (GroundView& view : views) cameras_.push_back({std::move(view), {}});
+}
+
+const GroundView& GroundViews::view_at(CameraId camera, Timestamp time) const {
+  const OneCamera& one = cameras_.at(static_cast<std::size_t>(number(camera)));
+  const auto later =
+      std::upper_bound(one.turns.begin(), one.turns.end(), time, [](Timestamp t, const Turn& turn) { return t < turn.from; });
+  return later == one.turns.begin() ? one.first : std::prev(later)->view;
+}
+
+void GroundViews::turn(CameraId camera, Timestamp from, const GroundView& view) {
+  OneCamera& one = cameras_.at(static_cast<std::size_t>(number(camera)));
+  if (!one.turns.empty() && from <= one.turns.back().from)
+    throw Error("camera {} is turned at {} s after it was turned at {} s; turns are told in the order of time", number(camera),
+                seconds(from), seconds(one.turns.back().from));
+  one.turns.push_back({from, view});
+}
+
+std::shared_ptr<GroundViews> ground_views(std::vector<GroundView> views) {
+  return std::make_shared<GroundViews>(std::move(views));
+}
+
+}  // namespace marey
