@@ -17,6 +17,7 @@
 #include "batch_run.h"
 #include "command_line.h"
 #include "commands.h"
+#include "file_checks.h"
 #include "json_value.h"
 #include "run_hooks.h"
 
@@ -61,6 +62,10 @@ void plan_batch(const PlanCommand& command) {
     }
   }
   const BatchPlan plan = make_plan(request);
+  std::vector<NamedPath> its_files;
+  for (const std::string& path : plan.files()) its_files.push_back({"FROM", path, {}});
+  const NamedPath written{"--output", plan.path, {}};
+  check_files(its_files, {&written, 1});
   write_plan(plan);
   int memory = 0;
   for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.memory_mb);
@@ -281,6 +286,7 @@ void add_plan(Command& batch) {
             "options")
       .required();
   command.output_file("-o,--output", options->request.plan, "the plan; results go to PLAN.results").required().ends_in({".tsv"});
+  command.also_reads([options] { return std::vector{options->request.from}; });
   command.text("--do", options->request.job, "what: track, ground (a rig's cameras), reconstruct, measure")
       .check([](const std::string& job) {
         const auto& jobs = batch_jobs();
@@ -311,6 +317,7 @@ void add_reduce(Command& batch) {
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
   command.output_file("-o,--output", options->out, "CSV with a row a person and recording").required().ends_in({".csv"});
   command.output_folder("--report", options->report, "folder for a page with the tables");
+  command.also_reads([options] { return read_plan(options->plan).files(); });
   command.also_writes(
       [options] { return options->report.empty() ? std::vector<std::string>{} : std::vector{season_page(*options)}; });
   command.reports(options->json, options->quiet, "summary");

@@ -1,12 +1,13 @@
 // The plan as a table, a task's record as a list: what is written is read again.
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 
@@ -82,6 +83,14 @@ std::int64_t whole_of(const std::string& text) {
   return value;
 }
 
+/// A number that is small, and not below 0.
+int count_of(const std::string& text) {
+  constexpr std::int64_t kMost = 1'000'000'000;
+  const std::int64_t value = whole_of(text);
+  if (value < 0 || value > kMost) throw Error("{} is not within 0 and {}", text, kMost);
+  return static_cast<int>(value);
+}
+
 std::string fnv(std::string_view text) {
   std::uint64_t hash = 14695981039346656037U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -99,9 +108,11 @@ BatchTask task_of(const std::string& line) {
   const std::vector<std::string> fields = split_fields(line, '\t');
   if (fields.size() != 8) throw Error("{} columns in place of 8", fields.size());
   BatchTask task;
-  task.number = static_cast<int>(whole_of(fields[0]));
+  task.number = count_of(fields[0]);
   task.name = out_of_field(fields[1]);
   task.job = fields[2];
+  if (std::find(batch_jobs().begin(), batch_jobs().end(), task.job) == batch_jobs().end())
+    throw Error("\"{}\" is no job", plain_text(task.job));
   const std::vector<std::string> paths = parts_of(fields[3]), states = parts_of(fields[4]);
   if (paths.empty() || paths.size() != states.size()) throw Error("{}", "inputs and states do not belong together");
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -111,7 +122,7 @@ BatchTask task_of(const std::string& line) {
   }
   task.options = parts_of(fields[5]);
   task.output = out_of_field(fields[6]);
-  task.memory_mb = static_cast<int>(whole_of(fields[7]));
+  task.memory_mb = count_of(fields[7]);
   return task;
 }
 
@@ -150,12 +161,29 @@ std::string BatchPlan::results() const {
   return path + ".results";
 }
 
+void BatchPlan::check_output(const BatchTask& task) const {
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(results()), error);
+  const fs::path below = fs::weakly_canonical(fs::absolute(task.output), error).lexically_relative(folder);
+  if (error || below.empty() || below == "." || *below.begin() == "..")
+    throw Error("\"{}\" would be written to {}, outside of {}", plain_text(task.name), plain_text(task.output), results());
+}
+
+std::vector<std::string> BatchPlan::files() const {
+  std::vector<std::string> paths;
+  for (const BatchTask& task : tasks) {
+    for (const PlannedInput& input : task.inputs) paths.push_back(input.path);
+    paths.push_back(task.output);
+  }
+  return paths;
+}
+
 std::string BatchPlan::record_of(const BatchTask& task) const {
   return (fs::path(results()) / "tasks" / fmt::format("{:06}.tsv", task.number)).string();
 }
 
 BatchPlan read_plan(const std::string& path) {
-  std::ifstream file(path);
+  InputStream file(path);
   if (!file) throw Error("{}: cannot be read; `marey batch plan` makes a plan", path);
   BatchPlan plan{path, {}};
   std::string line;
@@ -164,6 +192,7 @@ BatchPlan read_plan(const std::string& path) {
     try {
       plan.tasks.push_back(task_of(line));
       if (plan.tasks.back().number != std::ssize(plan.tasks)) throw Error("{}", "tasks are numbered from 1, one a line");
+      plan.check_output(plan.tasks.back());
     } catch (const Error& error) {
       throw Error("{}:{}: {}; make the plan anew with `marey batch plan`", path, number, error.what());
     }
@@ -188,7 +217,7 @@ void write_plan(const BatchPlan& plan) {
 }
 
 std::optional<TaskRecord> read_record(const std::string& path) {
-  std::ifstream file(path);
+  InputStream file(path);
   if (!file) return std::nullopt;
   TaskRecord record;
   for (std::string line; std::getline(file, line);) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/stop.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/register.h"
@@ -81,7 +81,7 @@ std::vector<std::string> words_in(const std::string& text) {
 
 /// A column `input`, and if there are such `name` and `options`; paths are as seen from the table.
 std::vector<Found> in_table(const PlanRequest& request) {
-  std::ifstream file(request.from);
+  InputStream file(request.from);
   std::string line;
   if (!file || !std::getline(file, line))
     throw Error("{}: cannot be read; give a folder, or a table with a column \"input\"", request.from);
@@ -174,6 +174,7 @@ BatchPlan make_plan(const PlanRequest& request) {
     const std::vector<std::string> inputs = inputs_of(request.job, found.input);
     for (const std::string& path : inputs) task.inputs.push_back(planned(path, before));
     task.output = (fs::path(plan.results()) / (task.name + ending)).string();
+    plan.check_output(task);
     const auto [known, is_new] = memory_before.try_emplace(task.job + task.inputs.front().hash, 0);
     if (is_new) known->second = expected_memory_mb(request.job, inputs);
     task.memory_mb = known->second;

@@ -39,6 +39,10 @@ struct BatchPlan {
 
   std::string results() const;  ///< the folder beside it: PLAN.results
   std::string record_of(const BatchTask& task) const;
+  /// Throws Error where the task would write outside of `results`: plans and tables may come from strangers.
+  void check_output(const BatchTask& task) const;
+  /// All that tasks read and write.
+  std::vector<std::string> files() const;
 };
 
 /// What came of a task that was run.

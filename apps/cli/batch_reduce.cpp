@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/input_file.h"
 #include "marey/core/stop.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/text_rows.h"
@@ -56,7 +56,7 @@ class Table {
 };
 
 void add_measured(const BatchTask& task, Table& table) {
-  std::ifstream file(task.output);
+  InputStream file(task.output);
   std::string line;
   if (!file || !std::getline(file, line)) throw Error("{}: cannot be read", task.output);
   const std::vector<std::string> head = fields_of(line);

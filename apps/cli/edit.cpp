@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "marey/core/text_safety.h"
 #include "marey/pipeline/edit_take.h"
 
 #include "command_line.h"
@@ -86,8 +87,7 @@ std::string cutoffs_of(const std::vector<double>& cutoffs) {
   return *least == *most ? fmt::format("{:g} Hz", *least) : fmt::format("{:g} to {:g} Hz", *least, *most);
 }
 
-/// "swap LKNE, RKNE, frames 120 to 180".
-std::string words_of(const DoneEdit& done, const Names& names) {
+std::string raw_words_of(const DoneEdit& done, const Names& names) {
   if (!done.operation) return fmt::format("{} {}", done.edit.operation, done.edit.payload);
   const Operation& operation = *done.operation;
   using Kind = Operation::Kind;
@@ -100,6 +100,11 @@ std::string words_of(const DoneEdit& done, const Names& names) {
                        operation.label.empty() ? fmt::format("#{}", number(*operation.born)) : operation.label);
   if (operation.kind == Kind::filter) words += " at " + cutoffs_of(operation.cutoffs_hz);
   return words + frames_of(operation.frames);
+}
+
+/// "swap LKNE, RKNE, frames 120 to 180". Names and edits may be a stranger's.
+std::string words_of(const DoneEdit& done, const Names& names) {
+  return plain_text(raw_words_of(done, names));
 }
 
 Json gaps_of(const Operation& operation, const Names& names) {
@@ -115,7 +120,7 @@ Json gaps_of(const Operation& operation, const Names& names) {
 }
 
 Json json_of(const DoneEdit& done, const Names& names) {
-  Json entry{{"id", done.edit.id}, {"operation", done.edit.operation}, {"words", words_of(done, names)}};
+  Json entry{{"id", done.edit.id}, {"operation", plain_text(done.edit.operation)}, {"words", words_of(done, names)}};
   if (done.edit.parent) entry["parent"] = *done.edit.parent;
   if (done.operation && !done.operation->gaps.empty()) entry["gaps"] = gaps_of(*done.operation, names);
   return entry;

@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "evaluate_ground.h"
 #include "json_value.h"
+#include "run_hooks.h"
 #include "scores.h"
 
 namespace marey::cli {
@@ -115,7 +116,7 @@ void run(const EvaluateOptions& options) {
   const format::tracks::MotTable tracks = format::tracks::read_boxes(options.tracks, format::tracks::MotKind::tracks);
   const evaluate::Evaluation result = evaluate::evaluate(truth.boxes, tracks.boxes, options.iou);
   const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
-  for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(warnings);
   if (options.json) {
     print(as_json(result, options.iou, warnings));
   } else if (!options.quiet) {

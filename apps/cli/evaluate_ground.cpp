@@ -14,6 +14,7 @@
 
 #include "command_line.h"
 #include "json_value.h"
+#include "run_hooks.h"
 #include "scores.h"
 
 namespace marey::cli {
@@ -137,7 +138,7 @@ void evaluate_ground_files(const std::string& truth_name, const std::string& tra
   const Recording truth = format::read_match(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
   const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
-  for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(warnings);
   if (json) {
     print(as_json(judgement, distance, warnings));
   } else if (!quiet) {

@@ -5,10 +5,12 @@
 
 #include <fmt/core.h>
 
+#include "marey/core/text_safety.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/register.h"
 
 #include "info.h"
+#include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
@@ -61,9 +63,9 @@ void print_tracks(const RecordingSummary& summary) {
     const std::int64_t present = count.samples();
     const std::string first = count.first_index ? fmt::format("{}", *count.first_index) : "-";
     const std::string last = count.last_index ? fmt::format("{}", *count.last_index) : "-";
-    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.name.id), count.name.label.substr(0, 32), width,
-               percent(present, frames), percent(count.of(Provenance::filled), frames),
-               percent(count.of(Provenance::predicted), frames), first, last);
+    fmt::print("  {:>4}  {:<{}}  {:>8}  {:>8}  {:>9}  {:>8}  {:>8}\n", number(count.name.id),
+               plain_text(count.name.label.substr(0, 32)), width, percent(present, frames),
+               percent(count.of(Provenance::filled), frames), percent(count.of(Provenance::predicted), frames), first, last);
   }
 }
 
@@ -120,11 +122,11 @@ std::string duration_words(double duration_s) {
 }
 
 void print_row(const char* name, const std::string& value) {
-  if (!value.empty()) fmt::print("  {:<13} {}\n", name, value);
+  if (!value.empty()) fmt::print("  {:<13} {}\n", name, plain_text(value));
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& sentence : warnings) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  warn(warnings);
 }
 
 void print_rig(const Rig& rig) {

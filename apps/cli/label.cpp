@@ -106,6 +106,7 @@ void add_learn(Command& label) {
   command.output_file("-o,--output", options->out, "the set, as set.toml").required();
   command.text("--markers", options->markers,
                "those that belong to it, commas between, or a file with one a line (default: all with names)");
+  command.also_reads([options] { return std::vector{options->markers}; });  // it may be a file
   command.flag("--scaled", options->options.scaled,
                "the recordings are of subjects of several sizes, and the set is for others still");
   command.reports(options->json, options->quiet);

@@ -5,9 +5,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <new>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "marey/core/text_safety.h"
 #include "marey/format/register.h"
 
 #include "declared.h"
@@ -46,8 +49,15 @@ struct CommandMissing {
 
 std::map<std::string, std::string> asked_for;  // of the command that runs
 
-void say(const char* sentence) {
-  fmt::print(stderr, "marey: {}\n", sentence);
+/// A sentence may hold words of a file: its lines are told as plain text.
+void say(std::string_view sentence) {
+  std::string text;
+  for (std::size_t begin = 0; begin <= sentence.size();) {
+    const std::size_t end = std::min(sentence.find('\n', begin), sentence.size());
+    text += (begin > 0 ? "\n" : "") + plain_text(sentence.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  fmt::print(stderr, "marey: {}\n", text);
 }
 
 /// The exit code, after the last byte of standard output: what it did not take was lost.
@@ -57,7 +67,7 @@ int finish(int code) {
   const int reason = errno;
   if (!lost && std::fclose(stdout) == 0) return code;
   const std::string why = reason != 0 ? fmt::format(" ({})", std::strerror(reason)) : "";
-  say(fmt::format("standard output: could not be written to the end{}", why).c_str());
+  say(fmt::format("standard output: could not be written to the end{}", why));
   return code == 0 ? 1 : code;
 }
 
@@ -187,6 +197,9 @@ int Program::run(int argc, char** argv) {
   } catch (const format::WrongFormat& error) {
     say(error.what());
     code = 2;
+  } catch (const std::bad_alloc&) {
+    say("there is not enough memory for this; give it a shorter recording, smaller pictures, or a machine with more");
+    code = 1;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) == 0) say(error.what());  // else `finish` says it
     code = 1;

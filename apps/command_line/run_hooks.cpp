@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "marey/core/text_safety.h"
+
 namespace marey::cli {
 namespace {
 
@@ -66,7 +68,7 @@ Hooks hooks_over(ProgressBar& bar) {
 }
 
 void warn(const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) fmt::print(stderr, "marey: warning: {}\n", sentence);
+  for (const std::string& sentence : sentences) fmt::print(stderr, "marey: warning: {}\n", plain_text(sentence));
 }
 
 }  // namespace marey::cli

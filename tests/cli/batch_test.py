@@ -131,6 +131,35 @@ class Batch(Films):
         self.assertIn("plan.tsv:2: 7 columns", self.marey("batch", "run", "plan.tsv", code=1).stderr)
         self.marey("batch", "run", "missing.tsv", code=1)
 
+    def test_plans_of_strangers_write_to_their_results_alone(self):
+        (self.folder / "precious.csv").write_text("1")
+        self.plan()
+        text = (self.folder / "plan.tsv").read_text()
+        for there, then, words in (("plan.tsv.results/day0/clip 0.csv", "precious.csv", "outside of plan.tsv.results"),
+                                   ("plan.tsv.results/day0/", "plan.tsv.results/../", "outside of plan.tsv.results"),
+                                   ("\ttrack\t", "\tdoctor\t", '"doctor" is no job'), ("\n1\t", "\n4294967297\t", "within 0 and")):
+            self.assertIn(there, text)
+            (self.folder / "plan.tsv").write_text(text.replace(there, then, 1))
+            said = self.marey("batch", "run", "plan.tsv", code=1).stderr
+            self.assertIn("plan.tsv:2: ", said)
+            self.assertIn(words, said)
+        self.assertEqual((self.folder / "precious.csv").read_text(), "1")
+        for name in ("../../precious", "/precious"):
+            (self.folder / "list.csv").write_text(f"input,name\nfilms/day0/clip 0.mp4,{name}\n")
+            self.assertIn("outside of other.tsv.results", self.marey("batch", "plan", "list.csv", "-o", "other.tsv", code=1).stderr)
+
+    def test_no_output_is_an_input(self):
+        rows = "frame,time,id,x,y\n" + "".join(f"{i},{i / 25:.2f},1,{i / 10},3\n" for i in range(100))
+        for name in ("places.csv", "list.tsv"):
+            (self.folder / name).write_text("input\nplaces.csv\n" if name == "list.tsv" else rows)
+        self.assertIn("is an input too", self.marey("batch", "plan", "list.tsv", "--do", "measure", "-o", "list.tsv", code=2).stderr)
+        self.marey("batch", "plan", "list.tsv", "--do", "measure", "-o", "plan.tsv", "-q")
+        self.marey("batch", "run", "plan.tsv", "-q")
+        for output in ("places.csv", "plan.tsv.results/places.csv"):
+            before = (self.folder / output).read_bytes()
+            self.assertIn("is an input too", self.marey("batch", "reduce", "plan.tsv", "-o", output, code=2).stderr)
+            self.assertEqual((self.folder / output).read_bytes(), before)
+
     def test_two_runs_of_one_task(self):
         self.plan()
         with concurrent.futures.ThreadPoolExecutor(2) as both:

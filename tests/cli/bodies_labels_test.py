@@ -85,6 +85,10 @@ class BodiesAndLabels(unittest.TestCase):
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml")
         self.assertEqual(json.loads(self.marey("info", "set.toml", "--json").stdout)["format"], "label set")
         self.assertFalse((self.folder / "out.marey").exists())
+        names = "head1\nhead2\nhead3\nhead4\n"
+        (self.folder / "names.txt").write_text(names)
+        self.assertIn("is an input too", self.marey("label", "learn", "walk/truth.csv", "--markers", "names.txt", "-o", "names.txt", code=2).stderr)
+        self.assertEqual((self.folder / "names.txt").read_text(), names)
 
 
 if __name__ == "__main__":

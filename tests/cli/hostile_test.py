@@ -136,6 +136,27 @@ class Hostile(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         xml.dom.minidom.parse(str(self.folder / "out.svg"))
 
+    def test_takes_of_strangers_write_no_control_characters(self):
+        evil = "A\x1b]0;evil\x07\n\x01"
+        take = self.take()
+        self.accepted("edit", take, "rename a knee")
+        with sqlite3.connect(take) as database:
+            for key in ("name", "program", "recorded_at"):
+                database.execute("INSERT OR REPLACE INTO take VALUES (?, ?)", (key, evil))
+            database.execute("INSERT INTO option VALUES (?, ?)", (evil, evil))
+            database.execute("INSERT INTO input (name, hash) VALUES (?, ?)", (evil, evil))
+            database.execute("UPDATE track SET label = ? || id, team = ?", (evil, evil))
+            head = database.execute("SELECT max(id) FROM edit").fetchone()[0]
+            database.execute("UPDATE edit SET payload = replace(payload, 'knee', ?)", ("\\u001b[31mknee",))
+            database.execute("INSERT INTO edit VALUES (90, ?, ?, ?)", (head, evil, evil))
+            database.execute("INSERT OR REPLACE INTO take VALUES ('head', 90)")
+        for arguments in (("info", take), ("edit", take, "--list"), ("edit", take, "swap #1 #2 5:6"), ("convert", take, "out.csv"),
+                          ("play", take, "--stream", "osc", "--speed", "100"), ("convert", take, "out.trc")):
+            with self.subTest(arguments=arguments):
+                done = self.accepted(*arguments)
+                self.assertNotRegex(done.stdout + done.stderr, rb"[\x00-\x08\x0b-\x1f\x7f]")
+        self.assertNotRegex((self.folder / "out.csv").read_bytes(), rb"[\x00-\x09\x0b-\x1f\x7f]")
+
     # --- size ---
 
     def test_labels_and_tracks_without_end(self):
@@ -198,6 +219,19 @@ class Hostile(unittest.TestCase):
                 self.refused("info", take, "--limit", wrong, words=["--limit"])
         self.accepted("simulate", "markers", "plain", "--frames", "12", "-o", "plain")
         self.refused("track", "plain/video.mp4", "-o", "out.txt", "--limit", "picture_px=1000", words=["picture_px"])
+
+    def test_memory_that_is_not_enough_is_a_sentence(self):
+        rows = "".join(f"{i},{i / 100:.2f},{m},{i},0,1\n" for i in range(200_000) for m in "ab")
+        self.write("points.csv", "frame,time,label,x,y,z\n" + rows)
+        seen = set()
+        for megabytes in range(150, 700, 25):
+            bound = megabytes << 20
+            done = subprocess.run([MAREY, "convert", "points.csv", "out.c3d"], capture_output=True, cwd=self.folder, timeout=SECONDS,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (bound, bound)))
+            said = done.stderr.decode(errors="replace")
+            self.assertNotIn("bad_alloc", said)
+            seen.add(done.returncode)
+        self.assertIn(0, seen)
 
     def test_a_picture_beyond_reason(self):
         def chunk(kind, data):
