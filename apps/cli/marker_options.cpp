@@ -7,10 +7,7 @@
 
 namespace marey::cli {
 
-void add_marker_options(Command& command, MarkerFlags& flags) {
-  command.group("Options for --targets markers");
-  command.input_file("--labels", flags.labels,
-                     "a text file with a name a line, for the markers of the first frame from left to right");
+void add_detector_options(Command& command, MarkerFlags& flags) {
   add_blob_options(command, flags.limits);
   command.number("--widest", flags.limits.widest, "px", closed(2, 200),
                  "markers are no wider; what they stand out from is what lies close by (default: not used)");
@@ -23,18 +20,30 @@ void add_marker_options(Command& command, MarkerFlags& flags) {
   command.input_file("--mask", flags.mask, "a picture of the video's size; what is not black in it is left out");
   command.number("--auto-mask", flags.limits.auto_mask_s, "s", closed(0, 3600),
                  "leave out what is bright and does not move in the first so many seconds");
+}
+
+void add_marker_options(Command& command, MarkerFlags& flags) {
+  command.group("Options for --targets markers");
+  command.input_file("--labels", flags.labels,
+                     "a text file with a name a line, for the markers of the first frame from left to right");
+  add_detector_options(command, flags);
   command.flag("--fit-noise", flags.fit_noise, "read how markers move, and how well they are seen, off the recording");
   command.group("");
 }
 
+detect::markers::MarkerOptions detector_options(const MarkerFlags& flags) {
+  detect::markers::MarkerOptions options = flags.limits;
+  if (!flags.colour.empty()) {
+    options.colour = detect::markers::parse_marker_colour(flags.colour);
+    options.colour->least_saturation = flags.saturation.value_or(options.colour->least_saturation);
+  }
+  if (!flags.mask.empty()) options.mask = pipeline::read_mask(flags.mask);
+  return options;
+}
+
 pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
   pipeline::MarkersInPictureOptions options;
-  options.markers = flags.limits;
-  if (!flags.colour.empty()) {
-    options.markers.colour = detect::markers::parse_marker_colour(flags.colour);
-    options.markers.colour->least_saturation = flags.saturation.value_or(options.markers.colour->least_saturation);
-  }
-  if (!flags.mask.empty()) options.markers.mask = pipeline::read_mask(flags.mask);
+  options.markers = detector_options(flags);
   if (!flags.labels.empty()) options.tracker.labels = pipeline::read_labels(flags.labels);
   if (!filter.empty()) options.tracker.filter = filter::filter_named(filter);
   options.fit_noise = flags.fit_noise;
