@@ -2,9 +2,9 @@
 // picture is looked at alone, as the first of a recording.
 //   marker_pictures [PICTURES_A_SETTING] [SETTING] [FIRST_SEED]
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -133,9 +133,9 @@ int main(int argc, char** argv) {
       const MarkerPicture picture = simulate::markers::simulate_marker_picture(setting, static_cast<std::uint64_t>(seed));
       for (std::size_t i = 0; i < std::size(kFinders); ++i) {
         if (i > 0 && !peers) break;
-        const auto begin = std::chrono::steady_clock::now();
+        const std::clock_t begin = std::clock();
         auto found = kFinders[i].second(picture);
-        const double took = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
         scores[i].add(picture, std::move(found), took);
       }
     }
