@@ -9,10 +9,6 @@ namespace marey::cli {
 
 void add_detector_options(Command& command, MarkerFlags& flags) {
   add_blob_options(command, flags.limits);
-  command.number("--widest", flags.limits.widest, "px", closed(2, 200),
-                 "markers are no wider; what they stand out from is what lies close by (default: not used)");
-  command.whole("--most-markers", flags.limits.most_markers, "N", 1, 1'000'000,
-                "a frame; beyond, those expected where they are stay, then the largest");
   command.text("--colour", flags.colour, "markers of this hue, in degrees: 120 is green; 120+-15 sets the tolerance")
       .check(detect::markers::parse_marker_colour);
   command.number("--saturation", flags.saturation, "share", closed(0.001, 0.999),

@@ -66,6 +66,7 @@ class MarkerDetector::Impl {
     std::size_t blob = 0;
     MarkerShape shape;
     bool has_halo = false;
+    bool is_lamp = false;  ///< it has one, and is larger than the markers
     bool is_disc = false;  ///< it is one, as sharp as the others
   };
 
@@ -199,8 +200,9 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
   }
   likeness_.learn(seen_);
   for (Lone& lone : lone_) {
-    const bool lamp = lone.has_halo && !likeness_.fits(lone.shape.radius);
-    lone.is_disc = lone.is_disc && !lamp && likeness_.sharp(lone.shape.blur);
+    const double radius = lone.is_disc ? lone.shape.radius : half_width_of(blobs[lone.blob]);
+    lone.is_lamp = lone.has_halo && likeness_.lamp(radius);
+    lone.is_disc = lone.is_disc && !lone.is_lamp && likeness_.sharp(lone.shape.blur);
   }
 }
 
@@ -209,7 +211,7 @@ std::vector<MarkerShape> MarkerDetector::Impl::explain(const cv::Mat& luma, std:
                                                        std::span<const Expected> expected) {
   const MarkerBlob& blob = blobs[lone.blob];
   const auto area = static_cast<double>(blob.area);
-  if (likeness_.too_large(area)) {
+  if (lone.is_lamp || likeness_.too_large(area)) {
     ++counts_.unlike;
     return {};
   }

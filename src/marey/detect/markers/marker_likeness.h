@@ -35,10 +35,14 @@ class MarkerLikeness {
   bool odd(double area) const;
   /// A disc of this radius, or a streak so wide, may be one of them.
   bool fits(double radius) const;
+  /// Light that falls off slowly round a core of this radius is a lamp's, not a marker's out of focus.
+  bool lamp(double radius) const { return radius_ && radius > kLampRadius * *radius_; }
   /// Its edge is as sharp as theirs, or nearly.
   bool sharp(double blur) const;
 
  private:
+  static constexpr double kLampRadius = 1.5;  // times a marker's
+
   double area(double markers) const;
 
   double said_radius_;

@@ -28,7 +28,8 @@ constexpr double kSurelyExpected = -9;    // the tracker saw both: nearly as goo
 constexpr double kModelError = 0.006;     // of the contrast
 constexpr double kLeastApart = 0.8;       // centres, in mean radii
 constexpr double kMostUnlike = 2.2;       // larger radius over smaller
-constexpr double kMovingClearly = 0.3;    // of the squares that one swept disc leaves: two more parameters fit more
+constexpr double kMovingClearly = 0.7;    // of the squares that one swept disc leaves
+constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
 constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
 constexpr int kMostMoving = 4000;         // px, of a window in which two in motion are looked for
 constexpr double kWellTold = 0.08;        // of the contrast: what an explanation leaves at most
@@ -69,12 +70,12 @@ std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<flo
   return result;
 }
 
-bool distinct(const DiscsModel& model) {
+bool distinct(const DiscsModel& model, double least_apart = kLeastApart) {
   for (int i = 0; i < model.discs; ++i) {
     for (int j = 0; j < i; ++j) {
       const auto a = model.p.segment<3>(kFirstDisc + 3 * i), b = model.p.segment<3>(kFirstDisc + 3 * j);
       const double apart = (a.head<2>() - b.head<2>()).norm();
-      if (apart < kLeastApart * (a[2] + b[2]) / 2) return false;
+      if (apart < least_apart * (a[2] + b[2]) / 2) return false;
       if (std::max(a[2], b[2]) > kMostUnlike * std::min(a[2], b[2])) return false;
     }
   }
@@ -222,23 +223,19 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
       break;
     }
     best.discs = shapes(solution, window, task.stiffness);
-    if (left < task.floor || best.discs.front().misfit < 0.04) break;
     to_beat = left;
+    if (left < task.floor || best.discs.front().misfit < 0.04) break;
   }
-  const double most = std::max(kWellTold, 3 * task.noise);
-  if (!best.discs.empty() && best.discs.front().misfit > most) best.discs.clear();
-  if (!best.discs.empty()) return best;
+  const double most = std::max(kWellTold, 3 * task.noise), grain = std::max(kGrain, 2 * task.noise);
   const MarkerShape swept = shapes(rival, window, task.stiffness).front();
-  const double grain = std::max(kGrain, 2 * task.noise);
-  if (swept.misfit > grain && window.count <= kMostMoving) {
+  const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
+  if (told > grain && window.count <= kMostMoving) {
     const auto pair = fit_moving_pair(task);
-    if (distinct(pair->model) && pair->normal.squares < kMovingClearly * rival.normal.squares) {
-      best.discs = shapes(*pair, window, task.stiffness);
-      if (best.discs.front().misfit <= most) return best;
-      best.discs.clear();
-    }
+    const double limit = best.discs.empty() ? kMovingClearly * to_beat : to_beat;
+    if (distinct(pair->model, kMovingApart) && pair->normal.squares < limit) best.discs = shapes(*pair, window, task.stiffness);
   }
-  if (swept.misfit <= most) best.swept = swept;
+  if (!best.discs.empty() && best.discs.front().misfit > most) best.discs.clear();
+  if (best.discs.empty() && swept.misfit <= most) best.swept = swept;
   return best;
 }
 
