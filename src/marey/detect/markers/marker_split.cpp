@@ -28,7 +28,8 @@ constexpr double kSurelyExpected = -9;    // the tracker saw both: nearly as goo
 constexpr double kModelError = 0.006;     // of the contrast
 constexpr double kLeastApart = 0.8;       // centres, in mean radii
 constexpr double kMostUnlike = 2.2;       // larger radius over smaller
-constexpr double kMovingClearly = 0.7;    // of the squares that one swept disc leaves
+constexpr double kMovingClearly = 0.9;    // of the squares that one swept disc leaves
+constexpr double kSimpler = 1.3;          // of the squares that three or four discs at rest leave: it has fewer parameters
 constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
 constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
 constexpr int kMostMoving = 4000;         // px, of a window in which two in motion are looked for
@@ -179,26 +180,32 @@ DiscsSolution fit_several(const SplitTask& task, int count) {
   return sum.normal.squares < std::min(task.floor, solution.normal.squares) ? std::move(sum) : std::move(solution);
 }
 
-/// Two that touch and moved together while they were seen, along or across the line between them.
-std::optional<DiscsSolution> fit_moving_pair(const SplitTask& task) {
-  std::optional<DiscsSolution> best;
-  const double thick = std::sqrt(task.window.half_area / (2 * std::numbers::pi));
+/// Two discs as far from each other and on such a way as begins a fit.
+DiscsModel moving_pair(const SplitTask& task, const Vector<2>& apart, const Vector<2>& path, double radius) {
+  DiscsModel pair = several_discs(2, task.window, task.around, task.blur);
+  pair.p.conservativeResize(kFirstDisc + 8);
+  pair.swept = true;
+  for (int i = 0; i < 2; ++i) {
+    const Vector<2> place = task.window.centroid + (i == 0 ? -0.5 : 0.5) * apart;
+    pair.p.segment<3>(kFirstDisc + 3 * i) << place.x(), place.y(), radius;
+  }
+  pair.p.tail<2>() = path;
+  return pair;
+}
+
+/// Two that touch and moved together while they were seen: across the line between them, along it with the blob's length for the
+/// one or the other.
+DiscsSolution fit_moving_pair(const SplitTask& task) {
   const Vector<2> along = task.ellipse.along, across(-along.y(), along.x());
-  for (const bool sideways : {true, false}) {
-    const Vector<2> apart = sideways ? along : across, way = sideways ? across : along;
-    const double reach = sideways ? task.ellipse.half_length : task.ellipse.half_width;
-    const double path = sideways ? task.ellipse.half_width : task.ellipse.half_length;
-    DiscsModel pair = several_discs(2, task.window, task.around, task.blur);
-    pair.p.conservativeResize(kFirstDisc + 8);
-    pair.swept = true;
-    const double radius = std::max(0.7, std::min(thick, reach / 2));
-    for (int i = 0; i < 2; ++i) {
-      const Vector<2> place = task.window.centroid + (i == 0 ? -0.5 : 0.5) * reach * apart;
-      pair.p.segment<3>(kFirstDisc + 3 * i) << place.x(), place.y(), radius;
-    }
-    pair.p.tail<2>() = std::max(0.3, path - radius) * way;
-    DiscsSolution solution = fit_discs(pair, task.window, task.value, task.stiffness);
-    if (!best || solution.normal.squares < best->normal.squares) best = std::move(solution);
+  const double length = task.ellipse.half_length, width = task.ellipse.half_width;
+  const double radius = std::max(0.7, std::min(std::sqrt(task.window.half_area / (2 * std::numbers::pi)), length / 2));
+  const auto fitted = [&](const Vector<2>& apart, const Vector<2>& path) {
+    return fit_discs(moving_pair(task, apart, path, radius), task.window, task.value, task.stiffness);
+  };
+  DiscsSolution best = fitted(length * along, std::max(0.3, width - radius) * across);
+  for (const DiscsSolution& other :
+       std::array{fitted(length * along, 0.25 * length * along), fitted(width * across, std::max(0.3, length - radius) * along)}) {
+    if (other.normal.squares < best.normal.squares) best = other;
   }
   return best;
 }
@@ -226,13 +233,13 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
     to_beat = left;
     if (left < task.floor || best.discs.front().misfit < 0.04) break;
   }
-  const double most = std::max(kWellTold, 3 * task.noise), grain = std::max(kGrain, 2 * task.noise);
+  const double most = std::max(kWellTold, 3 * task.noise);
   const MarkerShape swept = shapes(rival, window, task.stiffness).front();
   const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
-  if (told > grain && window.count <= kMostMoving) {
-    const auto pair = fit_moving_pair(task);
-    const double limit = best.discs.empty() ? kMovingClearly * to_beat : to_beat;
-    if (distinct(pair->model, kMovingApart) && pair->normal.squares < limit) best.discs = shapes(*pair, window, task.stiffness);
+  if ((told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2) && window.count <= kMostMoving) {
+    const DiscsSolution pair = fit_moving_pair(task);
+    const double limit = (best.discs.size() > 2 ? kSimpler : kMovingClearly) * to_beat;
+    if (distinct(pair.model, kMovingApart) && pair.normal.squares < limit) best.discs = shapes(pair, window, task.stiffness);
   }
   if (!best.discs.empty() && best.discs.front().misfit > most) best.discs.clear();
   if (best.discs.empty() && swept.misfit <= most) best.swept = swept;
