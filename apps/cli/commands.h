@@ -7,6 +7,7 @@ namespace marey::cli {
 class Command;
 
 void add_track(Command& program);
+void add_detect(Command& program);
 void add_evaluate(Command& program);
 void add_measure(Command& program);
 void add_reconstruct(Command& program);

@@ -75,12 +75,8 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
     const pipeline::LiveStatus::Camera& camera = summary.last.cameras[i];
     Json& told = json["cameras"][camera.name];
-    told = {{"state", to_string(camera.state)},
-            {"frames", camera.frames},
-            {"lost", camera.lost},
-            {"damaged", camera.damaged},
-            {"overrun", camera.overrun},
-            {"connections", camera.connections}};
+    told = {{"state", to_string(camera.state)}, {"frames", camera.frames},   {"lost", camera.lost},
+            {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
   for (const pipeline::Summary::StepTime& step : summary.steps)
@@ -187,8 +183,6 @@ void add_live(Command& program) {
   command.number("--late", options->late_s, "s", closed(0.001, 1), "a moment waits so long for its cameras' frames");
   command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
-  command.number("--widest", options->markers.widest, "px", closed(2, 200),
-                 "markers are no wider and may lie on anything that is; else they lie on a plain ground");
   add_blob_options(command, options->markers);
   add_live_outputs(command, options->outputs);
   command.reports(options->json, options->quiet);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   Program program("marey", "Marey turns what cameras see into motion you can measure.");
   Command root = program.root();
   add_track(root);
+  add_detect(root);
   add_evaluate(root);
   add_measure(root);
   add_simulate(root);

@@ -7,15 +7,8 @@
 
 namespace marey::cli {
 
-void add_marker_options(Command& command, MarkerFlags& flags) {
-  command.group("Options for --targets markers");
-  command.input_file("--labels", flags.labels,
-                     "a text file with a name a line, for the markers of the first frame from left to right");
+void add_detector_options(Command& command, MarkerFlags& flags) {
   add_blob_options(command, flags.limits);
-  command.number("--widest", flags.limits.widest, "px", closed(2, 200),
-                 "markers are no wider; what they stand out from is what lies close by (default: not used)");
-  command.whole("--most-markers", flags.limits.most_markers, "N", 1, 1'000'000,
-                "a frame; beyond, those expected where they are stay, then the largest");
   command.text("--colour", flags.colour, "markers of this hue, in degrees: 120 is green; 120+-15 sets the tolerance")
       .check(detect::markers::parse_marker_colour);
   command.number("--saturation", flags.saturation, "share", closed(0.001, 0.999),
@@ -23,18 +16,30 @@ void add_marker_options(Command& command, MarkerFlags& flags) {
   command.input_file("--mask", flags.mask, "a picture of the video's size; what is not black in it is left out");
   command.number("--auto-mask", flags.limits.auto_mask_s, "s", closed(0, 3600),
                  "leave out what is bright and does not move in the first so many seconds");
+}
+
+void add_marker_options(Command& command, MarkerFlags& flags) {
+  command.group("Options for --targets markers");
+  command.input_file("--labels", flags.labels,
+                     "a text file with a name a line, for the markers of the first frame from left to right");
+  add_detector_options(command, flags);
   command.flag("--fit-noise", flags.fit_noise, "read how markers move, and how well they are seen, off the recording");
   command.group("");
 }
 
+detect::markers::MarkerOptions detector_options(const MarkerFlags& flags) {
+  detect::markers::MarkerOptions options = flags.limits;
+  if (!flags.colour.empty()) {
+    options.colour = detect::markers::parse_marker_colour(flags.colour);
+    options.colour->least_saturation = flags.saturation.value_or(options.colour->least_saturation);
+  }
+  if (!flags.mask.empty()) options.mask = pipeline::read_mask(flags.mask);
+  return options;
+}
+
 pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
   pipeline::MarkersInPictureOptions options;
-  options.markers = flags.limits;
-  if (!flags.colour.empty()) {
-    options.markers.colour = detect::markers::parse_marker_colour(flags.colour);
-    options.markers.colour->least_saturation = flags.saturation.value_or(options.markers.colour->least_saturation);
-  }
-  if (!flags.mask.empty()) options.markers.mask = pipeline::read_mask(flags.mask);
+  options.markers = detector_options(flags);
   if (!flags.labels.empty()) options.tracker.labels = pipeline::read_labels(flags.labels);
   if (!filter.empty()) options.tracker.filter = filter::filter_named(filter);
   options.fit_noise = flags.fit_noise;

@@ -20,8 +20,11 @@ struct MarkerFlags {
 };
 
 void add_marker_options(Command& command, MarkerFlags& flags);
+/// Of these, what a detector alone needs.
+void add_detector_options(Command& command, MarkerFlags& flags);
 
 /// Reads the files that the flags name. Throws Error where one cannot be read.
+detect::markers::MarkerOptions detector_options(const MarkerFlags& flags);
 pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

@@ -109,8 +109,6 @@ void add_reconstruct(Command& program) {
   command.flag("--live", how.live, "every instant as it comes, as marey live tells it: no gap is filled, nothing waits");
   command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
   command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
-  command.number("--widest", how.markers.widest, "px", closed(2, 200),
-                 "markers are no wider and may lie on anything that is; else they lie on a plain ground");
   add_blob_options(command, how.markers);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });

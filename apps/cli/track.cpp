@@ -121,7 +121,6 @@ void run(const TrackCommand& command) {
   const pipeline::TrackOutput output = output_of(command);
   if (command.targets == Targets::markers) {
     if (command.people.outline) throw WrongUsage("--outline follows people; markers are points: leave out one of the two");
-    if (!command.input.detections.empty()) throw WrongUsage("--detections brings boxes, not markers; leave out --targets markers");
     const pipeline::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
   } else {
@@ -144,7 +143,8 @@ void add_inputs(Command& command, TrackCommand& options) {
       "a video file, a folder of pictures, or a pattern such as 'shot_%04d.png' or '*.jpg'; with --ground a rig file");
   command
       .input_file("--detections", options.input.detections,
-                  "in place of INPUT, what another program detected: MOT text, frame,-1,left,top,width,height,score")
+                  "in place of INPUT, what was detected: MOT text, frame,-1,left,top,width,height,score; of markers what "
+                  "marey detect writes")
       .excludes(input);
   command.number("--rate", options.input.rate_hz, "Hz", kRates, "frames a second, where the file does not tell or is wrong");
   command.also_reads(

@@ -17,6 +17,7 @@
   row(format::motion, trc) \
   row(format::motion, motive) \
   row(format::motion, nexus) \
+  row(format::tracks, blobs) \
   row(format::tracks, image_csv) \
   row(format::tracks, jsonl) \
   row(format::match, ground) \

@@ -15,6 +15,7 @@
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
 #include "marey/format/observations.h"
+#include "marey/format/tracks/blob_file.h"
 #include "marey/format/tracks/detections.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/source/open_source.h"
@@ -90,16 +91,18 @@ class Feed::Nothing final : public Input {
   SourceInfo info_;
 };
 
-class Feed::Boxes final : public Input {
+/// What another program detected: boxes, or blobs.
+template <typename Reader>
+class Feed::Detected final : public Input {
  public:
-  explicit Boxes(format::tracks::DetectionReader reader) : reader_(std::move(reader)) {}
+  explicit Detected(Reader reader) : reader_(std::move(reader)) {}
 
   const SourceInfo& info() const override { return reader_.info(); }
   std::vector<std::string> warnings() const override { return reader_.warnings(); }
   std::optional<CameraFrame> next() override { return reader_.next(); }
 
  private:
-  format::tracks::DetectionReader reader_;
+  Reader reader_;
 };
 
 /// One file of observations, dealt out to the cameras' feeds.
@@ -177,6 +180,13 @@ std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions
 
 }  // namespace
 
+std::unique_ptr<Feed::Input> Feed::open_detections(const std::string& path, std::optional<double> rate_hz) {
+  using namespace format::tracks;
+  if (std::filesystem::is_regular_file(path) && is_blob_file(path))
+    return std::make_unique<Detected<BlobReader>>(BlobReader(path, rate_hz));
+  return std::make_unique<Detected<DetectionReader>>(DetectionReader(path, rate_hz));
+}
+
 Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : camera_(camera), id_(id), options_(options) {
   if (camera.source.empty() && camera.detections.empty()) {
     throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
@@ -186,8 +196,7 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
   const StopScope scope(life_->token());
   try {
     if (camera.source.empty()) {
-      input_ = std::make_unique<Boxes>(
-          format::tracks::DetectionReader(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz));
+      input_ = open_detections(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz);
       return;
     }
     auto source = open_pictures(camera, options);

@@ -1,5 +1,6 @@
-// The one place that opens a camera. Whatever it is (a video file, a folder of pictures, another program's detections, a file of
-// observations that several cameras share), its region, rate, offset and size are honoured here, and nowhere else.
+// The one place that opens a camera. Whatever it is (a video file, a folder of pictures, another program's detections (boxes or
+// blobs), a file of observations that several cameras share), its region, rate, offset and size are honoured here, and nowhere
+// else.
 #pragma once
 
 #include <functional>
@@ -89,13 +90,15 @@ class Feed {
  private:
   class Input;
   class Pictures;
-  class Boxes;
+  template <typename Reader>
+  class Detected;
   class Observations;
   class Nothing;
   class Life;
   friend std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
 
   Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input);
+  static std::unique_ptr<Input> open_detections(const std::string& path, std::optional<double> rate_hz);
   double steady(double time);
   CameraFrame by_rig_clock(CameraFrame frame) const;
 

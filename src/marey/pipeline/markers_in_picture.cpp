@@ -66,8 +66,9 @@ class MarkersInPicture final : public Stage {
   RecordingHeader header() const override { return header_; }
 
   std::span<const Instant> step(const FrameSet& frames) override {
-    const Frame& frame = frames.cameras.front()->frame;
-    const auto seen = observe(detector_, frame, *tracker_);
+    const CameraFrame& given = *frames.cameras.front();
+    const Frame& frame = given.frame;
+    const auto seen = observe(detector_, given, *tracker_);
     detections_ += std::ssize(seen);
     live_.index = frame.index;
     live_.time = frame.time;
@@ -118,7 +119,7 @@ class MarkersInPicture final : public Stage {
     std::map<TrackId, filter::MeasuredPath<2>> paths;
     while (const auto given = feed.next()) {
       if (seconds(given->frame.time) > kFittedSeconds) break;
-      const auto seen = observe(detector, given->frame, *tracker);
+      const auto seen = observe(detector, *given, *tracker);
       for (const Track<2>& track : tracker->step(given->frame.time, seen)) {
         if (!track.observation || !track.confirmed) continue;
         paths[track.id].times.push_back(seconds(given->frame.time));
@@ -131,14 +132,19 @@ class MarkersInPicture final : public Stage {
     if (noise_) options_.tracker.filter = filter::with_noise(options_.tracker.filter, *noise_);
   }
 
-  static std::vector<Observation<2>> observe(detect::markers::MarkerDetector& detector, const Frame& frame,
+  /// What is in the picture, or what another program saw there.
+  static std::vector<Observation<2>> observe(detect::markers::MarkerDetector& detector, const CameraFrame& given,
                                              track::Tracker<2>& tracker) {
+    std::vector<Observation<2>> seen;
+    if (given.detections) {
+      for (const Detection& detection : *given.detections) seen.push_back(observation_of(detection));
+      return seen;
+    }
     std::vector<Expected> expected;
-    for (const Track<2>& track : tracker.expected(frame.time)) {
+    for (const Track<2>& track : tracker.expected(given.frame.time)) {
       if (track.box) expected.push_back({*track.box});
     }
-    std::vector<Observation<2>> seen;
-    for (const Detection& detection : detector.detect(frame, expected).detections) seen.push_back(observation_of(detection));
+    for (const Detection& detection : detector.detect(given.frame, expected).detections) seen.push_back(observation_of(detection));
     return seen;
   }
 

@@ -50,6 +50,21 @@ TEST(OpenSource, FoldersAndPatternsNameTheSamePictures) {
   EXPECT_EQ(count(*open_source(folder / "shot_10.png")), 1u);
 }
 
+TEST(OpenSource, FoldersOfTargaAndOfDeepTiffAreRead) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a/1.tga", "a/2.TGA"}) {
+    std::filesystem::create_directories(folder / "a");
+    test::ffmpeg("-f lavfi -i color=gray:size=32x24 -frames:v 1 -c:v targa -f image2 " + (folder / name));
+  }
+  EXPECT_EQ(count(*open_source(folder / "a")), 2u);
+  std::filesystem::create_directories(folder / "b");
+  test::ffmpeg("-f lavfi -i color=gray:size=32x24 -frames:v 1 -pix_fmt gray16le " + (folder / "b/1.tiff"));
+  const auto deep = open_source(folder / "b");
+  const auto frame = deep->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->picture.luma().depth(), CV_16U);
+}
+
 TEST(OpenSource, PicturesWithoutARateSayWhatWasAssumed) {
   const test::TemporaryFolder folder;
   shoot(folder);

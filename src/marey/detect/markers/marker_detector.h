@@ -2,41 +2,24 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <opencv2/core.hpp>
-
 #include "marey/detect/detector.h"
-#include "marey/detect/markers/marker_colour.h"
+#include "marey/detect/markers/marker_options.h"
 
 namespace marey::detect::markers {
-
-struct MarkerOptions {
-  static constexpr std::string_view name = "markers";
-
-  bool dark = false;                   ///< markers are darker than what is around them; no part where `colour` is given
-  std::optional<MarkerColour> colour;  ///< markers of this colour, however bright
-  std::optional<double> threshold;     ///< grey level that a marker's pixels pass; nothing: from the image's noise
-  double widest = 0;            ///< px: markers are no wider, and what they stand out from is what lies close by; 0: not used
-  double min_area = 2;          ///< px² that pass the threshold
-  double max_area = 10000;      ///< px²
-  double min_roundness = 0.25;  ///< area over that of the circle as long as the blob: 1 a disc, b/a an ellipse
-  int most_markers = 2000;      ///< a frame; beyond, those where the tracker expects one stay, then the largest
-  cv::Mat mask;                 ///< CV_8UC1 of the picture's size, what is not 0 is left out; empty for none
-  double auto_mask_s = 0;       ///< learn for so long what is bright and does not move, then leave it out; 0: never
-};
 
 /// What became of the blobs so far, for the run's summary.
 struct MarkerCounts {
   std::int64_t frames = 0;
   std::int64_t markers = 0;     ///< reported
   std::int64_t too_small = 0;   ///< below min_area
+  std::int64_t faint = 0;       ///< stand out from a tile's ground, but not as markers do from what is close by: noise, texture
   std::int64_t too_large = 0;   ///< above max_area
   std::int64_t not_round = 0;   ///< below min_roundness
-  std::int64_t unlike = 0;      ///< no disc, and many times as large as the discs that are seen: a thing's bright edge
+  std::int64_t unlike = 0;      ///< no disc, no several, no streak, and larger than the markers that are seen: a lamp, a reflection
   std::int64_t over_limit = 0;  ///< more than most_markers in their frame
   std::int64_t split = 0;       ///< blobs that were taken apart
   std::int64_t not_fitted = 0;  ///< reported with the weighted centroid, because no disc fitted
@@ -51,7 +34,7 @@ std::vector<std::string> warnings(const MarkerCounts& counts);
 /// Throws Error where a colour is asked of a grey picture or the mask is not of the picture's size.
 class MarkerDetector final : public Detector {
  public:
-  explicit MarkerDetector(MarkerOptions options = {});
+  explicit MarkerDetector(const MarkerOptions& options = {});
   ~MarkerDetector() override;
 
   /// Learns the automatic mask at once where the samples lie within its time.

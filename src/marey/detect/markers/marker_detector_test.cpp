@@ -188,6 +188,93 @@ TEST(MarkerDetector, ABackgroundThatIsBrightOnOneSideHidesNothing) {
   EXPECT_LT(distance_to_nearest(found, 220.6, 100.4), 0.1);
 }
 
+/// What a camera makes of it: noise, rounded.
+cv::Mat with_noise(const cv::Mat& clean, double sigma, std::uint64_t seed) {
+  cv::Mat grain(clean.size(), CV_32FC1), sum;
+  cv::RNG(seed).fill(grain, cv::RNG::NORMAL, 0, sigma);
+  clean.convertTo(sum, CV_32F);
+  sum += grain;
+  cv::Mat image;
+  sum.convertTo(image, CV_8U);
+  return image;
+}
+
+TEST(MarkerDetector, AWideGreyBarIsNoMarkerAndHidesNone) {
+  const std::vector<Spot> spots{{60.3, 80.2, 3}, {330.6, 240.4, 3}, {500.2, 400.9, 4}, {198.7, 300.2, 3}};
+  cv::Mat clean = scene({640, 480}, spots, 0, 0, 18);
+  for (const double bar : {35.0, 60.0, 90.0}) {
+    cv::Mat image = clean.clone();
+    image(cv::Rect(210, 0, 213, 480)) = cv::max(image(cv::Rect(210, 0, 213, 480)), bar);
+    for (const double turn : {0.0, 17.0}) {
+      cv::Mat turned;
+      cv::warpAffine(image, turned, cv::getRotationMatrix2D({320, 240}, turn, 1), image.size(), cv::INTER_LINEAR,
+                     cv::BORDER_REPLICATE);
+      SCOPED_TRACE(testing::Message() << "bar " << bar << ", turned " << turn);
+      EXPECT_EQ(find(with_noise(turned, 4, 3)).size(), spots.size());
+    }
+  }
+}
+
+TEST(MarkerDetector, SpecksDoNotSayWhatAMarkerIs) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> x(5, 1019), y(5, 699), level(25, 50);
+  std::vector<Spot> spots;
+  for (int i = 0; i < 90; ++i) spots.push_back({x(random), y(random), 0.9, level(random)});
+  // Large, saturated, and two pairs that touch.
+  const std::vector<Spot> markers{{200.3, 200.4, 5, 900}, {400.1, 300.7, 5, 250}, {600.2, 150.5, 5, 250},
+                                  {608.9, 153.0, 5, 250}, {800.5, 500.2, 5, 250}, {800.9, 509.3, 5, 250}};
+  spots.insert(spots.end(), markers.begin(), markers.end());
+  MarkerDetector detector;
+  const auto found = detector.detect(frame_of(scene({1024, 704}, spots, 2, 4)), {}).detections;
+  EXPECT_EQ(found.size(), markers.size());
+  for (const Spot& marker : markers) EXPECT_LT(distance_to_nearest(found, marker.x, marker.y), 0.3) << marker.x;
+  EXPECT_EQ(detector.counts().unlike, 0);
+}
+
+TEST(MarkerDetector, MarkersInMotionBesideSpecksAreKept) {
+  cv::Mat sum = cv::Mat::zeros(300, 400, CV_32FC1);
+  for (int i = 0; i <= 40; ++i) {
+    const double along = 12 * (i / 40.0 - 0.5);
+    cv::Mat part;
+    scene({400, 300}, {{100.2 + along, 80.7, 4}, {300.6 + along, 200.2, 4}, {50, 200, 0.9, 45}, {200, 50, 0.9, 45}}, 0, 0, 12,
+          CV_16U, 100)
+        .convertTo(part, CV_32F, 0.01 / 41);
+    sum += part;
+  }
+  const auto found = find(with_noise(sum, 2, 5));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_LT(distance_to_nearest(found, 100.2, 80.7), 0.2);
+  EXPECT_LT(distance_to_nearest(found, 300.6, 200.2), 0.2);
+}
+
+TEST(MarkerDetector, ALampWithItsHaloIsLeftOutAndSaid) {
+  cv::Mat clean;
+  scene({400, 300}, {{100.2, 80.7, 4, 230}, {300.6, 200.2, 4, 230}, {60.4, 220.3, 4, 230}}, 0, 0, 12).convertTo(clean, CV_32F);
+  for (int y = 0; y < 300; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      const double away = std::hypot(x - 200.0, y - 120.0) - 18;
+      clean.at<float>(y, x) += static_cast<float>(away > 0 ? 110 * std::exp(-away / 25) : 400);
+    }
+  }
+  MarkerDetector detector;
+  const auto found = detector.detect(frame_of(with_noise(clean, 2, 6)), {}).detections;
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_GT(distance_to_nearest(found, 200, 120), 20);
+  EXPECT_EQ(detector.counts().unlike, 1);
+  ASSERT_EQ(warnings(detector.counts()).size(), 1u);
+  EXPECT_NE(warnings(detector.counts())[0].find("unlike the markers"), std::string::npos);
+}
+
+TEST(MarkerDetector, MarkersThatBecomeDarkerAreFoundAgain) {
+  MarkerDetector detector;
+  for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(detector.detect(frame_of(scene({320, 240}, {{100, 100, 3, 240}}, 2, i)), {}).detections.size(), 1u);
+  std::size_t found = 0;
+  for (std::uint32_t i = 0; i < 90; ++i)
+    found += detector.detect(frame_of(scene({320, 240}, {{100, 100, 3, 50}}, 2, i)), {}).detections.size();
+  EXPECT_GT(found, 20u);
+}
+
 TEST(MarkerDetector, NoiseAloneAndASaturatedFrameHoldNoMarker) {
   for (const double noise : {0.0, 1.0, 5.0, 20.0}) EXPECT_TRUE(find(scene({640, 480}, {}, noise, 9, 60)).empty()) << noise;
   MarkerDetector detector;
@@ -200,7 +287,7 @@ TEST(MarkerDetector, NoiseAloneAndASaturatedFrameHoldNoMarker) {
 TEST(MarkerDetector, GlareIsBoundedAndToldAndExpectedMarkersStay) {
   std::vector<Spot> spots{{1100.3, 900.2, 1}};  // the smallest
   for (int i = 0; i < 5000; ++i) spots.push_back({8.0 + i % 100 * 12, 8.0 + i / 100 * 12, 2});
-  MarkerDetector detector;
+  MarkerDetector detector({.most_markers = 2000});
   const std::vector<Expected> expected{{Box::from_centre({1100, 900}, 20, 20)}};
   const auto found = detector.detect(frame_of(scene({1280, 1024}, spots, 2, 1)), expected).detections;
   EXPECT_EQ(found.size(), 2000u);

@@ -16,8 +16,7 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr double kMargin = 2.5;      // px beyond the blob
-constexpr double kUsualBlur = 0.65;  // px; a sharp lens, and the pixel
+constexpr double kMargin = 2.5;  // px beyond the blob
 constexpr int kMostFitSteps = 12;
 constexpr double kFitSettled = 1e-3;      // px
 constexpr double kWorstMisfit = 0.2;      // of the contrast

@@ -11,6 +11,8 @@
 
 namespace marey::detect::markers {
 
+inline constexpr double kUsualBlur = 0.65;  ///< px; a sharp lens, and the pixel
+
 /// A marker as fitted: a disc with a blurred edge.
 struct MarkerShape {
   Vector<2> centre = Vector<2>::Zero();          ///< px
@@ -19,6 +21,7 @@ struct MarkerShape {
   double blur = 0.65;                            ///< standard deviation of the edge, px; the pixel's own width included
   double contrast = 0;                           ///< grey levels above the background, or below it where markers are dark
   double misfit = 0;                             ///< root mean square of what the model leaves, as a share of the contrast
+  bool part = false;                             ///< one of several in its blob
   bool fitted = false;                           ///< false: the disc did not fit, and the centre is the weighted centroid
 };
 

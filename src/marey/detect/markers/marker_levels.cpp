@@ -21,6 +21,10 @@ constexpr double kSigmas = 6;        // a million pixels of pure noise: one fals
 constexpr double kLeast = 0.03;      // of white; of what was compressed or rounded to 8 bits
 constexpr double kLeastRaw = 0.01;   // of a picture of more bits
 constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
+constexpr double kForget = 0.97;     // of the contrast is left after a frame without a marker
+constexpr double kUneven = 0.5;      // of what a marker must stand out by: a step in the ground that matters
+constexpr double kUnevenNoise = 5;   // noises: of noise alone seven tenths lie within 2.1
+constexpr double kOfTop = 0.6;       // of their own level: one before something bright stands out by less
 constexpr int kMostChange = 1023;
 
 double value_at(const cv::Mat& image, int x, int y) {
@@ -75,11 +79,13 @@ void MarkerLevels::sample(const cv::Mat& image, int tile) {
       ++changes_[std::min<int>(kMostChange, static_cast<int>(std::abs(value - other) * (depth_ == CV_8U ? 1 : 4 / unit)))];
     }
   }
-  const auto middle = heights.begin() + n / 2;
-  const auto low = heights.begin() + n / 10;
-  std::nth_element(heights.begin(), middle, heights.end());
-  std::nth_element(heights.begin(), low, middle);
-  raw_[tile] = {static_cast<std::uint16_t>(std::clamp(*middle, 0, 65535)), static_cast<float>((*middle - *low) / 1.2816)};
+  std::sort(heights.begin(), heights.begin() + n);
+  // Of a normal distribution these are the same; where two levels meet in the tile one of them lies within a level.
+  const int middle = heights[n / 2];
+  const double spread = std::min((middle - heights[n / 10]) / 1.2816, (middle - heights[n / 4]) / 0.6745);
+  const auto step = static_cast<float>(heights[n - 1 - n / 7] - heights[n / 7]);
+  const auto held = [](int height) { return static_cast<std::uint16_t>(std::clamp(height, 0, 65535)); };
+  raw_[tile] = {held(middle), held(heights[n - 1 - n / 7]), step, static_cast<float>(spread)};
 }
 
 /// From the histogram of |difference|: the 68.3 % point of noise of deviation σ√2. Bins are spread evenly over their width.
@@ -109,13 +115,41 @@ double MarkerLevels::smooth_median(int tile) const {
   return around[(n - 1) / 2];
 }
 
+double MarkerLevels::brighter_level(int tile) const {
+  const double height = raw_[static_cast<std::size_t>(tile)].high;
+  return dark_ ? white_ - height : height;
+}
+
+/// What compression, rounding and shadows leave, grey levels.
+double MarkerLevels::least() const {
+  return (depth_ == CV_8U ? kLeast : kLeastRaw) * white_;
+}
+
+double MarkerLevels::noise_demand(int tile) const {
+  const double sigma = std::max<double>(noise_, raw_[static_cast<std::size_t>(tile)].spread);
+  return std::max(kSigmas * sigma, least());
+}
+
+double MarkerLevels::demand(double ground) const {
+  const double height = dark_ ? white_ - ground : ground;
+  return std::min(kOfContrast * typical_.contrast, kOfTop * typical_.top - height);
+}
+
 double MarkerLevels::needed(int tile) const {
-  const double sigma = std::max<double>(noise_, raw_[tile].spread);
-  return std::max({kSigmas * sigma, (depth_ == CV_8U ? kLeast : kLeastRaw) * white_, kOfContrast * contrast_});
+  const double height = level_[static_cast<std::size_t>(tile)];
+  return std::max(noise_demand(tile), demand(dark_ ? white_ - height : height));
+}
+
+/// The tile's own spread does not count: it is the step.
+bool MarkerLevels::is_uneven(int tile) const {
+  const double ground = raw_[static_cast<std::size_t>(tile)].median;
+  const double apart = std::abs(ground - level_[static_cast<std::size_t>(tile)]);
+  const double wanted = std::max({kSigmas * noise_, least(), demand(dark_ ? white_ - ground : ground)});
+  return std::max<double>(raw_[static_cast<std::size_t>(tile)].step, apart) > std::max(kUneven * wanted, kUnevenNoise * noise_);
 }
 
 void MarkerLevels::set_threshold(int tile) {
-  level_[tile] = smooth_median(tile);
+  level_[tile] = smoothed_ ? smooth_median(tile) : raw_[tile].median;
   const double top = depth_ == CV_8U ? 255 : 65535;
   const double height = level_[tile] + needed(tile);
   const double threshold = fixed_ ? *fixed_ : dark_ ? white_ - height : height;
@@ -123,9 +157,20 @@ void MarkerLevels::set_threshold(int tile) {
       static_cast<std::uint16_t>(std::clamp(dark_ ? std::ceil(threshold) : std::floor(threshold), 0.0, top));
 }
 
-void MarkerLevels::learn_contrast(std::optional<double> contrast) {
-  if (!contrast) return;
-  contrast_ = contrast_ > 0 ? contrast_ + (*contrast - contrast_) / kShare : *contrast;
+/// Where nothing stands out any more markers may have become darker: less and less is asked of them.
+void MarkerLevels::learn_contrast(const std::optional<TypicalMarker>& typical) {
+  if (!typical) {
+    typical_.contrast *= kForget;
+    return;
+  }
+  const double share = typical_.contrast > 0 ? 1.0 / kShare : 1;
+  typical_.contrast += (typical->contrast - typical_.contrast) * share;
+  typical_.top += (typical->top - typical_.top) * share;
+}
+
+void MarkerLevels::set_contrast(const TypicalMarker& typical) {
+  typical_ = typical;
+  for (int tile = 0; tile < tiles_.area(); ++tile) set_threshold(tile);
 }
 
 double MarkerLevels::background(int x, int y) const {

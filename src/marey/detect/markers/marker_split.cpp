@@ -4,7 +4,7 @@
 // of hiding each other the overlap is brighter than a disc; such pixels are cut to the discs' own level first. The rival is one
 // marker in motion: a disc swept along a segment (distance to the segment instead of the point). The blob is split when the discs
 // leave clearly less than the swept disc does, their radii are alike, and their centres lie apart. Cost: about 10 steps of k error
-// functions a pixel, 50–100 µs a pair; the caller bounds the number of pairs.
+// shares a pixel (marker_disc_models); the caller bounds the number of pairs.
 #include "marey/detect/markers/marker_split.h"
 
 #include <algorithm>
@@ -12,185 +12,28 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "marey/detect/markers/marker_disc_models.h"
 
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMostDiscs = 4;
-constexpr int kMostSplitSteps = 20;
-constexpr double kSplitSettled = 5e-3;    // px; the next step would be a hundredth of it
 constexpr double kClearly = 0.5;          // of the squares that one swept disc leaves
 constexpr double kClearlyExpected = 0.8;  // where the tracker knows of several
 constexpr double kSurely = 20;            // noise variances: where discs fit to the noise, by how much they must fit better
 constexpr double kSurelyExpected = -9;    // the tracker saw both: nearly as good will do
 constexpr double kModelError = 0.006;     // of the contrast
 constexpr double kLeastApart = 0.8;       // centres, in mean radii
-constexpr double kFlat = 4.5;             // blurs from the edge beyond which it is not felt
 constexpr double kMostUnlike = 2.2;       // larger radius over smaller
-
-// Parameters: contrast, background, blur, then either x, y, radius of each disc, or x, y, radius and the half axis of a swept one.
-enum { kDiscsContrast, kDiscsBackground, kDiscsBlur, kFirstDisc };
-
-// On the stack, whatever the number of discs.
-constexpr int kMostParameters = kFirstDisc + 3 * kMostDiscs;
-using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostParameters, 1>;
-using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters>;
-
-struct Model {
-  Parameters p;
-  int discs = 1;
-  bool swept = false;
-  bool adds = false;     ///< discs add up instead of hiding each other
-  double ceiling = 1e9;  ///< where they add up: saturation, in units of the window
-};
-
-struct Edge {
-  double share = 0;
-  double slope_x = 0, slope_y = 0, slope_radius = 0, slope_blur = 0;
-};
-
-/// A disc's share at (dx, dy) from its centre and its derivatives by centre, radius and blur.
-Edge edge(double dx, double dy, double radius, double blur) {
-  const double distance = std::sqrt(dx * dx + dy * dy + 1.0 / 12);
-  const double u = (distance - radius) / blur;
-  if (std::abs(u) > kFlat) return {u < 0 ? 1.0 : 0.0};
-  const double density = std::exp(-u * u / 2) / (std::sqrt(2 * std::numbers::pi) * blur);
-  return {std::erfc(u / std::numbers::sqrt2) / 2, density * dx / distance, density * dy / distance, density, density * u};
-}
-
-/// The model at a pixel; `slope` becomes its derivatives.
-double swept_share(const Model& model, double x, double y, Parameters& slope) {
-  const double hx = model.p[kFirstDisc + 3], hy = model.p[kFirstDisc + 4];
-  const double dx = x - model.p[kFirstDisc], dy = y - model.p[kFirstDisc + 1];
-  const double length = hx * hx + hy * hy;
-  const double t = length > 1e-9 ? std::clamp((dx * hx + dy * hy) / length, -1.0, 1.0) : 0;
-  const Edge e = edge(dx - t * hx, dy - t * hy, model.p[kFirstDisc + 2], model.p[kDiscsBlur]);
-  slope[kDiscsBlur] = e.slope_blur;
-  slope[kFirstDisc] = e.slope_x;
-  slope[kFirstDisc + 1] = e.slope_y;
-  slope[kFirstDisc + 2] = e.slope_radius;
-  slope[kFirstDisc + 3] = t * e.slope_x;
-  slope[kFirstDisc + 4] = t * e.slope_y;
-  return e.share;
-}
-
-double union_share(const Model& model, double x, double y, Parameters& slope) {
-  std::array<Edge, kMostDiscs> edges;
-  double outside = 1;
-  for (int i = 0; i < model.discs; ++i) {
-    const auto disc = model.p.segment<3>(kFirstDisc + 3 * i);
-    edges[i] = edge(x - disc[0], y - disc[1], disc[2], model.p[kDiscsBlur]);
-    outside *= 1 - edges[i].share;
-  }
-  slope[kDiscsBlur] = 0;
-  for (int i = 0; i < model.discs; ++i) {
-    double others = 1;
-    for (int j = 0; j < model.discs; ++j) others *= j == i ? 1 : 1 - edges[j].share;
-    slope[kFirstDisc + 3 * i] = others * edges[i].slope_x;
-    slope[kFirstDisc + 3 * i + 1] = others * edges[i].slope_y;
-    slope[kFirstDisc + 3 * i + 2] = others * edges[i].slope_radius;
-    slope[kDiscsBlur] += others * edges[i].slope_blur;
-  }
-  return 1 - outside;
-}
-
-/// Discs whose light adds up, as far as the sensor goes.
-double sum_share(const Model& model, double x, double y, Parameters& slope) {
-  double sum = 0;
-  slope[kDiscsBlur] = 0;
-  for (int i = 0; i < model.discs; ++i) {
-    const auto disc = model.p.segment<3>(kFirstDisc + 3 * i);
-    const Edge e = edge(x - disc[0], y - disc[1], disc[2], model.p[kDiscsBlur]);
-    sum += e.share;
-    slope.segment<3>(kFirstDisc + 3 * i) << e.slope_x, e.slope_y, e.slope_radius;
-    slope[kDiscsBlur] += e.slope_blur;
-  }
-  const double most = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
-  if (sum <= most) return sum;
-  slope.setZero();
-  return most;
-}
-
-double share_at(const Model& model, double x, double y, Parameters& slope) {
-  if (model.swept) return swept_share(model, x, y, slope);
-  return model.adds ? sum_share(model, x, y, slope) : union_share(model, x, y, slope);
-}
-
-struct Normal {
-  Information information;
-  Parameters gradient;
-  double squares = 0;
-};
-
-Normal linearise(const Model& model, const MarkerWindow& window, const std::vector<float>& value) {
-  const auto n = model.p.size();
-  Normal normal{Information::Zero(n, n), Parameters::Zero(n)};
-  Parameters slope(n);
-  for (int i = 0; i < window.count; ++i) {
-    const double share = share_at(model, window.x[i], window.y[i], slope);
-    const double residual = value[i] - model.p[kDiscsBackground] - model.p[kDiscsContrast] * share;
-    slope.tail(n - kDiscsBlur) *= model.p[kDiscsContrast];
-    slope[kDiscsContrast] = share;
-    slope[kDiscsBackground] = 1;
-    for (Eigen::Index a = 0; a < n; ++a) {
-      if (slope[a] == 0) continue;  // most discs are far from most pixels
-      for (Eigen::Index b = 0; b <= a; ++b) normal.information(a, b) += slope[a] * slope[b];
-    }
-    normal.gradient += slope * residual;
-    normal.squares += residual * residual;
-  }
-  for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = a + 1; b < n; ++b) normal.information(a, b) = normal.information(b, a);
-  }
-  return normal;
-}
-
-bool sensible(const Model& model, double reach) {
-  const auto& p = model.p;
-  if (!p.allFinite() || p[kDiscsBlur] < 0.2 || p[kDiscsBlur] > reach || p[kDiscsContrast] < 0.1 || p[kDiscsContrast] > 10)
-    return false;
-  for (int i = 0; i < model.discs; ++i) {
-    const double radius = p[kFirstDisc + 3 * i + 2];
-    if (radius < 0.2 || radius > reach || p.segment<2>(kFirstDisc + 3 * i).norm() > reach) return false;
-  }
-  return true;
-}
-
-struct Solution {
-  Model model;
-  Normal normal;
-};
-
-/// `stiffness` pulls the blur to where it began: two close discs hardly tell it.
-Solution minimise(Model model, const MarkerWindow& window, const std::vector<float>& value, double stiffness) {
-  const double blur = model.p[kDiscsBlur];
-  const auto cost = [&](const Model& m, const Normal& n) { return n.squares + stiffness * std::pow(m.p[kDiscsBlur] - blur, 2); };
-  Solution best{model, linearise(model, window, value)};
-  double damping = 1e-2;
-  for (int step = 0; step < kMostSplitSteps; ++step) {
-    Information information = best.normal.information;
-    information.diagonal() += damping * best.normal.information.diagonal() + Parameters::Constant(model.p.size(), 1e-9);
-    information(kDiscsBlur, kDiscsBlur) += stiffness;
-    Parameters gradient = best.normal.gradient;
-    gradient[kDiscsBlur] -= stiffness * (best.model.p[kDiscsBlur] - blur);
-    const Parameters change = information.llt().solve(gradient);
-    model.p = best.model.p + change;
-    if (sensible(model, window.reach)) {
-      Normal there = linearise(model, window, value);
-      if (cost(model, there) < cost(best.model, best.normal)) {
-        best = {model, std::move(there)};
-        damping *= 0.2;
-        if (change.cwiseAbs().maxCoeff() < kSplitSettled) break;
-        continue;
-      }
-    }
-    damping *= 8;
-    if (damping > 1e4) break;
-  }
-  return best;
-}
+constexpr double kMovingClearly = 0.9;    // of the squares that one swept disc leaves
+constexpr double kSimpler = 1.3;          // of the squares that three or four discs at rest leave: it has fewer parameters
+constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
+constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
+constexpr int kMostMoving = 4000;         // px, of a window in which two in motion are looked for
+constexpr double kWellTold = 0.08;        // of the contrast: what an explanation leaves at most
 
 /// The level of a disc, where pixels are brighter than that: an overlap of discs that add up. Else nothing.
 std::optional<float> level_below_overlap(const std::vector<float>& value, double noise) {
@@ -228,25 +71,25 @@ std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<flo
   return result;
 }
 
-bool distinct(const Model& model) {
+bool distinct(const DiscsModel& model, double least_apart = kLeastApart) {
   for (int i = 0; i < model.discs; ++i) {
     for (int j = 0; j < i; ++j) {
       const auto a = model.p.segment<3>(kFirstDisc + 3 * i), b = model.p.segment<3>(kFirstDisc + 3 * j);
       const double apart = (a.head<2>() - b.head<2>()).norm();
-      if (apart < kLeastApart * (a[2] + b[2]) / 2) return false;
+      if (apart < least_apart * (a[2] + b[2]) / 2) return false;
       if (std::max(a[2], b[2]) > kMostUnlike * std::min(a[2], b[2])) return false;
     }
   }
   return true;
 }
 
-std::vector<MarkerShape> shapes(const Solution& solution, const MarkerWindow& window, double stiffness) {
-  const Model& model = solution.model;
-  Information information = solution.normal.information;
+std::vector<MarkerShape> shapes(const DiscsSolution& solution, const MarkerWindow& window, double stiffness) {
+  const DiscsModel& model = solution.model;
+  DiscsInformation information = solution.normal.information;
   information(kDiscsBlur, kDiscsBlur) += stiffness;
   information.diagonal().array() += 1e-9;
   const double left = solution.normal.squares / std::max<double>(1, window.count - static_cast<double>(model.p.size()));
-  const Information spread = information.llt().solve(Information::Identity(model.p.size(), model.p.size())) * left;
+  const DiscsInformation spread = information.llt().solve(DiscsInformation::Identity(model.p.size(), model.p.size())) * left;
   std::vector<MarkerShape> result;
   for (int i = 0; i < model.discs; ++i) {
     MarkerShape shape;
@@ -256,7 +99,8 @@ std::vector<MarkerShape> shapes(const Solution& solution, const MarkerWindow& wi
     shape.radius = model.p[at + 2];
     shape.blur = model.p[kDiscsBlur];
     shape.contrast = model.p[kDiscsContrast] * window.scale;
-    shape.misfit = std::sqrt(solution.normal.squares / window.count);
+    shape.misfit = std::sqrt(solution.normal.squares / window.count) / model.p[kDiscsContrast];
+    shape.part = model.discs > 1;
     shape.fitted = true;
     result.push_back(shape);
   }
@@ -280,8 +124,8 @@ BlobEllipse ellipse_of(const MarkerBlob& blob) {
 }
 
 /// One disc that moved while it was seen.
-Model swept_disc(const BlobEllipse& ellipse, const MarkerWindow& window, double blur) {
-  Model swept{Parameters(kFirstDisc + 5), 1, true};
+DiscsModel swept_disc(const BlobEllipse& ellipse, const MarkerWindow& window, double blur) {
+  DiscsModel swept{DiscsParameters(kFirstDisc + 5), 1, true};
   const Vector<2> reach = ellipse.along * std::max(ellipse.half_length - ellipse.half_width, 0.3);
   swept.p << 0.9, 0.0, blur, window.centroid.x(), window.centroid.y(), std::max(ellipse.half_width - 0.3, 0.4), reach.x(),
       reach.y();
@@ -289,57 +133,116 @@ Model swept_disc(const BlobEllipse& ellipse, const MarkerWindow& window, double 
 }
 
 /// So many discs, whose places are still to be set.
-Model several_discs(int count, const MarkerWindow& window, const MarkerSurroundings& around, double blur) {
-  Model discs{Parameters(kFirstDisc + 3 * count), count};
+DiscsModel several_discs(int count, const MarkerWindow& window, const MarkerSurroundings& around, double blur) {
+  DiscsModel discs{DiscsParameters(kFirstDisc + 3 * count), count};
   discs.ceiling = around.dark ? window.background / window.scale : std::abs(around.white - window.background) / window.scale;
   discs.p.head<kFirstDisc>() << 0.9, 0.0, blur;
   return discs;
 }
 
+/// What is the same for each number of discs.
+struct SplitTask {
+  const MarkerWindow& window;
+  const MarkerSurroundings& around;
+  BlobEllipse ellipse;
+  double noise = 0, stiffness = 0, blur = 0, floor = 0;
+  std::vector<float> whole, value;  // all light; cut to a disc's own level where discs add up
+  std::optional<float> overlap;
+};
+
+SplitTask task_of(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around) {
+  SplitTask task{.window = window, .around = around, .ellipse = ellipse_of(blob), .whole = {}, .value = {}, .overlap = {}};
+  task.noise = around.noise / window.scale;
+  task.stiffness = task.noise * task.noise / 0.01;
+  task.blur = around.blur.value_or(0.65);
+  task.floor = window.count * (1.5 * task.noise * task.noise + kModelError * kModelError);  // what right models leave
+  task.whole.assign(window.value.begin(), window.value.begin() + window.count);
+  task.value = task.whole;
+  task.overlap = level_below_overlap(task.whole, task.noise);
+  if (task.overlap) {
+    for (float& v : task.value) v = std::min(v, 1.05f * *task.overlap);
+  }
+  return task;
+}
+
+DiscsSolution fit_several(const SplitTask& task, int count) {
+  DiscsModel discs = several_discs(count, task.window, task.around, task.blur);
+  const double radius = std::max(0.4, std::sqrt(task.window.half_area / (count * std::numbers::pi)));
+  const auto places = centres(task.window, task.value, count, task.ellipse.along * task.ellipse.half_length * (1 - 1.0 / count));
+  for (int i = 0; i < count; ++i)
+    discs.p.segment<3>(kFirstDisc + 3 * i) << places[static_cast<std::size_t>(i)].x(), places[static_cast<std::size_t>(i)].y(),
+        radius;
+  DiscsSolution solution = fit_discs(discs, task.window, task.value, task.stiffness);
+  if (!task.overlap || count != 2) return solution;  // more discs that add up could tell any streak
+  discs.adds = true;
+  discs.p[kDiscsContrast] = *task.overlap;
+  DiscsSolution sum = fit_discs(discs, task.window, task.whole, task.stiffness);
+  return sum.normal.squares < std::min(task.floor, solution.normal.squares) ? std::move(sum) : std::move(solution);
+}
+
+/// Two discs as far from each other and on such a way as begins a fit.
+DiscsModel moving_pair(const SplitTask& task, const Vector<2>& apart, const Vector<2>& path, double radius) {
+  DiscsModel pair = several_discs(2, task.window, task.around, task.blur);
+  pair.p.conservativeResize(kFirstDisc + 8);
+  pair.swept = true;
+  for (int i = 0; i < 2; ++i) {
+    const Vector<2> place = task.window.centroid + (i == 0 ? -0.5 : 0.5) * apart;
+    pair.p.segment<3>(kFirstDisc + 3 * i) << place.x(), place.y(), radius;
+  }
+  pair.p.tail<2>() = path;
+  return pair;
+}
+
+/// Two that touch and moved together while they were seen: across the line between them, along it with the blob's length for the
+/// one or the other.
+DiscsSolution fit_moving_pair(const SplitTask& task) {
+  const Vector<2> along = task.ellipse.along, across(-along.y(), along.x());
+  const double length = task.ellipse.half_length, width = task.ellipse.half_width;
+  const double radius = std::max(0.7, std::min(std::sqrt(task.window.half_area / (2 * std::numbers::pi)), length / 2));
+  const auto fitted = [&](const Vector<2>& apart, const Vector<2>& path) {
+    return fit_discs(moving_pair(task, apart, path, radius), task.window, task.value, task.stiffness);
+  };
+  DiscsSolution best = fitted(length * along, std::max(0.3, width - radius) * across);
+  for (const DiscsSolution& other :
+       std::array{fitted(length * along, 0.25 * length * along), fitted(width * across, std::max(0.3, length - radius) * along)}) {
+    if (other.normal.squares < best.normal.squares) best = other;
+  }
+  return best;
+}
+
 }  // namespace
 
-std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
-                                       std::size_t expected) {
+MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
+                          std::size_t expected) {
   if (window.count < 20) return {};
-  const BlobEllipse ellipse = ellipse_of(blob);
-  const double noise = around.noise / window.scale;
-  const double stiffness = noise * noise / 0.01;
-  const double blur = around.blur.value_or(0.65);
-  const std::vector<float> whole(window.value.begin(), window.value.begin() + window.count);
-  const std::optional<float> overlap = level_below_overlap(whole, noise);
-  std::vector<float> value = whole;
-  if (overlap) {
-    for (float& v : value) v = std::min(v, 1.05f * *overlap);
-  }
-
-  const Solution rival = minimise(swept_disc(ellipse, window, blur), window, value, stiffness);
+  const SplitTask task = task_of(window, blob, around);
+  const DiscsSolution rival = fit_discs(swept_disc(task.ellipse, window, task.blur), window, task.value, task.stiffness);
   const double share = expected >= 2 ? kClearlyExpected : kClearly;
-  const double floor = window.count * (1.5 * noise * noise + kModelError * kModelError);  // what right models leave
-  const double surely = expected >= 2 ? kSurelyExpected : kSurely;
+  const double surely = (expected >= 2 ? kSurelyExpected : kSurely) * task.noise * task.noise;
   double to_beat = rival.normal.squares;
-  std::vector<MarkerShape> best;
+  MarkerSplit best;
   for (int k = 2; k <= kMostDiscs; ++k) {
-    Model discs = several_discs(k, window, around, blur);
-    const double radius = std::max(0.4, std::sqrt(window.half_area / (k * std::numbers::pi)));
-    const auto places = centres(window, value, k, ellipse.along * ellipse.half_length * (1 - 1.0 / k));
-    for (int i = 0; i < k; ++i) discs.p.segment<3>(kFirstDisc + 3 * i) << places[i].x(), places[i].y(), radius;
-    Solution solution = minimise(discs, window, value, stiffness);
-    if (overlap && k == 2) {  // more discs that add up could tell any streak
-      discs.adds = true;
-      discs.p[kDiscsContrast] = *overlap;
-      Solution sum = minimise(discs, window, whole, stiffness);
-      if (sum.normal.squares < std::min(floor, solution.normal.squares)) solution = std::move(sum);
-    }
+    const DiscsSolution solution = fit_several(task, k);
     const double left = solution.normal.squares;
-    const bool clear = left < share * to_beat || (left < floor && to_beat - left > surely * noise * noise);
+    const bool clear = left < share * to_beat || (left < task.floor && to_beat - left > surely);
     if (!distinct(solution.model) || !clear) {
       if (k == 2) continue;  // three in a corner may fit where two do not
       break;
     }
-    best = shapes(solution, window, stiffness);
-    if (left < floor || best.front().misfit < 0.04) break;
+    best.discs = shapes(solution, window, task.stiffness);
     to_beat = left;
+    if (left < task.floor || best.discs.front().misfit < 0.04) break;
   }
+  const double most = std::max(kWellTold, 3 * task.noise);
+  const MarkerShape swept = shapes(rival, window, task.stiffness).front();
+  const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
+  if ((told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2) && window.count <= kMostMoving) {
+    const DiscsSolution pair = fit_moving_pair(task);
+    const double limit = (best.discs.size() > 2 ? kSimpler : kMovingClearly) * to_beat;
+    if (distinct(pair.model, kMovingApart) && pair.normal.squares < limit) best.discs = shapes(pair, window, task.stiffness);
+  }
+  if (!best.discs.empty() && best.discs.front().misfit > most) best.discs.clear();
+  if (best.discs.empty() && swept.misfit <= most) best.swept = swept;
   return best;
 }
 

@@ -1,16 +1,22 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "marey/detect/markers/marker_fit.h"
 
 namespace marey::detect::markers {
 
-/// Markers that touch or overlap and so form one blob: their shapes, left to right and then top to bottom; empty where the blob is
-/// better told as one marker, round or drawn out by its motion. `expected`: how many markers the tracker expects in the blob; two
-/// or more make splitting likelier. At most four.
-std::vector<MarkerShape> split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
-                                       std::size_t expected = 0);
+/// How a blob that is no disc is best explained.
+struct MarkerSplit {
+  std::vector<MarkerShape> discs;    ///< two to four that touch or overlap, left to right and then top to bottom; or none
+  std::optional<MarkerShape> swept;  ///< without them: one that moved while it was seen, whose radius is half the streak's width
+};
+
+/// Explains a blob as several markers or as one drawn out by its motion, where one of these is as good as what a lone disc leaves
+/// of a marker. `expected`: how many markers the tracker expects in the blob; two make a split more likely. `window` is the blob's.
+MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
+                          std::size_t expected);
 
 }  // namespace marey::detect::markers

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <sstream>
 
@@ -322,6 +323,18 @@ TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
   EXPECT_TRUE(refused(parse_aniposelib_rig, "[cam_0]\nmatrix" + test::repeated(".a", kMany) + " = 1"));
   EXPECT_TRUE(refused(parse_qualisys_rig, test::repeated("<calibration>", kMany)));
   EXPECT_TRUE(refused(parse_tsai_rig, test::repeated("<Camera>", kMany)));
+}
+
+TEST(SelfCalRig, RemarksInALensFileArePassedOver) {
+  const test::TemporaryFolder folder;
+  const Rig rig = two_cameras();
+  of_rigs("multicamselfcal").write_rig(rig, folder / "e/");
+  std::ofstream lens(folder / "e/basename1.rad", std::ios::app);
+  lens << "comments = 'measured in March, 2 boards'\nnx = 1280 px\n";
+  lens.close();
+  EXPECT_LT(apart(rig, read_known_rig(folder / "e/")), 1e-6);
+  std::ofstream(folder / "e/basename2.rad", std::ios::app) << "K12 = zero\n";
+  EXPECT_THROW(read_known_rig(folder / "e/"), Error);
 }
 
 TEST(RigExchange, NoMessageShowsALibrarysInternals) {

@@ -237,6 +237,7 @@ std::optional<geometry::BrownLens> SelfCalFolder::lens(int camera) const {
     if (sign == std::string::npos) continue;
     std::string key = line.substr(0, sign);
     key.erase(std::remove_if(key.begin(), key.end(), [](char c) { return c == ' ' || c == '\t'; }), key.end());
+    if (!key.starts_with('K') && !key.starts_with("kc")) continue;  // comments = '...', and what else the toolbox notes
     const auto value = numbers_of(std::string_view(line).substr(sign + 1), *path, number);
     if (value.size() == 1 && std::isfinite(value[0])) values[key] = value[0];
   }

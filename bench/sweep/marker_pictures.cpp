@@ -1,0 +1,150 @@
+// Markers in pictures that show more than markers: what is found, what is missed, what is false, beside three naive detectors. Each
+// picture is looked at alone, as the first of a recording.
+//   marker_pictures [PICTURES_A_SETTING] [SETTING] [FIRST_SEED]
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/core.h>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "marey/detect/markers/marker_detector.h"
+#include "marey/simulate/markers/marker_picture.h"
+
+namespace {
+
+using namespace marey;
+using simulate::markers::MarkerPicture;
+
+constexpr double kNear = 1.5;  // px; a marker further away than that was not found
+
+struct Score {
+  std::int64_t markers = 0, missed = 0, false_ones = 0;
+  int pictures = 0, clean = 0;
+  double ms = 0, worst_ms = 0;
+
+  void add(const MarkerPicture& picture, std::vector<Vector<2>> found, double took) {
+    std::int64_t lost = 0;
+    for (const Vector<2>& marker : picture.markers) {  // each find is of one marker
+      const auto nearest = std::min_element(found.begin(), found.end(), [&](const Vector<2>& a, const Vector<2>& b) {
+        return (a - marker).squaredNorm() < (b - marker).squaredNorm();
+      });
+      if (nearest == found.end() || (*nearest - marker).norm() > std::max(kNear, 0.3 * picture.radius)) {
+        ++lost;
+      } else {
+        found.erase(nearest);
+      }
+    }
+    markers += std::ssize(picture.markers);
+    missed += lost;
+    false_ones += std::ssize(found);
+    ++pictures;
+    clean += lost == 0 && found.empty() ? 1 : 0;
+    ms += took;
+    worst_ms = std::max(worst_ms, took);
+  }
+
+  void print(std::string_view setting, std::string_view who) const {
+    fmt::print(
+        "{:<12} {:<22} {:>6} markers  missed {:6.2f} %  false {:8.2f} a picture  clean {:3} of {:3}  {:7.2f} ms, worst {:.1f}\n",
+        setting, who, markers, 100.0 * static_cast<double>(missed) / static_cast<double>(std::max<std::int64_t>(1, markers)),
+        static_cast<double>(false_ones) / pictures, clean, pictures, ms / pictures, worst_ms);
+  }
+
+  void add(const Score& other) {
+    markers += other.markers, missed += other.missed, false_ones += other.false_ones;
+    pictures += other.pictures, clean += other.clean, ms += other.ms, worst_ms = std::max(worst_ms, other.worst_ms);
+  }
+};
+
+std::vector<Vector<2>> ours(const MarkerPicture& picture) {
+  Frame frame;
+  frame.picture = Picture(picture.image);
+  detect::markers::MarkerDetector detector({.most_markers = 20000});
+  std::vector<Vector<2>> found;
+  for (const Detection& detection : detector.detect(frame, {}).detections) found.push_back(detection.centre);
+  return found;
+}
+
+cv::Mat bytes_of(const MarkerPicture& picture) {
+  cv::Mat bytes;
+  picture.image.convertTo(bytes, CV_8U, picture.bits == 8 ? 1 : 255.0 / ((1 << picture.bits) - 1));
+  return bytes;
+}
+
+/// Connected components above a threshold, of 3 to 10,000 px.
+std::vector<Vector<2>> components(const cv::Mat& bytes, double threshold, int method) {
+  cv::Mat above, labels, statistics, centroids;
+  cv::threshold(bytes, above, threshold, 255, method);
+  const int count = cv::connectedComponentsWithStats(above, labels, statistics, centroids);
+  std::vector<Vector<2>> found;
+  for (int i = 1; i < count; ++i) {
+    const int area = statistics.at<int>(i, cv::CC_STAT_AREA);
+    if (area >= 3 && area <= 10000) found.emplace_back(centroids.at<double>(i, 0), centroids.at<double>(i, 1));
+  }
+  return found;
+}
+
+std::vector<Vector<2>> half_of_maximum(const MarkerPicture& picture) {
+  const cv::Mat bytes = bytes_of(picture);
+  double most = 0;
+  cv::minMaxLoc(bytes, nullptr, &most);
+  return components(bytes, most / 2, cv::THRESH_BINARY);
+}
+
+std::vector<Vector<2>> otsu(const MarkerPicture& picture) {
+  return components(bytes_of(picture), 0, cv::THRESH_BINARY | cv::THRESH_OTSU);
+}
+
+std::vector<Vector<2>> simple_blobs(const MarkerPicture& picture) {
+  cv::SimpleBlobDetector::Params options;
+  options.blobColor = 255;
+  options.minArea = 4;
+  options.minDistBetweenBlobs = 3;
+  std::vector<cv::KeyPoint> points;
+  cv::SimpleBlobDetector::create(options)->detect(bytes_of(picture), points);
+  std::vector<Vector<2>> found;
+  for (const cv::KeyPoint& point : points) found.emplace_back(point.pt.x, point.pt.y);
+  return found;
+}
+
+using Finder = std::vector<Vector<2>> (*)(const MarkerPicture&);
+constexpr std::pair<std::string_view, Finder> kFinders[] = {
+    {"marey", ours}, {"half of the maximum", half_of_maximum}, {"Otsu", otsu}, {"SimpleBlobDetector", simple_blobs}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  const int pictures = argc > 1 ? std::atoi(argv[1]) : 20;
+  const std::string_view only = argc > 2 ? argv[2] : "";
+  const int first = argc > 3 ? std::atoi(argv[3]) : 1;
+  const bool peers = std::getenv("WITHOUT_PEERS") == nullptr;
+  std::vector<Score> all(std::size(kFinders));
+  for (const auto& [name, setting] : simulate::markers::marker_settings()) {
+    if (!only.empty() && only != name) continue;
+    std::vector<Score> scores(std::size(kFinders));
+    for (int seed = first; seed < first + pictures; ++seed) {
+      const MarkerPicture picture = simulate::markers::simulate_marker_picture(setting, static_cast<std::uint64_t>(seed));
+      for (std::size_t i = 0; i < std::size(kFinders); ++i) {
+        if (i > 0 && !peers) break;
+        const std::clock_t begin = std::clock();
+        auto found = kFinders[i].second(picture);
+        const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+        scores[i].add(picture, std::move(found), took);
+      }
+    }
+    const bool counts = setting != simulate::markers::MarkerSetting::wand && setting != simulate::markers::MarkerSetting::dots;
+    for (std::size_t i = 0; i < std::size(kFinders) && (i == 0 || peers); ++i) {
+      scores[i].print(name, kFinders[i].first);
+      if (counts) all[i].add(scores[i]);
+    }
+  }
+  for (std::size_t i = 0; i < std::size(kFinders) && only.empty() && (i == 0 || peers); ++i)
+    all[i].print("all but last", kFinders[i].first);
+}

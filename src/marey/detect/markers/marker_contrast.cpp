@@ -1,0 +1,134 @@
+#include "marey/detect/markers/marker_contrast.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace marey::detect::markers {
+namespace {
+
+constexpr int kRim = 3;             // px outside the blob's box
+constexpr int kRimPlaces = 48;      // at most
+constexpr double kAllRound = 0.9;   // of the directions in which a blob must fall off
+constexpr int kLampArea = 50;       // px², from which on a halo is looked for
+constexpr int kFurther = 12;        // px outside the box, where a halo is fainter
+constexpr double kEnoughArea = 50;  // px² beyond which a blob is no better a marker
+constexpr int kFewestClutter = 10;  // blobs from which a tail is told
+constexpr double kFalseAPicture = 0.05;
+constexpr double kMostOfTypical = 0.5;
+
+/// Places round a blob's box, evenly spread over a frame so many px outside it: `look(x, y, inwards_x, inwards_y)` for those within
+/// the picture.
+template <typename Look>
+void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& look) {
+  const cv::Rect frame(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
+  const int length = 2 * (frame.width + frame.height) - 4, step = (length + kRimPlaces - 1) / kRimPlaces;
+  for (int i = 0; i < length; i += step) {  // clockwise
+    int x = frame.x, y = frame.y;
+    if (i < frame.width) {
+      x += i;
+    } else if (i < frame.width + frame.height - 1) {
+      x += frame.width - 1, y += i - frame.width + 1;
+    } else if (i < 2 * frame.width + frame.height - 2) {
+      x += 2 * frame.width + frame.height - 3 - i, y += frame.height - 1;
+    } else {
+      y += length - i;
+    }
+    if (x < 0 || y < 0 || x >= size.width || y >= size.height) continue;
+    const int across = x < box.x ? 1 : x >= box.br().x ? -1 : 0, down = y < box.y ? 1 : y >= box.br().y ? -1 : 0;
+    look(x, y, across, down);
+  }
+}
+
+template <typename Pixel>
+int peak_of(const cv::Mat& luma, const cv::Rect& box, int sign) {
+  const int skip = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(box.area()) / 400)));
+  int peak = sign * luma.ptr<Pixel>(box.y)[box.x];
+  for (int y = box.y; y < box.br().y; y += skip) {
+    const auto* row = luma.ptr<Pixel>(y);
+    for (int x = box.x; x < box.br().x; x += skip) peak = std::max(peak, sign * row[x]);
+  }
+  return peak;
+}
+
+/// The middle of the values on a frame; nothing where all of it lies outside the picture.
+template <typename Pixel>
+std::optional<double> middle_round(const cv::Mat& luma, const cv::Rect& box, int margin) {
+  std::array<int, kRimPlaces> rim;
+  std::size_t n = 0;
+  walk_round(box, margin, luma.size(), [&](int x, int y, int, int) { rim[n++] = luma.ptr<Pixel>(y)[x]; });
+  if (n == 0) return std::nullopt;
+  const auto middle = rim.begin() + static_cast<std::ptrdiff_t>(n / 2);
+  std::nth_element(rim.begin(), middle, rim.begin() + static_cast<std::ptrdiff_t>(n));
+  return *middle;
+}
+
+template <typename Pixel>
+MarkerContrast measured(const cv::Mat& luma, const MarkerBlob& blob, bool dark, double otherwise) {
+  const int sign = dark ? -1 : 1;
+  const int peak = peak_of<Pixel>(luma, blob.box, sign);
+  std::array<int, kRimPlaces> rim, valleys;
+  std::size_t n = 0;
+  walk_round(blob.box, kRim, luma.size(), [&](int x, int y, int across, int down) {
+    rim[n] = valleys[n] = sign * luma.ptr<Pixel>(y)[x];
+    for (int step = 1; step < kRim; ++step)
+      valleys[n] = std::min<int>(valleys[n], sign * luma.ptr<Pixel>(y + step * down)[x + step * across]);
+    ++n;
+  });
+  if (n == 0) return {otherwise, peak - sign * otherwise, 0};
+  const auto end = static_cast<std::ptrdiff_t>(n);
+  const auto middle = rim.begin() + end / 2;
+  std::nth_element(rim.begin(), middle, rim.begin() + end);
+  const auto sill = valleys.begin() + static_cast<std::ptrdiff_t>(kAllRound * static_cast<double>(n - 1));
+  std::nth_element(valleys.begin(), sill, valleys.begin() + end);
+  MarkerContrast result{static_cast<double>(sign * *middle), static_cast<double>(peak - *sill), 0};
+  if (blob.area < kLampArea) return result;
+  const auto further = middle_round<Pixel>(luma, blob.box, kFurther);
+  if (further && peak > *middle) result.halo = (*middle - sign * *further) / (peak - *middle);
+  return result;
+}
+
+}  // namespace
+
+MarkerContrast contrast_of(const cv::Mat& luma, const MarkerBlob& blob, bool dark, double otherwise) {
+  return luma.depth() == CV_8U ? measured<std::uint8_t>(luma, blob, dark, otherwise)
+                               : measured<std::uint16_t>(luma, blob, dark, otherwise);
+}
+
+double roundness_of(const MarkerBlob& blob) {
+  const double mean = (blob.var_x + blob.var_y) / 2;
+  const double largest = mean + std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
+  return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
+}
+
+std::optional<double> weighted_median(std::vector<Weighted>& values) {
+  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+  double total = 0, below = 0;
+  for (const Weighted& one : values) total += one.weight;
+  for (const Weighted& one : values) {
+    below += one.weight;
+    if (2 * below >= total && total > 0) return one.value;
+  }
+  return std::nullopt;
+}
+
+double say_of(double contrast, double area) {
+  return std::max(0.0, contrast) * std::min(area, kEnoughArea);
+}
+
+double above_clutter(std::span<const double> contrasts, double typical) {
+  std::vector<double> excess;  // over the least of them
+  for (const double contrast : contrasts) {
+    if (contrast < kMostOfTypical * typical) excess.push_back(contrast);
+  }
+  if (std::ssize(excess) < kFewestClutter) return 0;
+  const double least = *std::min_element(excess.begin(), excess.end());
+  for (double& contrast : excess) contrast -= least;
+  const auto middle = excess.begin() + std::ssize(excess) / 2;
+  std::nth_element(excess.begin(), middle, excess.end());
+  const double mean = std::max(0.0, *middle) / std::numbers::ln2;
+  return std::min(kMostOfTypical * typical, least + mean * std::log(static_cast<double>(excess.size()) / kFalseAPicture));
+}
+
+}  // namespace marey::detect::markers

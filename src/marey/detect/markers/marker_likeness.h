@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/detect/markers/marker_contrast.h"
+#include "marey/detect/markers/marker_fit.h"
+
+namespace marey::detect::markers {
+
+/// What the markers of a recording are like, learned most from those that are plainly discs: markers of one recording are of one
+/// kind. Nothing is known, and nothing unlike, before the first of them.
+class MarkerLikeness {
+ public:
+  /// `widest`: px, of what the user says of markers; 0 where that is nothing.
+  explicit MarkerLikeness(double widest) : said_radius_(widest / 2) {}
+
+  /// What one blob says.
+  struct Witness {
+    double radius = 0;           ///< px
+    std::optional<double> blur;  ///< px
+    double say = 0;              ///< how much it counts
+  };
+
+  /// Takes in what is seen in a frame.
+  void learn(std::span<const Witness> seen);
+
+  std::optional<double> blur() const { return blur_; }  ///< px
+  std::optional<double> widest() const;                 ///< px, so that twice the radius and the blurred edge are within
+
+  /// No marker, whether alone, drawn out by its motion or with others that touch it, covers so many px².
+  bool too_large(double area) const;
+  /// A marker that is no disc (half hidden, shaded, of a shape that nothing explains) covers no more than this many px².
+  bool odd(double area) const;
+  /// A disc of this radius, or a streak so wide, may be one of them.
+  bool fits(double radius) const;
+  /// Light that falls off slowly round a core of this radius is a lamp's, not a marker's out of focus.
+  bool lamp(double radius) const { return radius_ && radius > kLampRadius * *radius_; }
+  /// Its edge is as sharp as theirs, or nearly.
+  bool sharp(double blur) const;
+
+ private:
+  static constexpr double kLampRadius = 1.5;  // times a marker's
+
+  double area(double markers) const;
+
+  double said_radius_;
+  std::optional<double> radius_, blur_;
+  std::vector<Weighted> radii_, blurs_;
+};
+
+}  // namespace marey::detect::markers
