@@ -34,6 +34,7 @@ struct FollowedTarget {
   MotionFilter motion;
   double height;                     ///< px
   double usual_area;                 ///< px²
+  double tracked_height;             ///< px; of the tracker's box while `usual_area` was seen
   geometry::ClosedSpline predicted;  ///< of this frame, before anything was seen of it
   BodyModel body = {};               ///
   int learned = 0;                   ///< frames that `body` was learned from

@@ -98,7 +98,8 @@ class OutlineFollower::Implementation {
       FollowedTarget* target = target_of(track.id);
       if (target == nullptr && seen != nullptr) begin(track.id, *seen);
       // Where another's box meets its own, a silhouette may hold pixels of both.
-      const bool alone = target == nullptr || target->learned == 0 || !meets_another(track);
+      const bool alone =
+          target == nullptr || target->learned == 0 || !track.box || !has_colours() || !meets_another(track.id, *track.box);
       if (target != nullptr && seen != nullptr && alone && take_silhouette(*target, *seen, track)) continue;
       if (track.box && has_colours()) shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
     }
@@ -134,11 +135,9 @@ class OutlineFollower::Implementation {
     return &detections[static_cast<std::size_t>(*track.observation)];
   }
 
-  bool meets_another(const Track<2>& track) const {
-    if (!track.box || !has_colours()) return false;
+  bool meets_another(TrackId id, const Box& box) const {
     return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track<2>& other) {
-      return other.id != track.id && other.box &&
-             geometry::intersection(*track.box, *other.box).area() > kMeets * track.box->area();
+      return other.id != id && other.box && geometry::intersection(box, *other.box).area() > kMeets * box.area();
     });
   }
 
@@ -338,6 +337,7 @@ class OutlineFollower::Implementation {
     target.knotted = false;
     target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
     target.usual_area += kShareMemory * (spline->area() - target.usual_area);
+    if (track.box) target.tracked_height += kShareMemory * (track.box->height - target.tracked_height);
     learn(target, centre, track);
     return true;
   }
@@ -358,7 +358,8 @@ class OutlineFollower::Implementation {
   /// Targets that nobody saw alone, region by region: those whose boxes meet, and those that the detector says share theirs.
   void divide_shared() {
     for (const Shared& one : shared_) {
-      if (one.in_group && target_of(one.id) == nullptr && one.box.height >= options_.least_height) begin_shared(one);
+      if (target_of(one.id) != nullptr || one.box.height < options_.least_height) continue;
+      if (one.in_group || (one.observed && meets_another(one.id, one.box))) begin_shared(one);
     }
     std::erase_if(shared_, [&](const Shared& one) { return target_of(one.id) == nullptr; });
     std::vector<bool> done(shared_.size(), false);
@@ -443,6 +444,7 @@ class OutlineFollower::Implementation {
                         .motion = motion,
                         .height = height,
                         .usual_area = area,
+                        .tracked_height = height,
                         .predicted = std::move(predicted)});
     FollowedTarget& target = targets_.back();
     target.box = target.shape.spline().box();

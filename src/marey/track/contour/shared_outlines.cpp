@@ -13,19 +13,30 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kMargin = 0.15;                            // heights about all members
-constexpr double kLeastVisible = 0.18;                      // share of a body, below which its shape is held
-constexpr double kWhollyVisible = 0.92;                     // from which on it is seen as if alone
-constexpr double kLeastOfUsual = 0.55, kMostOfUsual = 1.6;  // area of an outline, of the usual, that is believed
+constexpr double kMargin = 0.15;                         // heights about all members
+constexpr double kLeastVisible = 0.18;                   // share of a body, below which its shape is held
+constexpr double kWhollyVisible = 0.92;                  // from which on it is seen as if alone
+constexpr double kLeastOfUsual = 0.4, kMostOfUsual = 2;  // area of an outline, of the usual, that is believed
 constexpr double kFar = 0.5;                       // heights between tracker and motion filter, from which on the tracker is right
 constexpr double kUsual = 0.35, kUsualHeld = 0.6;  // weight of the usual coverage: as a rule; where the shape is old or unknown
 constexpr float kUnlikeGround = 22;                // levels from the ground, of a body whose colours are not known yet
 constexpr double kLearnInRegion = 0.15;            // what a frame counts in a body that was never seen alone
 constexpr double kFine = 80;                       // px of height, up to which cells are pixels
 constexpr int kLongHeld = 5;                       // frames
+constexpr int kFewFrames = 6;                      // alone, up to which the silhouettes may have held pixels of others
 
 Box grown(const Box& box, double by) {
   return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
+}
+
+bool hardly_known(const FollowedTarget& target) {
+  return target.learned < kFewFrames;
+}
+
+/// Its usual area, as large as the tracker has it now.
+double expected_area(const FollowedTarget& target, const Box& box) {
+  const double growth = target.tracked_height > 0 ? box.height / target.tracked_height : 1;
+  return target.usual_area * growth * growth;
 }
 
 ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, std::span<const SharedTarget> targets) {
@@ -57,7 +68,7 @@ RegionMember member_of(const SharedTarget& shared) {
   } else {
     member.shifts = {none, tracked};
   }
-  member.usual = old || target.learned == 0 ? kUsualHeld : kUsual;
+  member.usual = old || hardly_known(target) ? kUsualHeld : kUsual;
   return member;
 }
 
@@ -101,7 +112,7 @@ void note_hidden(const ColourPatch& patch, std::span<const RegionMember> members
   }
 }
 
-void take_part(FollowedTarget& target, const RegionMember& member, const ColourPatch& patch) {
+void take_part(FollowedTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch) {
   const Vector<2> doubt = target.height * Vector<2>(kGaitAcross, kGaitDown);
   hold(target, member.shift);
   target.measured.reset();
@@ -109,8 +120,8 @@ void take_part(FollowedTarget& target, const RegionMember& member, const ColourP
   const int count = target.predicted.count();
   const auto curve = half_level_curve(member.whole, patch);
   const auto spline = fit_curve(curve, {.order = target.predicted.order(), .least = count, .most = count});
-  const double part = spline ? spline->area() / target.usual_area : 0;
-  const double doubt_of_area = target.learned == 0 ? 0.6 : 1;  // its usual area is a guess then
+  const double part = spline ? spline->area() / expected_area(target, box) : 0;
+  const double doubt_of_area = hardly_known(target) ? 0.6 : 1;  // its usual area is a guess then
   const double hidden_factor = 1 + (kHiddenCentre - 1) * std::min(1.0, 2 * (1 - member.visible));
   if (!spline || spline->count() != count || part < kLeastOfUsual * doubt_of_area || part > kMostOfUsual / doubt_of_area) {
     // No outline comes of it, but a place does.
@@ -141,11 +152,12 @@ void outline_shared_region(const Picture& picture, const cv::Mat& mask, std::spa
   for (std::size_t k = 0; k < members.size(); ++k) {
     FollowedTarget& target = *targets[k].target;
     target.lines.clear();
-    take_part(target, members[k], patch);
-    if (target.learned == 0 && target.state != Outline::State::held && members[k].visible > 0.5) {
+    take_part(target, targets[k].box, members[k], patch);
+    if (hardly_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
       const Vector<2> centre = members[k].centre + members[k].shift;
       target.body.learn_colours(patch, members[k].seen, centre, target.height, kLearnInRegion);
       target.usual_area += kLearnInRegion * (target.shape.spline().area() - target.usual_area);
+      target.tracked_height += kLearnInRegion * (targets[k].box.height - target.tracked_height);
     }
     note_hidden(patch, members, members[k], targets);
   }
