@@ -11,8 +11,14 @@
 namespace marey::detect {
 namespace {
 
-constexpr double first_row = 0.2, last_row = 0.5;          // of the box, from the top
-constexpr double first_column = 0.25, last_column = 0.75;  // and from the left
+/// Rows of the box, shares of its height from the top.
+struct Rows {
+  double first = 0, last = 1;
+};
+
+constexpr Rows kChest{0.2, 0.5};
+constexpr Rows kThighs{0.52, 0.8};
+constexpr double first_column = 0.25, last_column = 0.75;  // of the box, from the left
 constexpr int most_samples = 100;
 constexpr int fewest_samples = 6;
 constexpr float alike = 3;                 // neighbouring samples share light, cloth and compression: so many count as one
@@ -26,13 +32,13 @@ struct Grid {
   int step = 1;
 };
 
-Grid grid_of(const Box& box, cv::Size chroma) {
+Grid grid_of(const Box& box, const Rows& rows, cv::Size chroma) {
   Grid grid;
   const auto cell = [](double pixel) { return static_cast<int>(std::floor(pixel / 2)); };
   grid.left = std::max(0, cell(box.left + first_column * box.width));
   grid.right = std::min(chroma.width, cell(box.left + last_column * box.width) + 1);
-  grid.top = std::max(0, cell(box.top + first_row * box.height));
-  grid.bottom = std::min(chroma.height, cell(box.top + last_row * box.height) + 1);
+  grid.top = std::max(0, cell(box.top + rows.first * box.height));
+  grid.bottom = std::min(chroma.height, cell(box.top + rows.last * box.height) + 1);
   const double cells = static_cast<double>(std::max(0, grid.right - grid.left)) * std::max(0, grid.bottom - grid.top);
   grid.step = std::max(1, static_cast<int>(std::ceil(std::sqrt(cells / most_samples))));
   return grid;
@@ -86,42 +92,68 @@ bool is_within(const std::vector<Box>& boxes, double x, double y) {
                      [&](const Box& box) { return x >= box.left && x < box.right() && y >= box.top && y < box.bottom(); });
 }
 
+/// The colours, in L*a*b*, of the person's pixels in these rows of the box.
+class Samples {
+ public:
+  void take(const Picture& picture, const cv::Mat& mask, const Grid& grid, const std::vector<Box>& nearer) {
+    for (int row = grid.top; row < grid.bottom; row += grid.step) {
+      for (int column = grid.left; column < grid.right && n_ < 2 * most_samples; column += grid.step) {
+        if (is_within(nearer, 2 * column + 0.5, 2 * row + 0.5)) continue;
+        const Quad quad = quad_at(picture.luma(), mask, column, row);
+        if (!quad.seen) continue;
+        const std::array<float, 3> lab = lab_of(quad.luma, picture.cb().at<std::uint8_t>(row, column),
+                                                picture.cr().at<std::uint8_t>(row, column), picture.range());
+        for (int i = 0; i < 3; ++i) values_[i][n_] = lab[i];
+        ++n_;
+      }
+    }
+  }
+
+  /// Of all samples together. Uses them up.
+  std::optional<Appearance> middle(bool shared) {
+    if (n_ < fewest_samples) return std::nullopt;
+    std::array<float, 3> colour{};
+    float variance = 0;
+    for (int i = 0; i < 3; ++i) {
+      colour[i] = median(values_[i], n_);
+      for (int k = 0; k < n_; ++k) values_[i][k] = std::abs(values_[i][k] - colour[i]);
+      const float spread = half_of_normal * median(values_[i], n_);
+      variance += spread * spread / 3;
+    }
+    const float independent = std::max(1.0F, static_cast<float>(n_) / alike);
+    return Appearance{.lightness = colour[0],
+                      .a = colour[1],
+                      .b = colour[2],
+                      .deviation = std::sqrt(variance / independent + coded_to * coded_to) + (shared ? shared_doubt : 0)};
+  }
+
+ private:
+  std::array<std::array<float, 2 * most_samples>, 3> values_{};
+  int n_ = 0;
+};
+
+std::optional<Appearance> colour_in(const Rows& rows, const Picture& picture, const Foreground& foreground,
+                                    std::span<const Detection> detections, std::size_t which) {
+  const Detection& detection = detections[which];
+  if (!picture.is_colour() || foreground.mask.empty() || detection.box.top < 1) return std::nullopt;
+  Samples samples;
+  samples.take(picture, foreground.covered.empty() ? foreground.mask : foreground.covered,
+               grid_of(detection.box, rows, picture.cb().size()), boxes_before(detections, detection));
+  return samples.middle(detection.group.has_value());
+}
+
 }  // namespace
 
 std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which) {
-  const Detection& detection = detections[which];
-  if (!picture.is_colour() || foreground.mask.empty() || detection.box.top < 1) return std::nullopt;
-  const std::vector<Box> nearer = boxes_before(detections, detection);
-  const cv::Mat& mask = foreground.covered.empty() ? foreground.mask : foreground.covered;
-  const Grid grid = grid_of(detection.box, picture.cb().size());
-  std::array<std::array<float, 2 * most_samples>, 3> values{};
-  int n = 0;
-  for (int row = grid.top; row < grid.bottom; row += grid.step) {
-    for (int column = grid.left; column < grid.right && n < 2 * most_samples; column += grid.step) {
-      if (is_within(nearer, 2 * column + 0.5, 2 * row + 0.5)) continue;
-      const Quad quad = quad_at(picture.luma(), mask, column, row);
-      if (!quad.seen) continue;
-      const std::array<float, 3> lab = lab_of(quad.luma, picture.cb().at<std::uint8_t>(row, column),
-                                              picture.cr().at<std::uint8_t>(row, column), picture.range());
-      for (int i = 0; i < 3; ++i) values[i][n] = lab[i];
-      ++n;
-    }
-  }
-  if (n < fewest_samples) return std::nullopt;
-  std::array<float, 3> colour{};
-  float variance = 0;
-  for (int i = 0; i < 3; ++i) {
-    colour[i] = median(values[i], n);
-    for (int k = 0; k < n; ++k) values[i][k] = std::abs(values[i][k] - colour[i]);
-    const float spread = half_of_normal * median(values[i], n);
-    variance += spread * spread / 3;
-  }
-  const float independent = std::max(1.0F, static_cast<float>(n) / alike);
-  return Appearance{.lightness = colour[0],
-                    .a = colour[1],
-                    .b = colour[2],
-                    .deviation = std::sqrt(variance / independent + coded_to * coded_to) + (detection.group ? shared_doubt : 0)};
+  return colour_in(kChest, picture, foreground, detections, which);
+}
+
+std::optional<Appearance> lower_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                     std::size_t which) {
+  const cv::Mat& mask = foreground.mask;
+  if (!mask.empty() && detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
+  return colour_in(kThighs, picture, foreground, detections, which);
 }
 
 }  // namespace marey::detect

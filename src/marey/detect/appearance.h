@@ -1,4 +1,4 @@
-// A person's appearance: the colour of the shirt.
+// A person's appearance: the colour of the shirt, and of what the legs wear.
 //
 // Of the person's box the rows between a fifth and a half of the way down are looked at: chest and belly, between the head and the
 // shorts. Of those the pixels in the middle, and of those the ones that the background model says are not the scene. The median of
@@ -22,6 +22,11 @@ namespace marey::detect {
 /// a person who stands nearer is left out, and the rest is believed less. Nothing where the picture is grey, no foreground is
 /// given, the head is outside the picture, or too few pixels are seen.
 std::optional<Appearance> upper_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                     std::size_t which);
+
+/// The same of the legs, from below the hips to the knees: trousers, skirt or shorts. Nothing where the feet are outside the
+/// picture.
+std::optional<Appearance> lower_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 
 }  // namespace marey::detect

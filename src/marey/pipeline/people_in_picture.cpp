@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
+#include "marey/detect/appearance.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
@@ -34,6 +35,17 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
                       .shared = detection.group.has_value()});
   }
   return result;
+}
+
+/// What each of those seen wears, as far as pictures tell.
+std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detections& seen) {
+  std::vector<track::Clothes> clothes;
+  if (!frame.picture.is_colour() || seen.foreground.mask.empty()) return clothes;
+  for (std::size_t i = 0; i < seen.detections.size(); ++i) {
+    clothes.push_back({detect::upper_body(frame.picture, seen.foreground, seen.detections, i),
+                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i)});
+  }
+  return clothes;
 }
 
 /// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
@@ -120,8 +132,12 @@ class PeopleInPicture final : public Stage {
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += std::ssize(seen.detections);
     if (live_) return told(given.frame, tracks);
+    if (!given.frame.picture.empty()) {
+      const cv::Size size = given.frame.picture.size();
+      options_.join.view = Box{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+    }
     const auto number = std::ssize(moments_);
-    recording_.add(number, given.frame.time, tracks);
+    recording_.add(number, given.frame.time, tracks, clothes_of(given.frame, seen));
     moments_.push_back({given.frame.index, given.frame.time});
     if (outlines_) outlines_->add(number, tracks);
     return {};

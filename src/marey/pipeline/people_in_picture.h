@@ -29,7 +29,7 @@ struct PeopleInPictureOptions {
 };
 
 /// Detections are the feed's where it brings some (another program's, or those of a detector it was given), else of background
-/// subtraction, which learns the empty scene from the feed first unless `live`. Memory grows with the rows, 64 bytes each, and with
+/// subtraction, which learns the empty scene from the feed first unless `live`. Memory grows with the rows, 72 bytes each, and with
 /// nothing else; not even with those where `live`. Throws Error where outlines are asked for of a feed without pictures.
 std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options);
 

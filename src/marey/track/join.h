@@ -1,14 +1,16 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/track/tracklet_log.h"
 
 namespace marey::track {
 
 /// Lengths in body heights where targets have boxes, else in px.
 struct JoinOptions {
-  double longest_gap = 4;       ///< s; who reappears later is somebody new
+  double longest_gap = 6;       ///< s; who reappears later is somebody new
   double longest_filled = 2.5;  ///< s; a longer gap is joined, but nothing is said of where the target was meanwhile
   double place_noise = 0.12;    ///< standard deviation of an end of a tracklet
   double speed_noise = 0.35;    ///< by how much the mean speed in a gap differs from that at its ends, 1/s
@@ -17,6 +19,8 @@ struct JoinOptions {
   int fewest = 3;               ///< observations; likewise
   double rarest = 0.35;         ///< share of its frames; what is seen in fewer likewise
   double weaker = 0.15;         ///< what scores this much below the usual must last longer and be seen more often
+  /// The picture, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
+  std::optional<Box> view = {};
   double smoothing = 0.12;      ///< s; standard deviation of the kernel that smooths places
   double size_smoothing = 0.4;  ///< s; the same for sizes
 };

@@ -33,7 +33,7 @@ TrackRow row_of(std::int32_t frame, const Track<2>& track) {
 
 }  // namespace
 
-void TrackletLog::add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks) {
+void TrackletLog::add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const Clothes> clothes) {
   const auto index = static_cast<std::int32_t>(frame);
   if (times_.empty()) first_frame_ = index;
   assert(index == first_frame_ + static_cast<std::int32_t>(times_.size()) && "frames are added in order, each once");
@@ -46,6 +46,8 @@ void TrackletLog::add(std::int64_t frame, Timestamp time, std::span<const Track<
     const bool known = open != open_.end() && open->rows.back().id == number(track.id);
     still_open.push_back(known ? std::move(*open++) : Open{});
     still_open.back().rows.push_back(row_of(index, track));
+    if (track.observation && static_cast<std::size_t>(*track.observation) < clothes.size())
+      still_open.back().rows.back().clothes = PackedClothes(clothes[*track.observation]);
     still_open.back().confirmed |= track.confirmed;
   }
   for (; open != open_.end(); ++open) close(*open);

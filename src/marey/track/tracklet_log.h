@@ -6,10 +6,11 @@
 
 #include "marey/core/time.h"
 #include "marey/core/track.h"
+#include "marey/track/clothes.h"
 
 namespace marey::track {
 
-/// One target in one frame, as small as a match of 90 minutes needs it: 64 bytes. px and px/s.
+/// One target in one frame, as small as a match of 90 minutes needs it: 72 bytes. px and px/s.
 struct TrackRow {
   std::int32_t frame = 0;  ///< 0-based
   std::int32_t id = 0;
@@ -20,6 +21,8 @@ struct TrackRow {
   float centre_x = 0, centre_y = 0;                ///< of the outline, where `has_centre`
   float score = 1;
   Track<2>::State state = Track<2>::State::observed;
+  PackedClothes clothes;    ///< of what was seen of it
+  bool doubtful = false;    ///< others were so near that it may be one of them: set by the second pass (identity_doubt.h)
   bool has_centre = false;  ///< an outline was found; after smoothing, also where one was found shortly before and after
 
   bool observed() const { return state == Track<2>::State::observed; }
@@ -32,8 +35,9 @@ class TrackletLog {
   /// One target's rows in the order of frames, without gaps: frames in which it was not seen are predicted.
   using Tracklet = std::vector<TrackRow>;
 
-  /// The tracks of one frame, as Tracker<2>::step gave them. Frames come in order, each once.
-  void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks);
+  /// The tracks of one frame, as Tracker<2>::step gave them. Frames come in order, each once. `clothes` are those of the frame's
+  /// observations, by their index; empty where they are not known.
+  void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const Clothes> clothes = {});
 
   /// Time of frames: the one at `frame`, which was added.
   Timestamp time_of(std::int32_t frame) const;

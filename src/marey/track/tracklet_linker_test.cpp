@@ -1,0 +1,117 @@
+#include "marey/track/tracklet_linker.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace marey::track {
+namespace {
+
+constexpr double kRate = 10;  // Hz
+
+struct Shown {
+  int id = 0;
+  double x = 0, y = 200;
+  int wears = 0;  // 0 nothing that is seen
+};
+
+Clothes worn(int which) {
+  if (which == 0) return {};
+  const Appearance colour{
+      .lightness = 20.0F + 20.0F * static_cast<float>(which), .a = which % 2 == 0 ? 20.0F : -20.0F, .b = 0, .deviation = 3};
+  return {colour, colour};
+}
+
+template <typename ShownAt>
+TrackletLog record(int frames, ShownAt&& shown_at) {
+  TrackletLog log;
+  for (int k = 0; k < frames; ++k) {
+    std::vector<Track<2>> tracks;
+    std::vector<Clothes> clothes;
+    for (const Shown& one : shown_at(k)) {
+      Track<2> track;
+      track.id = TrackId{one.id};
+      track.position = {one.x, one.y};
+      track.box = Box::from_centre(track.position, 32, 80);
+      track.score = 0.9;
+      track.observation = static_cast<int>(clothes.size());
+      clothes.push_back(worn(one.wears));
+      tracks.push_back(track);
+    }
+    log.add(k, timestamp_from_seconds(k / kRate), tracks, clothes);
+  }
+  return log;
+}
+
+/// The number that a row near x bears in a frame; 0 where there is none.
+int number_at(const std::vector<TrackRow>& rows, int frame, double x) {
+  for (const TrackRow& row : rows) {
+    if (row.frame == frame && std::abs(row.x - x) < 20) return row.id;
+  }
+  return 0;
+}
+
+/// Two meet in mid picture, stop, and each goes back to where it came from; the tracker takes them for two who passed.
+std::vector<Shown> turned_back(int k, int left_wears, int right_wears) {
+  const double way = k < 30 ? 5.0 * k : k < 36 ? 150 : 150 - 5.0 * (k - 36);
+  const bool exchanged = k >= 33;
+  const Shown left{exchanged ? 2 : 1, 150 + way, 200, left_wears}, right{exchanged ? 1 : 2, 460 - way, 203, right_wears};
+  return exchanged ? std::vector{right, left} : std::vector{left, right};
+}
+
+TEST(Linker, WhoTurnBackWhereTheyMeetAreToldByTheirClothes) {
+  TrackletLog log = record(70, [](int k) { return turned_back(k, 1, 2); });
+  const auto rows = join(log);
+  EXPECT_EQ(number_at(rows, 5, 175), number_at(rows, 65, 155)) << "the left one came back";
+  EXPECT_EQ(number_at(rows, 5, 435), number_at(rows, 65, 455)) << "and the right one";
+  EXPECT_NE(number_at(rows, 5, 175), number_at(rows, 5, 435));
+}
+
+TEST(Linker, WhoPassEachOtherKeepTheirNumbers) {
+  for (const bool dressed : {false, true}) {
+    TrackletLog log = record(70, [&](int k) {
+      return std::vector<Shown>{{1, 100 + 5.0 * k, 200, dressed ? 1 : 0}, {2, 460 - 5.0 * k, 203, dressed ? 2 : 0}};
+    });
+    const auto rows = join(log);
+    EXPECT_EQ(number_at(rows, 5, 125), number_at(rows, 65, 425)) << dressed;
+    EXPECT_EQ(number_at(rows, 5, 435), number_at(rows, 65, 135)) << dressed;
+  }
+}
+
+TEST(Linker, WhoLeavesIsNotWhoComesInThere) {
+  TrackletLog log = record(90, [](int k) {
+    std::vector<Shown> shown;
+    if (k < 30) shown.push_back({1, 460 + 5.0 * k, 200, 0});
+    if (k >= 55) shown.push_back({2, 607 - 5.0 * (k - 55), 200, 0});
+    return shown;
+  });
+  TrackletLog again = log;
+  std::set<int> with_view, without;
+  for (const TrackRow& row : join(log, {.view = Box{0, 0, 625, 480}})) with_view.insert(row.id);
+  for (const TrackRow& row : join(again)) without.insert(row.id);
+  EXPECT_EQ(with_view.size(), 2U);
+  EXPECT_EQ(without.size(), 1U) << "the scene must tempt: in mid picture it would be one";
+}
+
+TEST(IdentityDoubt, CutsWhereBoxesOverlapAndNamesTheMeeting) {
+  TrackletLog log = record(
+      70, [](int k) { return std::vector<Shown>{{1, 100 + 5.0 * k, 200, 0}, {2, 460 - 5.0 * k, 203, 0}, {3, 300, 500, 0}}; });
+  const auto pieces = cut_where_in_doubt(log.take_tracklets(), log);
+  ASSERT_EQ(pieces.size(), 5U);
+  for (const int first : {0, 2}) {
+    EXPECT_FALSE(pieces[first].head_meeting);
+    ASSERT_TRUE(pieces[first].tail_meeting);
+    EXPECT_EQ(pieces[first].tail_meeting, pieces[first + 1].head_meeting);
+    EXPECT_EQ(pieces[first].tail_meeting, pieces[0].tail_meeting) << "one meeting";
+    EXPECT_TRUE(pieces[first].rows.back().doubtful);
+    EXPECT_FALSE(pieces[first].rows.front().doubtful);
+    EXPECT_EQ(pieces[first].rows.size() + pieces[first + 1].rows.size(), 70U) << "no row is lost";
+  }
+  EXPECT_EQ(pieces[4].rows.size(), 70U) << "nobody came near the third";
+}
+
+}  // namespace
+}  // namespace marey::track
