@@ -13,6 +13,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
+#include "pitch_elements.h"
 #include "pitch_size.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
@@ -24,11 +25,21 @@ struct CalibratePitch {
   RigAndSources inputs;
   std::string out, pictures;
   std::vector<std::string> points;
+  PitchElements elements;
   std::string size = "105x68";
   bool synced = false;
   bool json = false;
   bool quiet = false;
 };
+
+void run_elements(const CalibratePitch& command) {
+  if (!command.inputs.rig.empty()) throw WrongUsage("--elements makes a rig: leave out {}", command.inputs.rig);
+  if (command.out.empty() && command.elements.cameras.empty())
+    throw WrongUsage("--elements: -o FILE.toml, --cameras FOLDER or both are needed");
+  PitchElements elements = command.elements;
+  elements.out = command.out, elements.size = command.size, elements.json = command.json, elements.quiet = command.quiet;
+  run_pitch_elements(elements);
+}
 
 std::map<std::string, std::string> parse_points(const std::vector<std::string>& pairs) {
   std::map<std::string, std::string> result;
@@ -116,6 +127,9 @@ void print_report(const pipeline::PitchRun& run) {
 }
 
 void run(const CalibratePitch& command) {
+  if (!command.elements.files.empty()) return run_elements(command);
+  if (command.inputs.rig.empty() || command.points.empty() || command.out.empty())
+    throw WrongUsage("a rig file, --points and -o are needed, or --elements alone");
   const Rig rig = rig_of(command.inputs);
   pipeline::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
@@ -141,11 +155,18 @@ void add_calibrate_pitch(Command& calibrate) {
   auto options = std::make_shared<CalibratePitch>();
   Command command =
       calibrate.subcommand("pitch", "Lenses and places of cameras over a football pitch, from clicks and its white lines");
-  Option rig = add_rig(command, options->inputs, "rig file: the cameras' names and sources").required();
-  command.input_files("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera")
-      .required();
+  Option rig = add_rig(command, options->inputs, "rig file: the cameras' names and sources");
+  Option points =
+      command.input_files("--points", options->points, "CAMERA=FILE: clicked points, CSV (x,y,u,v) or CVAT XML; once a camera");
+  command
+      .input_files("--elements", options->elements.files,
+                   "labelled elements of the pitch, JSON as SoccerNet's calibration names them; in place of a rig and clicks")
+      .excludes(points);
+  command.text("--resolution", options->elements.resolution, "of the labelled pictures, WIDTHxHEIGHT in px")
+      .check(check_resolution);
+  command.output_folder("--cameras", options->elements.cameras, "folder for SoccerNet's camera_NAME.json of each labelled picture");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
-  command.output_file("-o,--output", options->out, "rig file to write").required().ends_in({".toml"}).may_replace(rig);
+  command.output_file("-o,--output", options->out, "rig file to write").ends_in({".toml"}).may_replace(rig);
   command.output_folder("--pictures", options->pictures,
                         "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
   command.flag(

@@ -38,6 +38,7 @@
   row(format::rig, tsai) \
   row(format::bodies, bodies) \
   row(format::bodies, label_set) \
+  row(format::rig, soccernet_camera) \
   row(format::rig, marey) \
   row(format::rig, aniposelib) \
   row(format::rig, self_cal) \

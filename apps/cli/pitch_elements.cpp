@@ -1,0 +1,116 @@
+#include "pitch_elements.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/core.h>
+
+#include "marey/core/whole_file.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/rig/soccernet_camera.h"
+#include "marey/pipeline/calibrate_elements.h"
+
+#include "command_line.h"
+#include "json_value.h"
+#include "pitch_size.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+using calibrate::pitch::ElementView;
+
+cv::Size parse_resolution(const std::string& text) {
+  int width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 || width > 32768 ||
+      height > 32768)
+    throw WrongUsage("--resolution {}: it must read WIDTHxHEIGHT in px, 960x540, each from 16 to 32768", text);
+  return {width, height};
+}
+
+Json element_picture_json(const pipeline::ElementPicture& picture) {
+  Json entry = {{"name", picture.name},
+                {"verdict", calibrate::pitch::element_verdict_name(picture.found.verdict)},
+                {"elements", picture.labels.size()}};
+  if (!picture.found.camera) return entry;
+  const auto& p = picture.found.view.p;
+  const Vector<3>& place = picture.found.camera->centre();
+  entry["place"] = {place.x(), place.y(), place.z()};
+  entry["pan_degrees"] = p[ElementView::pan] * kDegrees;
+  entry["tilt_degrees"] = p[ElementView::tilt] * kDegrees;
+  entry["roll_degrees"] = p[ElementView::roll] * kDegrees;
+  entry["focal_px"] = geometry::focal_of(picture.found.camera->lens()).x();
+  entry["jaccard_5"] = picture.score.jaccard();
+  const auto elements = geometry::pitch_elements({});
+  for (std::size_t i = 0; i < picture.labels.size(); ++i) {
+    entry["labels"].push_back({{"name", elements[static_cast<std::size_t>(picture.labels[i].element)].name},
+                               {"error_px", picture.found.error_px[i]},
+                               {"used", picture.found.used[i] != 0}});
+  }
+  return entry;
+}
+
+Json elements_json(const pipeline::ElementRun& run) {
+  Json pictures = Json::array();
+  for (const pipeline::ElementPicture& picture : run.pictures) pictures.push_back(element_picture_json(picture));
+  return {{"pictures", pictures},
+          {"found", run.rig.cameras.size()},
+          {"complete", static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.pictures.size())},
+          {"jaccard_5", run.jaccard},
+          {"warnings", run.warnings}};
+}
+
+void print_elements(const pipeline::ElementRun& run) {
+  if (run.pictures.size() == 1) {
+    const pipeline::ElementPicture& picture = run.pictures[0];
+    const auto& p = picture.found.view.p;
+    const Vector<3>& place = picture.found.camera->centre();
+    fmt::print(
+        "{}: the camera stands at ({:.1f}, {:.1f}), {:.1f} m up; pan {:.2f}, tilt {:.2f}, roll {:.2f} degrees, focal length {:.0f} "
+        "px\n",
+        picture.name, place.x(), place.y(), place.z(), p[ElementView::pan] * kDegrees, p[ElementView::tilt] * kDegrees,
+        p[ElementView::roll] * kDegrees, geometry::focal_of(picture.found.camera->lens()).x());
+  }
+  fmt::print("{} of {} pictures have a camera ({:.1f} %); JaC@5 against their labels {:.1f} %\n", run.rig.cameras.size(),
+             run.pictures.size(), 100.0 * static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.pictures.size()),
+             100 * run.jaccard);
+}
+
+void write_cameras(const pipeline::ElementRun& run, const std::string& folder, const geometry::PitchSize& size) {
+  std::filesystem::create_directories(folder);
+  for (const pipeline::ElementPicture& picture : run.pictures) {
+    if (!picture.found.camera) continue;
+    WholeFile file((std::filesystem::path(folder) / fmt::format("camera_{}.json", picture.name)).string());
+    file.write(format::rig::soccernet_camera_text(*picture.found.camera, size));
+    file.finish();
+  }
+}
+
+}  // namespace
+
+void check_resolution(const std::string& text) {
+  parse_resolution(text);
+}
+
+void run_pitch_elements(const PitchElements& command) {
+  pipeline::ElementRunOptions options;
+  options.size = parse_resolution(command.resolution);
+  options.camera.pitch = parse_pitch_size(command.size);
+  const pipeline::ElementRun run =
+      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_elements(command.files, options, hooks); });
+  if (!command.out.empty()) format::rig::write_rig(run.rig, command.out);
+  if (!command.cameras.empty()) write_cameras(run, command.cameras, options.camera.pitch);
+  warn(run.warnings);
+  if (command.json) {
+    print(elements_json(run));
+  } else if (!command.quiet) {
+    print_elements(run);
+    if (!command.out.empty()) fmt::print("rig: {}\n", command.out);
+    if (!command.cameras.empty()) fmt::print("cameras: {}\n", command.cameras);
+  }
+}
+
+}  // namespace marey::cli
