@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/pipeline/simulation_files.h"
 #include "marey/pipeline/stopwatch.h"
+#include "marey/reconstruct/camera_watch.h"
 #include "marey/reconstruct/learned_noise.h"
 #include "marey/reconstruct/own_time.h"
 #include "marey/reconstruct/set_labels.h"
@@ -21,7 +24,18 @@ namespace {
 
 constexpr double kSurePrediction = 0.06;  // m; who is expected no better claims no blobs
 constexpr double kVaguest = 1;            // px; a blob whose centre is known no better would widen every gate
+constexpr double kNamesSure = 5;          // s after which names are no more put right in a file; sweep: docs/tuning.md
 constexpr double kInStep = 0.02;          // of a frame: what moves no marker by more than noise
+
+/// What the cameras saw at a moment whose names are not sure yet.
+struct Undecided {
+  struct Point {
+    Sample sample;          // without its track
+    std::vector<int> seen;  // indices of the blobs behind it
+  };
+  Instant instant;  // without samples
+  std::vector<Point> points;
+};
 
 /// What still waited for the end of gaps when the cameras had ended.
 class Waiting final : public InstantSource {
@@ -34,6 +48,8 @@ class Waiting final : public InstantSource {
 };
 
 class MarkersInSpace final : public Stage {
+  using Decision = track::Decision<3>;
+
  public:
   MarkersInSpace(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options)
       : options_(options),
@@ -49,6 +65,7 @@ class MarkersInSpace final : public Stage {
     choose_cameras(rig);
     track::RosterTrackerOptions tracker = options.tracker;
     if (!options.set.has_places()) tracker.labels = options.set.labels;
+    tracker.decide_after = options.live ? 0 : kNamesSure;
     tracker_ = track::make_roster_tracker<3>(tracker);
   }
 
@@ -56,9 +73,10 @@ class MarkersInSpace final : public Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const Stopwatch chain;
+    follow_moved();
     expect(frames.time);
     see(frames);
-    const reconstruct::Correspondences& found = correspond();
+    const reconstruct::Correspondences& found = correspond(frames.time);
     corresponding_.add(chain.seconds());
     const Stopwatch tracking;
     points_.clear();
@@ -68,7 +86,16 @@ class MarkersInSpace final : public Stage {
     const auto tracks = tracker_->step(frames.time, points_);
     labels_.give(tracks);
     tracking_.add(tracking.seconds());
-    tell(instant_of(frames, found, tracks), tracks);
+    undecided_.push_back(undecided_of(frames, found));
+    known_.clear();
+    if (options_.live) {
+      Instant instant = decided_instant(tracks);
+      predict(instant, tracks);
+      known_.push_back(std::move(instant));
+    } else {
+      fill(tracker_->decided());
+      while (auto waited = filler_.next()) known_.push_back(std::move(*waited));
+    }
     ++frames_;
     chain_.add(chain.seconds());
     return known_;
@@ -76,6 +103,7 @@ class MarkersInSpace final : public Stage {
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
+    fill(tracker_->decide_all());
     return std::make_unique<Waiting>(filler_);
   }
 
@@ -119,10 +147,35 @@ class MarkersInSpace final : public Stage {
         warnings_.push_back(fmt::format("camera \"{}\" has no calibration and is left out", rig.cameras[i].name));
       }
     }
+    watch_.emplace(cameras, ids);
+    ids_ = ids;
+    const auto correspond = correspond_options(ids.size());
+    corresponder_.emplace(std::move(cameras), correspond, std::move(ids));
+  }
+
+  reconstruct::CorrespondOptions correspond_options(std::size_t cameras) const {
     reconstruct::CorrespondOptions correspond = options_.correspond;
     correspond.noise_px = noise_.px();
-    if (cameras.size() == 2) correspond.fewest_rays = 2;
-    corresponder_.emplace(std::move(cameras), correspond, std::move(ids));
+    if (cameras == 2) correspond.fewest_rays = 2;
+    return correspond;
+  }
+
+  /// From this moment on a camera's rays start from where it was found to stand now.
+  void follow_moved() {
+    if (!moved_) return;
+    moved_.reset();
+    corresponder_.emplace(watch_->cameras(), correspond_options(ids_.size()), ids_);
+    std::vector<std::optional<Camera>> cameras(header_.rig->cameras.size());
+    for (std::size_t i = 0; i < ids_.size(); ++i) cameras[static_cast<std::size_t>(number(ids_[i]))] = watch_->cameras()[i];
+    own_time_ = reconstruct::OwnTime(std::move(cameras));
+  }
+
+  void warn_of(const reconstruct::MovedCamera& moved) {
+    warnings_.push_back(fmt::format(
+        "camera \"{}\" was moved at {:.2f} s, by {:.2f}° and {:.0f} mm; its new place was found ({} blobs within {:.2f} px) and "
+        "counts from then on: calibrate the rig anew",
+        header_.rig->cameras[static_cast<std::size_t>(number(moved.camera))].name, seconds(moved.since),
+        moved.angle * 180 / std::numbers::pi, 1000 * moved.distance, moved.pairs, moved.rms_px));
   }
 
   void expect(Timestamp now) {
@@ -154,12 +207,14 @@ class MarkersInSpace final : public Stage {
     own_time_.bring(camera, in_step ? now : given.frame.time, now, blobs, expected_);
   }
 
-  const reconstruct::Correspondences& correspond() {
+  const reconstruct::Correspondences& correspond(Timestamp now) {
     const reconstruct::Correspondences* found = &corresponder_->match(seen_, expected_);
     if (noise_.learn(*found)) {
       corresponder_->set_noise(noise_.px());
       if (frames_ == 0) found = &corresponder_->match(seen_, expected_);
     }
+    moved_ = watch_->see(now, seen_, *found, noise_.px());
+    if (moved_) warn_of(*moved_);
     observations_ += std::ssize(seen_);
     unexplained_ += found->unexplained;
     by_two_rays_ += std::ssize(found->by_two_rays);
@@ -169,15 +224,8 @@ class MarkersInSpace final : public Stage {
     return *found;
   }
 
-  void tell(Instant instant, std::span<const Track<3>> tracks) {
-    known_.clear();
-    if (options_.live) {
-      predict(instant, tracks);
-      known_.push_back(std::move(instant));
-      return;
-    }
-    filler_.add(std::move(instant), tracks);
-    while (auto waited = filler_.next()) known_.push_back(std::move(*waited));
+  void fill(std::span<const Decision> decisions) {
+    for (const Decision& decision : decisions) filler_.add(decided_instant(decision.tracks), decision.tracks);
   }
 
   /// Markers that were seen a moment ago are told where they are expected.
@@ -203,34 +251,43 @@ class MarkersInSpace final : public Stage {
     std::sort(instant.samples.begin(), instant.samples.end(), [](const Sample& a, const Sample& b) { return a.track < b.track; });
   }
 
-  Instant instant_of(const FrameSet& frames, const reconstruct::Correspondences& found, std::span<const Track<3>> tracks) {
-    Instant instant;
-    instant.index = frames.index;
-    instant.time = frames.time;
+  Undecided undecided_of(const FrameSet& frames, const reconstruct::Correspondences& found) const {
+    Undecided moment;
+    moment.instant.index = frames.index;
+    moment.instant.time = frames.time;
     for (const Observation<2>& blob : seen_) {
-      SeenPoint& seen = instant.seen.emplace_back();
+      SeenPoint& seen = moment.instant.seen.emplace_back();
       seen.camera = blob.camera;
       seen.pixel = blob.value;
       if (blob.covariance.trace() > 0) seen.sigma = std::sqrt(blob.covariance.trace() / 2);
       if (blob.box && blob.box->area() > 0) seen.area = blob.box->area();
     }
+    for (const reconstruct::Placed& placed : found.points) {
+      Undecided::Point& point = moment.points.emplace_back();
+      point.sample.position = placed.point.position;
+      point.sample.covariance = placed.point.covariance;
+      point.sample.residual_px = placed.point.residual_px;
+      point.seen.assign(placed.seen.begin(), placed.seen.end());
+      for (const int i : point.seen) point.sample.cameras |= mask_of(seen_[static_cast<std::size_t>(i)].camera);
+    }
+    return moment;
+  }
+
+  /// The oldest moment that waits, now that it is known which track each point belongs to.
+  Instant decided_instant(std::span<const Track<3>> tracks) {
+    Undecided moment = std::move(undecided_.front());
+    undecided_.pop_front();
+    Instant instant = std::move(moment.instant);
     for (const Track<3>& track : tracks) {
       if (!track.confirmed) continue;
       name(track, instant);
       if (!track.observation) continue;
-      const reconstruct::Placed& placed = found.points[static_cast<std::size_t>(*track.observation)];
-      Sample& sample = instant.samples.emplace_back();
-      sample.track = track.id;
-      sample.position = placed.point.position;
-      sample.covariance = placed.point.covariance;
-      sample.residual_px = placed.point.residual_px;
-      for (const int i : placed.seen) {
-        SeenPoint& seen = instant.seen[static_cast<std::size_t>(i)];
-        seen.track = track.id;
-        sample.cameras |= mask_of(seen.camera);
-      }
-      squares_ += placed.point.residual_px * placed.point.residual_px;
+      Undecided::Point& point = moment.points[static_cast<std::size_t>(*track.observation)];
+      point.sample.track = track.id;
+      for (const int i : point.seen) instant.seen[static_cast<std::size_t>(i)].track = track.id;
+      squares_ += *point.sample.residual_px * *point.sample.residual_px;
       ++placed_;
+      instant.samples.push_back(std::move(point.sample));
     }
     return instant;
   }
@@ -251,7 +308,11 @@ class MarkersInSpace final : public Stage {
   reconstruct::OwnTime own_time_;
   track::GapFiller filler_;
   std::optional<reconstruct::Corresponder> corresponder_;
+  std::optional<reconstruct::CameraWatch> watch_;
+  std::optional<reconstruct::MovedCamera> moved_;  // found in the last step
+  std::vector<CameraId> ids_;                      // of the cameras that have a calibration
   std::unique_ptr<track::Tracker<3>> tracker_;
+  std::deque<Undecided> undecided_;
   std::map<TrackId, std::string> names_;
   std::map<TrackId, Timestamp> last_seen_;  // where `live`
   StageTimes corresponding_, tracking_, chain_;

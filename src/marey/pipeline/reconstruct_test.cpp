@@ -87,6 +87,56 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   }
 }
 
+/// Each track's share of points on the marker that it is on the most; the least of all tracks.
+double least_purity(const Score& score) {
+  std::map<int, std::map<int, int>> markers;
+  for (const auto& [marker, ids] : score.ids) {
+    for (const auto& [id, points] : ids) markers[id][marker] += points;
+  }
+  double least = 1;
+  for (const auto& [id, on] : markers) {
+    int most = 0, all = 0;
+    for (const auto& [marker, points] : on) most = std::max(most, points), all += points;
+    if (all > 60) least = std::min(least, static_cast<double>(most) / all);
+  }
+  return least;
+}
+
+TEST(Reconstruct, WithFourCamerasNoNameGoesToAnotherMarker) {
+  const test::TemporaryFolder folder;
+  const simulate::room::RoomScene scene(
+      {.cameras = 4, .frames = 900, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.05, .bump = {}, .seed = 2});
+  write_room(scene, folder.path());
+  reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  const Score score = score_of(folder / "walk.marey", scene);
+  EXPECT_GT(score.points, 0.4 * 900 * 50);
+  EXPECT_GT(least_purity(score), 0.9);
+}
+
+TEST(Reconstruct, ACameraThatWasBumpedIsNamedAndSeesOn) {
+  const test::TemporaryFolder folder;
+  simulate::room::RoomOptions room{.cameras = 5, .markers = 30, .frames = 300, .bump = {}};
+  room.bump = {.camera = 2, .time_s = 1, .angle = 0.01};
+  const simulate::room::RoomScene scene(room);
+  write_room(scene, folder.path());
+  const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
+  ASSERT_EQ(summary.warnings.size(), 1);
+  EXPECT_NE(summary.warnings[0].find("\"cam3\" was moved at 1.0"), std::string::npos) << summary.warnings[0];
+  EXPECT_NE(summary.warnings[0].find("0.57°"), std::string::npos) << summary.warnings[0];
+  std::int64_t by_three = 0, all = 0;
+  format::take::TakeReader reader(folder / "walk.marey");
+  while (const auto frame = reader.next()) {
+    if (frame->index < 200) continue;
+    for (const Sample& point : frame->samples) {
+      by_three += (point.cameras & mask_of(CameraId{2})) != 0;
+      ++all;
+    }
+  }
+  EXPECT_GT(static_cast<double>(by_three), 0.4 * static_cast<double>(all));
+  const Score score = score_of(folder / "walk.marey", scene);
+  EXPECT_LT(static_cast<double>(score.far), 0.002 * static_cast<double>(score.points));
+}
+
 TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
   const test::TemporaryFolder folder;
   const simulate::room::RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .offset_s = 0.02, .bump = {}});

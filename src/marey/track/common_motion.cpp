@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_people = 40;
 constexpr std::size_t fewest_people = 3;
-constexpr double farthest = 0.7;         // sizes; a camera does not turn more between two frames
+constexpr double kFarthestTurn = 0.7;    // sizes; a camera does not turn more between two frames
 constexpr double same_size = 0.25;       // difference of logarithms
 constexpr double tolerance = 0.08;       // sizes; standard deviation of one person about the common motion
 constexpr double clearly_better = 0.25;  // share of the people by which a shift must beat none
@@ -71,7 +71,8 @@ Vector<2> common_motion(std::span<const Sighting> expected, std::span<const Sigh
     const std::size_t before = proposals.size();
     for (const Sighting& one : seen) {
       const Vector<2> shift = one.place - people[person].place;
-      if (std::abs(std::log(one.size / people[person].size)) > same_size || shift.norm() > farthest * people[person].size) continue;
+      if (std::abs(std::log(one.size / people[person].size)) > same_size || shift.norm() > kFarthestTurn * people[person].size)
+        continue;
       proposals.push_back({person, people[person].size, shift});
     }
     found += proposals.size() > before;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -15,24 +16,31 @@ constexpr std::size_t kMostMembers = 600;  // 180,000 pairs
 constexpr std::size_t kShare = 2;          // frames in which every pair is learned from once
 constexpr int kMemory = 1000;              // samples that a mean is taken over
 constexpr int kEnough = 8;                 // samples from which a spread is believed
-constexpr int kEnoughToName = 12;          // samples from which its neighbours identify a marker
-constexpr double kOpening = 0.02;          // m, of spread that a distance may yet show, fading with the samples
+constexpr int kEnoughToName = 12;          // samples, and
+constexpr double kLongEnoughToName = 0.5;  // s, from which its neighbours identify a marker
+constexpr double kOpening = 0.01;          // m, of spread that a distance may yet show after a second, fading with time
 constexpr double kLeastSpread = 0.001;     // m
 constexpr double kSteady = 0.05;           // m; markers whose distance varies by more say nothing of each other
 constexpr std::size_t kFewest = 3;         // neighbours
+constexpr std::size_t kFewestToName = 4;   // that identify a marker
+constexpr double kMostAgree = 0.7;         // of the neighbours must agree: the others may be mistaken themselves
 constexpr std::size_t kRanked = 14;        // neighbours that are asked whether a place is a marker's; those that are seen count
 constexpr std::size_t kAsked = 9;
-constexpr int kHardlyEver = 60;      // samples of both seen, of names that may be one marker's
-constexpr int kWellKnown = 400;      // samples of each with a third
-constexpr int kEnoughAgree = 6;      // thirds
-constexpr double kShareAgree = 0.9;  // of the thirds that find both as far away, within
-constexpr double kAlike = 0.01;      // m, and the spreads' mean
-constexpr double kUnseen = 0.06;     // m, of spread that a distance may yet show, fading with the samples
-constexpr double kDoubt = 0.004;     // m, added to every spread: poses that were not seen yet
+constexpr int kHardlyEver = 12;     // samples of both seen, of numbers that may be one marker's
+constexpr double kWellKnown = 1.5;  // s of one of them with a third, from which it is known whether both are on one bone
+constexpr double kRigid = 0.02;     // m, of spread that such a distance may have
+constexpr std::size_t kThirds = 4;  // on one bone with both, at least
+constexpr double kUnseen = 0.012;   // m, of spread that a distance may yet show after a second, fading with time
+constexpr double kDoubt = 0.004;    // m, added to every spread: poses that were not seen yet
 
 }  // namespace
 
 std::optional<int> RigidNeighbours::enrol() {
+  if (!free_.empty()) {
+    const int number = free_.back();
+    free_.pop_back();
+    return number;
+  }
   if (members_.size() >= kMostMembers) return std::nullopt;
   members_.emplace_back();
   last_positions_.resize(members_.size());
@@ -56,8 +64,9 @@ void RigidNeighbours::see(int number, const Vector<3>& position) {
   members_[static_cast<std::size_t>(number)].seen = true;
 }
 
-void RigidNeighbours::end_frame() {
+void RigidNeighbours::end_frame(double dt) {
   ++frames_;
+  if (dt > 0) sample_s_ = kShare * dt;
   for (Member& member : members_) {
     if (member.was_seen && !member.seen) keep_places(member);
   }
@@ -71,14 +80,25 @@ void RigidNeighbours::rank(int number) {
   for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
     if (i == number) continue;
     const Distance& distance = between(number, i);
-    if (distance.count >= kEnoughToName && distance.variance < kSteady * kSteady) list.push_back(i);
+    if (distance.count < kEnoughToName || seen_together(distance) < kLongEnoughToName) continue;
+    if (distance.variance < kSteady * kSteady) list.push_back(i);
   }
   const std::size_t kept = std::min(kRanked, list.size());
+  const auto spread = [&](int i) {
+    const Distance& distance = between(number, i);
+    return distance.variance + unknown(distance, kUnseen);
+  };
   std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(kept), list.end(), [&](int a, int b) {
-    const float p = between(number, a).variance, q = between(number, b).variance;
+    const double p = spread(a), q = spread(b);
     return p != q ? p < q : a < b;
   });
   list.resize(kept);
+}
+
+/// Variance, m², by which a distance may yet differ from all that was seen of it: nobody takes all poses in a short time.
+double RigidNeighbours::unknown(const Distance& distance, double after_a_second) const {
+  const double m = after_a_second / seen_together(distance);
+  return m * m;
 }
 
 std::optional<double> RigidNeighbours::misfit(int number, const Vector<3>& place) const {
@@ -89,26 +109,65 @@ std::optional<double> RigidNeighbours::misfit(int number, const Vector<3>& place
     if (!other.seen) continue;
     const Distance& distance = between(number, i);
     const double change = (place - other.position).norm() - distance.mean;
-    off[asked++] = change * change / (distance.variance + kDoubt * kDoubt + kUnseen * kUnseen / distance.count);
+    off[asked++] = change * change / (distance.variance + kDoubt * kDoubt + unknown(distance, kUnseen));
     if (asked == kAsked) break;
   }
-  if (asked < kFewest) return std::nullopt;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(asked / 2);
-  std::nth_element(off.begin(), middle, off.begin() + static_cast<std::ptrdiff_t>(asked));
-  return *middle;
+  if (asked < kFewestToName) return std::nullopt;
+  const auto most = off.begin() + static_cast<std::ptrdiff_t>(kMostAgree * static_cast<double>(asked));
+  std::nth_element(off.begin(), most, off.begin() + static_cast<std::ptrdiff_t>(asked));
+  return *most;
 }
 
-bool RigidNeighbours::same(int a, int b) const {
-  if (between(a, b).count >= kHardlyEver) return false;
-  int asked = 0, agree = 0;
+std::optional<double> RigidNeighbours::difference(int a, int b) const {
+  if (between(a, b).count >= kHardlyEver) return std::nullopt;
+  std::array<std::pair<double, double>, kAsked> thirds;  // spread and misfit, the steadiest first
+  std::size_t asked = 0;
   for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
     if (i == a || i == b) continue;
     const Distance &p = between(a, i), &q = between(b, i);
-    if (p.count < kWellKnown || q.count < kWellKnown) continue;
-    ++asked;
-    agree += std::abs(p.mean - q.mean) < kAlike + 0.5 * (std::sqrt(p.variance) + std::sqrt(q.variance));
+    if (std::min(p.count, q.count) < kEnoughToName || std::max(seen_together(p), seen_together(q)) < kWellKnown) continue;
+    const double spread = p.variance + q.variance;
+    if (spread > kRigid * kRigid || (asked == kAsked && spread >= thirds.back().first)) continue;
+    const double off = p.mean - q.mean;
+    if (asked < kAsked) ++asked;
+    std::size_t place = asked - 1;
+    for (; place > 0 && thirds[place - 1].first > spread; --place) thirds[place] = thirds[place - 1];
+    thirds[place] = {spread, off * off / (spread + 2 * kDoubt * kDoubt)};
   }
-  return asked >= kEnoughAgree && agree >= kShareAgree * asked;
+  if (asked < kThirds) return std::nullopt;
+  const auto middle = thirds.begin() + static_cast<std::ptrdiff_t>(asked / 2);
+  std::nth_element(thirds.begin(), middle, thirds.begin() + static_cast<std::ptrdiff_t>(asked),
+                   [](const auto& p, const auto& q) { return p.second < q.second; });
+  return middle->second;
+}
+
+void RigidNeighbours::merge(int number, int other) {
+  for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
+    if (i == number || i == other) continue;
+    const Distance& from = between(number, i);
+    Distance& to = between(other, i);
+    const int count = from.count + to.count;
+    if (count == 0) continue;
+    const float share = static_cast<float>(from.count) / static_cast<float>(count), off = from.mean - to.mean;
+    to.variance += share * (from.variance - to.variance) + share * (1 - share) * off * off;
+    to.mean += share * off;
+    to.count = std::min(count, kMemory);
+  }
+  rank(other);
+  release(number);
+}
+
+void RigidNeighbours::release(int number) {
+  for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
+    if (i != number) between(number, i) = {};
+  }
+  members_[static_cast<std::size_t>(number)] = {};
+  last_seen_[static_cast<std::size_t>(number)] = 0;
+  for (Member& member : members_) {
+    std::erase(member.steadiest, number);
+    if (static_cast<std::size_t>(number) < member.known.size()) member.known[static_cast<std::size_t>(number)] = 0;
+  }
+  free_.push_back(number);
 }
 
 void RigidNeighbours::disown(int number) {
@@ -154,7 +213,7 @@ std::optional<RigidNeighbours::Place> RigidNeighbours::place_of(int number) cons
     if (i == number || !other.seen || !hidden.known[static_cast<std::size_t>(i)]) continue;
     const Distance& distance = between(number, i);
     if (distance.count < kEnough) continue;
-    const double variance = distance.variance + kLeastSpread * kLeastSpread + kOpening * kOpening / distance.count;
+    const double variance = distance.variance + kLeastSpread * kLeastSpread + unknown(distance, kOpening);
     if (variance > kSteady * kSteady) continue;
     if (neighbours++ == 0) from_origin = hidden.places[static_cast<std::size_t>(i)], to_origin = other.position;
     const double weight = 1e-12 / (variance * variance);

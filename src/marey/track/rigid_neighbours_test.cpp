@@ -34,7 +34,7 @@ void show(RigidNeighbours& companions, const std::vector<Vector<3>>& places, con
     const auto [x, y] = random.normal_pair();
     companions.see(i, places[i] + 0.0003 * Vector<3>(x, y, random.normal_pair().first));
   }
-  companions.end_frame();
+  companions.end_frame(1.0 / 120);
 }
 
 TEST(RigidNeighbours, AHiddenMarkerGoesWithItsBone) {

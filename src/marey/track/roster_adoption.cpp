@@ -8,11 +8,12 @@ namespace marey::track {
 namespace {
 
 constexpr double kGentleJump = 1;           // gates
-constexpr double kUnknownReach = 3.5;       // standard deviations
 constexpr double kMostMisfit = 4;           // variances
-constexpr double kMostOfStayed = 12;        // the same for a newcomer that stays
-constexpr double kStayed = 0.5;             // s
-constexpr double kShortPath = 5;            // marker widths that a target without rigid neighbours may have gone astray
+constexpr double kStayed = 0.1;             // s that a newcomer stays, before it may be a target that was lost
+constexpr double kShortPath = 3;            // marker widths that a target without rigid neighbours may have gone astray
+constexpr double kOwnMotion = 0.25;         // s in which a target's own motion still says where it is
+constexpr double kClear = 3;                // variances, or widths, by which a pair must be better than what else may be
+constexpr double kNotPriced = 1e3;          // variances
 constexpr double kUnknown = 100;            // variances: targets that rigid neighbours identify go first
 constexpr double kOnItsWay = 0.25;          // of the path of a target that is lost, by which it may have left it
 constexpr double kTurned = 0.15;            // of them turn round or stop unseen
@@ -27,7 +28,7 @@ constexpr long kMostLostPairs = 1'000'000;  // glare: no target is searched for 
 
 template <int D>
 void RosterAdoption<D>::find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
-                                  RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours) {
+                                  RosterLikelihood<D>& likelihood, RosterRigidNeighbours<D>& neighbours) {
   lost_.clear();
   free_.clear();
   for (int i = 0; i < std::ssize(targets); ++i) {
@@ -63,52 +64,83 @@ double RosterAdoption<D>::log_density(const Target& target, const Vector<D>& pla
   return std::log((1 - kTurned) * on + kTurned * back);
 }
 
-/// What it costs to believe that a target that was lost is at a place; nothing where it cannot be. Where enough of its rigid
-/// neighbours are seen, their misfit decides; else the path. Less is asked of a newcomer that has `stayed` there for a while: some
-/// target it must be.
+/// What it costs to believe that a target that was lost is at a place, or is a newcomer that has stayed there; nothing where it
+/// cannot be. Where enough of its rigid neighbours are seen, their misfit decides; else the path.
 template <int D>
-std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector<D>& place, const RigidNeighbours& neighbours,
-                                              bool stayed) const {
-  if constexpr (D == 3) {
-    if (target.neighbour) {
-      if (const auto misfit = neighbours.misfit(*target.neighbour, place)) {
-        return *misfit < (stayed ? kMostOfStayed : kMostMisfit) ? misfit : std::nullopt;
-      }
+std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector<D>& place, const Neighbours& neighbours,
+                                              const Target* newcomer) const {
+  if (!options_.rigid_neighbours) {
+    if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
+    return std::max(0.0, kLeastImprobable - log_density(target, place));
+  }
+  if (!target.near(place)) return std::nullopt;
+  if (const auto misfit = neighbours.misfit(target, place)) return *misfit < kMostMisfit ? misfit : std::nullopt;
+  // Where the body has gone meanwhile nobody knows: the distances of a newcomer will prove who it is.
+  if (newcomer != nullptr || target.unseen > kOwnMotion) return std::nullopt;
+  const double path = (place - target.filter.position()).norm();
+  if (path > kShortPath * target.width) return std::nullopt;
+  return kUnknown + path / target.width;
+}
+
+/// Shares `columns` out among `rows` by the pairs' costs.
+template <int D>
+void RosterAdoption<D>::assign(int rows, int columns) {
+  const auto found = assigner_.assign(rows, columns, pairs_);
+  columns_.assign(found.begin(), found.end());
+  if (!options_.rigid_neighbours) return;
+  std::vector<int> doubtful;
+  for (int row = 0; row < rows; ++row) {
+    if (columns_[row] != assign::kNoIndex && leaves_doubt(row)) doubtful.push_back(row);
+  }
+  for (const int row : doubtful) columns_[row] = assign::kNoIndex;
+}
+
+/// Whether another target may as well have the point that the row is given, or the row another point.
+template <int D>
+bool RosterAdoption<D>::leaves_doubt(int row) const {
+  const auto price = [&](int r, int c) {
+    for (const assign::GatedPair& pair : pairs_) {
+      if (pair.row == r && pair.column == c) return 2 * kFar - pair.gain;
+    }
+    return kNotPriced;
+  };
+  const int column = columns_[row];
+  const double own = price(row, column);
+  for (const assign::GatedPair& pair : pairs_) {
+    const double other = 2 * kFar - pair.gain;
+    if (pair.column == column && pair.row != row) {
+      const int theirs = columns_[pair.row];
+      const double exchange = theirs == assign::kNoIndex ? 0 : std::min(price(row, theirs), own + kClear) - price(pair.row, theirs);
+      if (other + exchange - own < kClear) return true;
+    }
+    if (pair.row == row && pair.column != column) {
+      const bool free = std::find(columns_.begin(), columns_.end(), pair.column) == columns_.end();
+      if (free && other - own < kClear) return true;
     }
   }
-  const bool jumps = !options_.rigid_neighbours || stayed;
-  if (!jumps && target.predicted_variance > 0) return std::nullopt;  // the search area has been looked through
-  if (!jumps) {  // a target that is not known yet does not jump onto what may be its neighbour's
-    const double reach = kUnknownReach * std::sqrt(target.filter.covariance().trace() / D) + target.width / 2;
-    if ((place - target.filter.position()).norm() > reach) return std::nullopt;
-    return kUnknown + path_to(target, place);
-  }
-  if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
-  if (options_.rigid_neighbours && path_to(target, place) > kShortPath * target.width) return std::nullopt;
-  if (options_.rigid_neighbours) return kUnknown + path_to(target, place);
-  return std::max(0.0, kLeastImprobable - log_density(target, place));
+  return false;
 }
 
 template <int D>
 void RosterAdoption<D>::adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
-                                     const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours) {
+                                     const RosterLikelihood<D>& likelihood, const Neighbours& neighbours) {
   if (free_.empty() || std::ssize(lost_) * std::ssize(free_) > kMostLostPairs) return;
   pairs_.clear();
   for (int row = 0; row < std::ssize(lost_); ++row) {
     const Target& target = targets[lost_[row]];
     for (int column = 0; column < std::ssize(free_); ++column) {
       const Vector<D>& place = seen[free_[column]].value;
-      const auto price = cost(target, place, neighbours, false);
+      const auto price = cost(target, place, neighbours, nullptr);
       if (!price || !likelihood.alike(target, seen[free_[column]])) continue;
       if (!likelihood.believes_jump(path_to(target, place) + target.width)) continue;
       if (likelihood.cluttered() && likelihood.log_return(log_density(target, place)) < kReturns) continue;
       pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
     }
   }
-  const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(free_.size()), pairs_);
+  assign(static_cast<int>(lost_.size()), static_cast<int>(free_.size()));
   for (int row = 0; row < std::ssize(lost_); ++row) {
-    if (columns[row] == assign::kNoIndex) continue;
-    const int index = free_[columns[row]];
+    if (columns_[row] == assign::kNoIndex) continue;
+    const int index = free_[columns_[row]];
     begin_anew(targets[lost_[row]], seen[index].value, likelihood.noise_of(seen[index]));
     targets[lost_[row]].observation = index;
     taken[index] = 1;
@@ -128,8 +160,7 @@ void RosterAdoption<D>::begin_anew(Target& target, const Vector<D>& place, const
 
 /// A newcomer that has stayed is one of the targets that are missed.
 template <int D>
-void RosterAdoption<D>::adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood,
-                                        const RigidNeighbours& neighbours) {
+void RosterAdoption<D>::adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood, Neighbours& neighbours) {
   pairs_.clear();
   proven_.clear();
   for (int i = 0; i < std::ssize(targets); ++i) {
@@ -146,16 +177,18 @@ void RosterAdoption<D>::adopt_newcomers(std::span<Target> targets, const RosterL
         const double there = likelihood.log_return(log_density(target, newcomer.last_place));
         if (newcomer.score + there < kTogether) continue;
       }
-      const auto price = cost(target, newcomer.last_place, neighbours, options_.rigid_neighbours && newcomer.seen > kStayed);
+      if (options_.rigid_neighbours && newcomer.seen < kStayed) continue;
+      const auto price = cost(target, newcomer.last_place, neighbours, &newcomer);
       if (price) pairs_.push_back({row, column, 2 * kFar - std::min(*price, kFar)});
     }
   }
   if (pairs_.empty()) return;
-  const auto columns = assigner_.assign(static_cast<int>(lost_.size()), static_cast<int>(targets.size()), pairs_);
+  assign(static_cast<int>(lost_.size()), static_cast<int>(targets.size()));
   for (int row = 0; row < std::ssize(lost_); ++row) {
-    if (columns[row] == assign::kNoIndex) continue;
+    if (columns_[row] == assign::kNoIndex) continue;
     Target& target = targets[lost_[row]];
-    Target& newcomer = targets[columns[row]];
+    Target& newcomer = targets[columns_[row]];
+    neighbours.adopt(target, newcomer);
     target.filter = newcomer.filter;
     target.observation = newcomer.observation;
     newcomer.observation.reset();

@@ -1,6 +1,8 @@
 // The step that brings back lost markers: targets that are missed and points that match none are brought together within the reach
 // of the greatest speed, at once where false points are rare; else once the point has proved, as a newcomer, that it stays. Of all
-// pairs within reach the assignment with the shortest paths wins. Cost: lost × unmatched.
+// pairs within reach the assignment with the shortest paths wins. In space, where rigid neighbours tell markers apart, a pair is
+// only believed where no other explains the point, or the target, nearly as well: else the point goes on as a newcomer, until its
+// distances say which of them it is. Cost: lost × unmatched.
 #pragma once
 
 #include <optional>
@@ -8,7 +10,7 @@
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
-#include "marey/track/rigid_neighbours.h"
+#include "marey/track/roster_rigid_neighbours.h"
 #include "marey/track/roster_target.h"
 
 namespace marey::track {
@@ -23,21 +25,27 @@ class RosterAdoption {
 
   /// Gives targets that are missed the observations that they are thought to be, and marks these in `taken`, one entry a point.
   void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
-                 RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
+                 RosterLikelihood<D>& likelihood, RosterRigidNeighbours<D>& neighbours);
 
  private:
+  using Neighbours = RosterRigidNeighbours<D>;
+
   double path_to(const Target& target, const Vector<D>& place) const;
   double log_density(const Target& target, const Vector<D>& place) const;
-  std::optional<double> cost(const Target& target, const Vector<D>& place, const RigidNeighbours& neighbours, bool stayed) const;
+  std::optional<double> cost(const Target& target, const Vector<D>& place, const Neighbours& neighbours,
+                             const Target* newcomer) const;
   void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
-                    const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
+                    const RosterLikelihood<D>& likelihood, const Neighbours& neighbours);
   void begin_anew(Target& target, const Vector<D>& place, const Matrix<D>& R) const;
-  void adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood, const RigidNeighbours& neighbours);
+  void adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood, Neighbours& neighbours);
+  void assign(int rows, int columns);
+  bool leaves_doubt(int row) const;
 
   RosterTrackerOptions options_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> lost_, free_, proven_;
   std::vector<assign::GatedPair> pairs_;
+  std::vector<int> columns_;  // by row: the column that it is given, or none
   assign::GatedAssigner assigner_;
 };
 

@@ -11,6 +11,7 @@
 
 #include "marey/core/ids.h"
 #include "marey/core/observation.h"
+#include "marey/core/time.h"
 #include "marey/filter/any_filter.h"
 #include "marey/track/roster_tracker.h"
 
@@ -34,6 +35,9 @@ struct RosterTarget {
   std::optional<int> neighbour = {};    ///< its number among the rigid neighbours
   double predicted_variance = 0;        ///< while it is unseen and its rigid neighbours predict it: of that prediction, else 0
   int misfits = 0;                      ///< frames on end in which its rigid neighbours contradict its observation
+  Timestamp since{};                    ///< its observations are one marker's, whichever, from here on
+  Timestamp sure_until{};               ///< when its rigid neighbours last found that it is the one
+  bool may_be_another = false;          ///< it came later: it may be a target that was lost, under a new name
   bool crowded = false;                 ///< another target is within a marker's width
   Standing standing = Standing::established;
   double score = 0;  ///< log-likelihood ratio of a target against clutter, until it is established
@@ -59,6 +63,12 @@ struct RosterTarget {
 
   bool on_roster() const { return standing != Standing::newcomer; }
   bool missed() const { return !observation && !covered_by; }
+  /// Whether it may be at a place, as far as is known where it went since it was last seen.
+  bool near(const Vector<D>& place) const {
+    constexpr double kSigmas = 4;
+    const double variance = predicted_variance + filter.covariance().trace() / D + width * width / 16;
+    return (place - filter.position()).squaredNorm() < kSigmas * kSigmas * variance;
+  }
 };
 
 /// What one point is worth to the roster tracker: how large it is, how sure its place, and how likely it is clutter.

@@ -18,12 +18,12 @@
 
 #include <Eigen/LU>
 
-#include "marey/assign/gated_assignment.h"
-#include "marey/assign/point_grid.h"
 #include "marey/core/error.h"
 #include "marey/track/check_frame.h"
-#include "marey/track/immediate_tracker.h"
 #include "marey/track/roster_adoption.h"
+#include "marey/track/roster_decisions.h"
+#include "marey/track/roster_matching.h"
+#include "marey/track/roster_meetings.h"
 #include "marey/track/roster_rigid_neighbours.h"
 #include "marey/track/roster_target.h"
 
@@ -31,17 +31,22 @@ namespace marey::track {
 namespace {
 
 template <int D>
-class RosterTracker final : public ImmediateTracker<D> {
+class RosterTracker final : public Tracker<D> {
  public:
   explicit RosterTracker(const RosterTrackerOptions& options)
-      : options_(options), likelihood_(options), adoption_(options), neighbours_(options) {
+      : options_(options),
+        likelihood_(options),
+        matching_(options),
+        adoption_(options),
+        neighbours_(options),
+        decisions_(options.decide_after) {
     std::set<std::string> seen;
     for (const std::string& label : options.labels) {
       if (!seen.insert(label).second) throw Error("the label \"{}\" occurs twice; every marker needs a name of its own", label);
     }
   }
 
-  using ImmediateTracker<D>::step;
+  using Tracker<D>::step;
 
   std::span<const Track<D>> step(Timestamp now, std::span<const CameraObservations<D>> views) override {
     assert(views.size() == 1 && "cameras are joined before");
@@ -51,27 +56,42 @@ class RosterTracker final : public ImmediateTracker<D> {
       start_roster(seen);
     } else {
       taken_.assign(seen.size(), 0);
+      match(seen, [&](const Target& target) { return !neighbours_.used() || target.unseen < 1.5 * dt_; });
       if (neighbours_.used()) {
-        match(seen, [&](const Target& target) { return target.unseen < 1.5 * dt_; });
-        neighbours_.check_followed(targets_, seen, taken_);
-        match(seen, [&](const Target& target) { return !target.observation; });
-      } else {
-        match(seen, [](const Target&) { return true; });
-        if (undo_doubted()) match(seen, [](const Target& target) { return !target.observation; });
+        neighbours_.check_followed(targets_, seen, taken_, now);
+        match(seen, [](const Target& target) { return !target.observation; });
+      } else if (undo_doubted()) {
+        match(seen, [](const Target& target) { return !target.observation; });
       }
-      meet(seen);
-      adoption_.find_lost(targets_, seen, taken_, likelihood_, neighbours_.all());
+      meetings_.meet(targets_, seen, likelihood_);
+      adoption_.find_lost(targets_, seen, taken_, likelihood_, neighbours_);
       forget_parts();
       correct(seen);
       judge_newcomers();
       start_unmatched(seen);
     }
-    neighbours_.learn(targets_);
-    return report();
+    neighbours_.learn(targets_, dt_);
+    report();
+    if (waits()) {
+      decisions_.add(now, tracks_);
+      decisions_.rename(neighbours_.renamed(targets_));
+    }
+    return tracks_;
   }
 
+  std::span<const ObservationMatch> matches() const override { return matches_; }
+
+  std::span<const Decision<D>> decided() override {
+    if (waits()) return decisions_.take(false);
+    if (!now_) return {};
+    decision_ = {*now_, tracks_, matches_};
+    return {&decision_, 1};
+  }
+
+  std::span<const Decision<D>> decide_all() override { return waits() ? decisions_.take(true) : std::span<const Decision<D>>(); }
+
   std::span<const Track<D>> expected(Timestamp now) override {
-    const double dt = this->seconds_to(now);
+    const double dt = seconds_to(now);
     tracks_.clear();
     for (const Target& target : targets_) {
       filter::AnyFilter<D> ahead = target.filter;
@@ -84,12 +104,22 @@ class RosterTracker final : public ImmediateTracker<D> {
  private:
   using Target = RosterTarget<D>;
   using Standing = typename Target::Standing;
-  using ImmediateTracker<D>::now_;
-  using ImmediateTracker<D>::tracks_;
+
+  bool waits() const { return neighbours_.used() && options_.decide_after > 0; }
+
+  /// From the last instant to `now`; 0 before the first.
+  double seconds_to(Timestamp now) const { return now_ ? seconds(now - *now_) : 0.0; }
+
+  template <typename Wanted>
+  void match(std::span<const Observation<D>> seen, Wanted&& wanted) {
+    wanted_.clear();
+    for (const Target& target : targets_) wanted_.push_back(wanted(target) ? 1 : 0);
+    matching_.match(targets_, wanted_, seen, taken_, dt_, likelihood_, neighbours_);
+  }
 
   void predict_to(Timestamp now) {
     check_time(now, now_);
-    dt_ = this->seconds_to(now);
+    dt_ = seconds_to(now);
     now_ = now;
     for (Target& target : targets_) {
       // A lost target goes on as it went; where that leads out of the picture it is waited for.
@@ -209,132 +239,10 @@ class RosterTracker final : public ImmediateTracker<D> {
                         .width = likelihood_.width_of(observation),
                         .last_place = observation.value,
                         .observation = index,
+                        .since = *now_,
+                        .sure_until = *now_,
+                        .may_be_another = standing == Standing::newcomer,
                         .standing = standing});
-  }
-
-  /// Gives the points that are not taken to those of the targets that are `wanted`.
-  template <typename Wanted>
-  void match(std::span<const Observation<D>> seen, Wanted&& wanted) {
-    points_.clear();
-    for (const Observation<D>& point : seen) points_.push_back(point.value);
-    const bool few = targets_.size() * seen.size() <= kFewPairs;
-    if (!few) grid_.build(points_, 2 * options_.marker_width);
-    pairs_.clear();
-    const Spread spread = spread_of(seen);
-    for (int row = 0; row < std::ssize(targets_); ++row) {
-      if (!wanted(targets_[row])) continue;
-      const double reach = reach_of(targets_[row], spread);
-      const auto consider = [&](int column) {
-        if ((points_[column] - targets_[row].filter.position()).squaredNorm() > reach * reach) return;
-        if (taken_[column]) return;
-        const double worth = gain(targets_[row], seen[column]);
-        if (worth > 0 && neighbours_.agree(targets_[row], points_[column], dt_)) pairs_.push_back({row, column, worth});
-      };
-      if (few) {
-        for (int column = 0; column < std::ssize(seen); ++column) consider(column);
-      } else {
-        grid_.for_each_near(targets_[row].filter.position(), search_radius(targets_[row]), consider);
-      }
-    }
-    const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(seen.size()), pairs_);
-    for (int row = 0; row < std::ssize(targets_); ++row) {
-      if (columns[row] == assign::kNoIndex) continue;
-      targets_[row].observation = columns[row];
-      taken_[columns[row]] = 1;
-    }
-  }
-
-  /// What bounds every observation's covariance in this frame.
-  struct Spread {
-    double variance = 0;
-    double narrowest = 0, widest = 0;  // marker
-  };
-
-  Spread spread_of(std::span<const Observation<D>> seen) const {
-    Spread spread;
-    for (const Observation<D>& point : seen) {
-      const double width = likelihood_.width_of(point);
-      spread.variance = std::max(spread.variance, likelihood_.noise_of(point).trace());
-      spread.narrowest = &point == seen.data() ? width : std::min(spread.narrowest, width);
-      spread.widest = std::max(spread.widest, width);
-    }
-    return spread;
-  }
-
-  /// No pair farther apart than this can be worth anything: asked first, because it costs least.
-  double reach_of(const Target& target, const Spread& spread) const {
-    const double fastest = options_.max_speed * target.unseen + target.width;
-    const double change =
-        std::max(spread.widest - target.width, target.width - spread.narrowest) - RosterLikelihood<D>::kWidthNoise * target.width;
-    return std::min(fastest, target.filter.search_reach(spread.variance + square(std::max(0.0, change))));
-  }
-
-  /// The farthest that a point in the search area can be: the gate's own radius along its longest axis.
-  double search_radius(const Target& target) const {
-    const Matrix<D> S = target.filter.innovation_covariance(Matrix<D>::Zero());
-    return std::min(kWidestGate * std::sqrt(S.trace()) + 2 * target.width, options_.max_speed * target.unseen + target.width);
-  }
-
-  /// What the pair is worth: the logarithm of its likelihood, above that at the border of the search area.
-  double gain(const Target& target, const Observation<D>& point) const {
-    const Vector<D> residual = point.value - target.filter.position();
-    if (residual.squaredNorm() > square(options_.max_speed * target.unseen + target.width)) return 0;
-    const Matrix<D> R = likelihood_.noise_of(point, target);
-    if (target.filter.gate_distance(point.value, R) > 1) return 0;
-    const double log_likelihood = target.filter.log_likelihood(point.value, R);
-    if (target.unseen > 1.5 * dt_) {
-      if (!likelihood_.believes_jump(residual.norm() + target.width)) return 0;
-      if (likelihood_.cluttered() && likelihood_.log_return(log_likelihood) < kReturns) return 0;
-    }
-    if (likelihood_.cluttered()) {  // against a false point here and, where the target is known to be there, none of its own
-      return 2 * (likelihood_.log_return(log_likelihood) + (target.standing == Standing::established ? kHardlyMissed : 0));
-    }
-    const double cost = -2 * log_likelihood - D * kLogTwoPi - std::log(square(reference_variance()));
-    return std::max(1e-3, kRoom - cost) + (target.on_roster() ? kRoom : 0);
-  }
-
-  double reference_variance() const { return square(options_.marker_width); }
-
-  void meet(std::span<const Observation<D>> seen) {
-    mark_crowded();
-    for (Target& target : targets_) {
-      if (target.observation || !target.crowded) continue;
-      double nearest = target.width;
-      for (const Target& other : targets_) {
-        if (!other.observation || other.id == target.id) continue;
-        const Observation<D>& point = seen[*other.observation];
-        const double distance = (point.value - target.filter.position()).norm();
-        const double reach = 0.5 * (likelihood_.width_of(point) + target.width);
-        if (distance < reach && distance < nearest) {
-          nearest = distance;
-          target.covered_by = other.observation;
-        }
-      }
-    }
-  }
-
-  /// Targets that are expected, or were just seen, within a marker's width and a half of another.
-  void mark_crowded() {
-    places_.clear();
-    double widest = 0;
-    for (const Target& target : targets_) {
-      places_.push_back(target.filter.position());
-      widest = std::max(widest, target.width);
-    }
-    const auto crowd = [&](int a, int b) {
-      if (a == b || (places_[a] - places_[b]).norm() > kCrowded * 0.5 * (targets_[a].width + targets_[b].width)) return;
-      targets_[a].crowded = targets_[b].crowded = true;
-    };
-    if (targets_.size() <= kFewTargets) {
-      for (int a = 0; a < std::ssize(targets_); ++a) {
-        for (int b = 0; b < a; ++b) crowd(a, b);
-      }
-      return;
-    }
-    grid_.build(places_, kCrowded * widest);
-    for (int a = 0; a < std::ssize(targets_); ++a) {
-      grid_.for_each_near(places_[a], kCrowded * widest, [&](int b) { crowd(a, b); });
-    }
   }
 
   void correct(std::span<const Observation<D>> seen) {
@@ -347,6 +255,7 @@ class RosterTracker final : public ImmediateTracker<D> {
       doubt(target, point.value, R);
       target.filter.correct(point.value, R);
       remember(target, point.value, R, likelihood_.shows_whole(target, point));
+      if (target.unseen > 1.5 * dt_) target.since = *now_;
       if (!target.crowded) target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
       target.last_place = point.value;
       target.unseen = 0;
@@ -370,14 +279,24 @@ class RosterTracker final : public ImmediateTracker<D> {
       if (!target.observation && !target.covered_by) target.score -= kMissPenalty;
       const bool proven = target.score >= options_.confirm;
       const bool stayed = neighbours_.used() && target.seen > kProof;  // and no target that is missed can be it
-      if (proven && (target.standing == Standing::provisional || all_there || stayed)) target.standing = Standing::established;
+      if (proven && (target.standing == Standing::provisional || all_there || stayed)) {
+        if (!target.on_roster()) neighbours_.confirm(target);
+        target.standing = Standing::established;
+      }
     }
     std::erase_if(targets_, [&](const Target& target) {
-      const bool missed = !target.observation && !target.covered_by;
-      if (neighbours_.used() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
-      return (target.standing == Standing::newcomer && missed) ||
-             (target.standing == Standing::provisional && target.score < -3 * kMissPenalty);
+      if (!given_up(target)) return false;
+      neighbours_.forget(target);
+      return true;
     });
+  }
+
+  bool given_up(const Target& target) const {
+    if (neighbours_.used() && target.label.empty() && target.seen < kProof && target.unseen > kProof) return true;
+    if (neighbours_.used() && target.may_be_another && target.unseen > kForgotten + kWorth * target.seen) return true;
+    const double patience = neighbours_.used() ? kNewcomerGap : 0;
+    return (target.standing == Standing::newcomer && target.missed() && target.unseen > patience) ||
+           (target.standing == Standing::provisional && target.score < -3 * kMissPenalty);
   }
 
   void start_unmatched(std::span<const Observation<D>> seen) {
@@ -386,14 +305,14 @@ class RosterTracker final : public ImmediateTracker<D> {
     }
   }
 
-  std::span<const Track<D>> report() {
+  void report() {
     tracks_.clear();
+    matches_.clear();
     for (const Target& target : targets_) {
       tracks_.push_back(
           track_of(target, target.filter, target.observation ? Track<D>::State::observed : Track<D>::State::predicted));
+      if (target.observation) matches_.push_back({target.id, 0, *target.observation});
     }
-    this->match_by_observation();
-    return tracks_;
   }
 
   static Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, typename Track<D>::State state) {
@@ -416,38 +335,35 @@ class RosterTracker final : public ImmediateTracker<D> {
   static constexpr double kCoast = 0.5;          // s that a lost target drifts on in space
   static constexpr double kLongCoast = 3;        // s that it does in an image of unknown size
   static constexpr double kLongGap = 0.2;        // s, before which nothing is remembered
-  static constexpr double kReturns = 5;          // log-likelihood ratio against clutter from which a point brings a target back
   static constexpr double kDoubted = 4;          // the same below which what was before is kept
   static constexpr double kBelieved = 8;         // and of all points since, from which it is no more
   static constexpr int kUnnoticed = 2;           // frames in which less is missing than can be told
   static constexpr std::size_t kFewestKept = 3;  // observations
-  static constexpr double kLogTwoPi = 1.8378770664093453;
-  static constexpr double kProof = 1;          // s: a target seen for less and gone was never there
-  static constexpr double kRoom = 24;          // twice the log-likelihood that a pair may cost
-  static constexpr double kWidestGate = 5;     // standard deviations
-  static constexpr double kCrowded = 1.4;      // marker widths between two that disturb each other's centres
-  static constexpr double kCrowdNoise = 0.25;  // marker widths by which they do
-  static constexpr double kHardlyMissed =
-      14;                                    // the same of one that was just seen: a corner is likelier than that it is hidden now
-  static constexpr double kMissPenalty = 3;  // log of 1 over the chance that a marker is missed
-  static constexpr double kWidthMemory = 0.1;     // a frame
-  static constexpr std::size_t kFewPairs = 4096;  // below this, every pair is weighed
-  static constexpr std::size_t kFewTargets = 64;
+  static constexpr double kProof = 0.5;          // s: a target seen for less and gone was never there
+  static constexpr double kForgotten = 30;       // s after which one that came later and was hardly seen is waited for no more,
+  static constexpr double kWorth = 10;           // and so much longer for each second that it was seen
+  static constexpr double kNewcomerGap = 0.1;    // s that a newcomer in space may be missed for
+  static constexpr double kCrowdNoise = 0.25;    // marker widths by which they do
+  static constexpr double kMissPenalty = 3;      // log of 1 over the chance that a marker is missed
+  static constexpr double kWidthMemory = 0.1;    // a frame
   static constexpr int kMostTargets = 20'000;
 
   RosterTrackerOptions options_;
+  std::optional<Timestamp> now_;  // of the last instant
   double dt_ = 0;
   int next_id_ = 1;
   RosterLikelihood<D> likelihood_;
+  RosterMatching<D> matching_;
+  RosterMeetings<D> meetings_;
   RosterAdoption<D> adoption_;
   RosterRigidNeighbours<D> neighbours_;
+  RosterDecisions<D> decisions_;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.
-  std::vector<Vector<D>> points_, places_;
-  std::vector<assign::GatedPair> pairs_;
-  std::vector<char> taken_;
-  assign::PointGrid<D> grid_;
-  assign::GatedAssigner assigner_;
+  std::vector<Track<D>> tracks_;
+  std::vector<ObservationMatch> matches_;
+  Decision<D> decision_;
+  std::vector<char> taken_, wanted_;
 };
 
 }  // namespace

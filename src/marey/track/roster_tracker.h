@@ -19,6 +19,7 @@ struct RosterTrackerOptions {
   double marker_width = 8;          ///< of an observation without a box, px
   double place_noise = 0.05;        ///< standard deviation added to that of each observation, px: what no detector knows of itself
   bool rigid_neighbours = false;    ///< in space: a hidden marker is expected where the markers that move rigidly with it are
+  double decide_after = 0;          ///< in space: what `decided` says is that old, s, and names are put right meanwhile
   std::optional<Box> picture;       ///< a hidden marker is predicted no farther than this, px; nothing: for some seconds
   double confirm = 10;              ///< log-likelihood ratio against clutter that proves a newcomer
 };

@@ -158,13 +158,23 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
 
 struct BarMotion {
   std::vector<Path> paths;
-  Box bar;
+  std::vector<Box> bars;
   double level;
 };
 
-/// Markers that pass behind one upright bar, every second one from the other side, each hidden for 12 to 32 frames around the
-/// middle of the video, so that the times overlap.
-BarMotion behind_bar(int markers, int frames, const cv::Size& size, Random& random) {
+/// Upright bars of `width` px that share the picture out evenly.
+std::vector<Box> bars_across(int count, double width, const cv::Size& size) {
+  std::vector<Box> bars;
+  for (int i = 0; i < count; ++i) {
+    bars.push_back(Box::from_centre({size.width * (i + 1.0) / (count + 1), size.height / 2.0}, width, 2.0 * size.height));
+  }
+  return bars;
+}
+
+/// Markers that pass behind upright bars, every second one from the other side, each hidden for 12 to 32 frames (at a pace of 1)
+/// by each; by one bar, around the middle of the video, so that the times overlap.
+BarMotion behind_bars(int markers, int frames, const MarkerSceneOptions& options, Random& random) {
+  const cv::Size& size = options.size;
   constexpr Range kBar{60, 210};        // px across, of 640
   constexpr Range kGrey{14, 110};       // level
   constexpr Range kHidden{12, 32};      // frames
@@ -173,17 +183,17 @@ BarMotion behind_bar(int markers, int frames, const cv::Size& size, Random& rand
   constexpr Range kLane{-15, 15};       // px beside the common lane
   constexpr Range kDelay{-4, 4};        // frames
   for (int draw = most_draws(frames); draw > 0; --draw) {
-    const double width = kBar.draw(random) * size.width / 640;
-    BarMotion motion{{}, Box::from_centre(middle(size), width, 2.0 * size.height), kGrey.draw(random)};
+    const double width = kBar.draw(random) * size.width / 640 / options.bars;
+    BarMotion motion{{}, bars_across(options.bars, width, size), kGrey.draw(random)};
     const double lane = random.uniform(-0.3, 0.3) * size.height;
     bool fits = true;
     for (int i = 0; i < markers; ++i) {
-      const double speed = width / kHidden.draw(random);
+      const double speed = width * options.pace / kHidden.draw(random);
       const double course = (i % 2 == 0 ? 0 : kPi) + kSlope.draw(random);
-      const Vector<2> late = kDelay.draw(random) * speed * direction(course);
+      const Vector<2> late = kDelay.draw(random) / options.pace * speed * direction(course);
       const Vector<2> centre = middle(size) + Vector<2>(0, lane + kLane.draw(random)) - late;
       motion.paths.push_back(through(centre, course, speed, kBend.draw(random), frames, frames));
-      const double clear = width / 2 + kMargin;  // the whole disc shows at both ends
+      const double clear = middle(size).x() - motion.bars.front().left + kMargin;  // the whole disc shows at both ends
       const Path& path = motion.paths.back();
       fits = fits && stays_inside(path, size) && std::abs(path.front().x() - middle(size).x()) > clear &&
              std::abs(path.back().x() - middle(size).x()) > clear;
@@ -278,7 +288,7 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
   scene.options = options;
   scene.seed = seed;
   Random random(seed * 16 + static_cast<std::uint64_t>(situation));
-  const int frames = options.frames.value_or(paper_length(situation));
+  const int frames = options.frames.value_or(static_cast<int>(std::lround(paper_length(situation) * options.bars / options.pace)));
 
   std::vector<Path> paths;
   switch (situation) {
@@ -302,9 +312,9 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
       break;
     case MarkerSituation::bar:
     case MarkerSituation::opposite: {
-      BarMotion motion = behind_bar(situation == MarkerSituation::bar ? 1 : 2, frames, options.size, random);
+      BarMotion motion = behind_bars(situation == MarkerSituation::bar ? 1 : 2, frames, options, random);
       for (Path& path : motion.paths) paths.push_back(std::move(path));
-      scene.barriers.push_back(motion.bar);
+      scene.barriers = std::move(motion.bars);
       scene.barrier_level = motion.level;
       break;
     }

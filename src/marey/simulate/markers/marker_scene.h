@@ -42,6 +42,8 @@ struct MarkerSceneOptions {
   double blur_px = 0.55;       ///< standard deviation of the disc's edge
   double noise = 1.5;          ///< standard deviation of the pixels, grey levels
   int clutter = 0;             ///< false lights a frame, each in a new place
+  int bars = 1;                ///< that markers pass behind one after the other: in bar and opposite
+  double pace = 1;             ///< in bar and opposite: everything takes 1 / pace of the frames; positive
 };
 
 /// Where a marker truly is in one frame.

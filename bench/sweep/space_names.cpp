@@ -1,0 +1,289 @@
+// Names of markers in space: how often a marker of a body bears a wrong name, beside a plain tracker on the same points.
+//
+//   space_names [--motion walk|run|kneel] [--actors N] [--cameras N] [--markers N] [--gaps SHARE] [--seconds S] [--rate HZ]
+//               [--noise PX] [--seeds N] [--first-seed N] [--live] [--events]
+//
+// A track is at home on the marker that it was on the longest. `wrong` counts how often a marker bore a track that is at home on
+// another for 0.1 s and more; `swapped` the markers that do so at the end; `renamed` the tracks that a marker had beside one of its
+// own; `told` of all markers and frames those with a measured point. The peer follows the same true places, where our
+// reconstruction found a point: constant velocity, never given up, the Hungarian method, a gate that grows with the time unseen.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "marey/assign/linear_assignment.h"
+#include "marey/pipeline/markers_in_space.h"
+#include "marey/simulate/room/room.h"
+
+namespace {
+
+using namespace marey;
+
+constexpr double kReach = 0.03;      // m from the true marker that a point may be, to be that marker's
+constexpr double kLongEnough = 0.1;  // s that a wrong name must last to be counted
+
+/// Follows which track is on each marker. A track is at home on the marker that it was on the longest.
+class NameJudge {
+ public:
+  NameJudge(std::size_t markers, double rate_hz) : rate_hz_(rate_hz), seen_(markers) {}
+
+  void see(std::int64_t frame, int track, const Vector<3>& place, const std::vector<Vector<3>>& truth) {
+    std::size_t nearest = 0;
+    for (std::size_t m = 1; m < truth.size(); ++m) {
+      if ((truth[m] - place).squaredNorm() < (truth[nearest] - place).squaredNorm()) nearest = m;
+    }
+    if ((truth[nearest] - place).norm() > kReach) {
+      ++nowhere_;
+      return;
+    }
+    seen_[nearest].push_back({static_cast<std::int32_t>(frame), track});
+    ++told_;
+  }
+
+  struct Verdict {
+    int wrong = 0;    ///< times that a marker bore a name that is at home elsewhere, for kLongEnough and more
+    int early = 0;    ///< of these, in the first three seconds
+    int swapped = 0;  ///< markers that bear such a name at the end
+    int renamed = 0;  ///< names that markers had beside their main ones, of their own
+  };
+
+  Verdict verdict(bool events) const {
+    std::map<int, std::map<std::size_t, int>> on;
+    for (std::size_t m = 0; m < seen_.size(); ++m) {
+      for (const Seen& seen : seen_[m]) ++on[seen.track][m];
+    }
+    std::map<int, std::size_t> home;
+    std::map<std::size_t, int> names;
+    for (const auto& [track, markers] : on) {
+      const auto most = std::max_element(markers.begin(), markers.end(), [](auto& p, auto& q) { return p.second < q.second; });
+      home[track] = most->first;
+      names[most->first] += most->second >= kLongEnough * rate_hz_;
+    }
+    Verdict verdict;
+    for (const auto& [marker, count] : names) verdict.renamed += std::max(0, count - 1);
+    for (std::size_t m = 0; m < seen_.size(); ++m) {
+      int run = 0, counted_track = 0;
+      for (const Seen& seen : seen_[m]) {
+        run = home[seen.track] == m ? 0 : run + 1;
+        if (run == 0) counted_track = 0;
+        if (run < kLongEnough * rate_hz_ || counted_track != 0) continue;
+        counted_track = seen.track;
+        ++verdict.wrong;
+        verdict.early += seen.frame < 3 * rate_hz_;
+        if (events)
+          std::printf("        %8.2f s: marker %zu bears %d, which is at home on %zu\n", seen.frame / rate_hz_, m, seen.track,
+                      home[seen.track]);
+      }
+      verdict.swapped += run >= kLongEnough * rate_hz_;
+    }
+    return verdict;
+  }
+
+  std::int64_t told() const { return told_; }
+  std::int64_t nowhere() const { return nowhere_; }
+
+ private:
+  struct Seen {
+    std::int32_t frame;
+    int track;
+  };
+  double rate_hz_;
+  std::vector<std::vector<Seen>> seen_;  // by marker
+  std::int64_t told_ = 0, nowhere_ = 0;
+};
+
+/// What anybody would write first.
+class PlainTracker {
+ public:
+  /// Tracks by place; those that are given no point keep going as they went.
+  void step(double dt, const std::vector<Vector<3>>& points, std::int64_t frame, NameJudge& judge,
+            const std::vector<Vector<3>>& truth) {
+    std::vector<double> costs;
+    for (Target& target : targets_) {
+      target.place += dt * target.velocity;
+      target.unseen += dt;
+      const double gate = 0.02 + 1.0 * target.unseen;
+      for (const Vector<3>& point : points) {
+        const double away = (point - target.place).norm();
+        costs.push_back(away < gate ? away : kNever);
+      }
+    }
+    std::vector<char> taken(points.size(), 0);
+    const auto columns = assigner_.assign(static_cast<int>(targets_.size()), static_cast<int>(points.size()), costs);
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      if (columns[i] == assign::kNoIndex) continue;
+      const auto column = static_cast<std::size_t>(columns[i]);
+      if (costs[i * points.size() + column] >= kNever) continue;
+      Target& target = targets_[i];
+      const Vector<3> off = points[column] - target.place;
+      target.velocity += (target.unseen < 1.5 * dt ? 0.3 / dt : 0.3 / target.unseen) * off;
+      target.place = points[column];
+      target.unseen = 0;
+      taken[column] = 1;
+      judge.see(frame, static_cast<int>(i), target.place, truth);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!taken[i] && targets_.size() < truth.size()) targets_.push_back({points[i], Vector<3>::Zero(), 0});
+    }
+  }
+
+ private:
+  static constexpr double kNever = 1e6;
+  struct Target {
+    Vector<3> place, velocity;
+    double unseen = 0;  // s
+  };
+  std::vector<Target> targets_;
+  assign::LinearAssigner assigner_;
+};
+
+FrameSet frame_set_of(const simulate::room::RoomFrame& seen) {
+  FrameSet set;
+  set.index = seen.index;
+  set.time = timestamp_from_seconds(seen.time_s);
+  for (std::size_t c = 0; c < seen.seen.size(); ++c) {
+    CameraFrame& camera = set.cameras.emplace_back().emplace();
+    camera.frame.camera = CameraId{static_cast<int>(c)};
+    camera.frame.index = seen.index;
+    camera.frame.time = set.time;
+    camera.detections.emplace();
+    for (const simulate::room::RoomBlob& blob : seen.seen[c]) {
+      Detection& detection = camera.detections->emplace_back();
+      detection.centre = blob.pixel;
+      detection.covariance.setZero();
+      detection.area = 0;
+      detection.box = Box::from_centre(blob.pixel, 0, 0);
+    }
+    set.states.push_back(FeedState::live);
+  }
+  return set;
+}
+
+struct Result {
+  NameJudge::Verdict ours, peer;
+  double told = 0, nowhere = 0, impure[3] = {0, 0, 0};  // %, of all markers and frames; of points of 2, 3, more rays
+};
+
+Result judge(const simulate::room::RoomOptions& options, bool live, bool events) {
+  const simulate::room::RoomScene scene(options);
+  pipeline::MarkersInSpaceOptions space;
+  space.live = live;
+  const auto stage = pipeline::markers_in_space(scene.rig(), options.rate_hz, space);
+  const std::size_t markers = scene.labels().size();
+  NameJudge ours(markers, options.rate_hz), peers(markers, options.rate_hz);
+  PlainTracker peer;
+  std::deque<simulate::room::RoomFrame> waiting;
+  double all[3] = {}, impure[3] = {};
+  const auto look = [&](const Instant& instant) {
+    const simulate::room::RoomFrame frame = std::move(waiting.front());
+    waiting.pop_front();
+    std::vector<Vector<3>> points;
+    for (const Sample& sample : instant.samples) {
+      if (!sample.measured()) continue;
+      ours.see(instant.index, number(sample.track), sample.position, frame.points);
+      points.push_back(sample.position);
+      std::set<int> owners;
+      int rays = 0;
+      std::size_t next = 0;
+      for (const auto& camera : frame.seen) {
+        for (const auto& blob : camera) {
+          if (instant.seen[next++].track == sample.track) owners.insert(blob.marker.value_or(-1)), ++rays;
+        }
+      }
+      const int kind = std::clamp(rays - 2, 0, 2);
+      ++all[kind];
+      impure[kind] += owners.size() > 1;
+    }
+    peer.step(1 / options.rate_hz, points, instant.index, peers, frame.points);
+  };
+  for (std::int64_t i = 0; i < options.frames; ++i) {
+    waiting.push_back(scene.frame(i));
+    for (const Instant& instant : stage->step(frame_set_of(waiting.back()))) look(instant);
+  }
+  if (const auto rest = stage->finish({})) {
+    while (const auto instant = rest->next()) look(*instant);
+  }
+  pipeline::Summary summary;
+  stage->report(summary);
+  for (const std::string& warning : summary.warnings) std::printf("        %s\n", warning.c_str());
+  if (events) std::printf("        noise %.3f px\n", summary.figures.at("noise_px"));
+  Result result{ours.verdict(events), peers.verdict(false)};
+  const double most = static_cast<double>(options.frames) * static_cast<double>(markers);
+  result.told = 100 * static_cast<double>(ours.told()) / most;
+  result.nowhere = 100 * static_cast<double>(ours.nowhere()) / most;
+  for (int i = 0; i < 3; ++i) result.impure[i] = 100 * impure[i] / std::max(1.0, all[i]);
+  return result;
+}
+
+std::optional<simulate::room::RoomMotion> motion_called(const std::string& name) {
+  for (const auto& named : simulate::room::room_motions()) {
+    if (named.name == name) return named.motion;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  simulate::room::RoomOptions options;
+  options.dropped = 0.05, options.ghosts = 0.05, options.gap_share = 0.05;
+  double duration = 60;
+  int seeds = 5;
+  std::uint64_t first = 1;
+  bool live = false, events = false;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    if (word == "--live" || word == "--events") {
+      (word == "--live" ? live : events) = true;
+      continue;
+    }
+    if (i + 1 == count) return std::fprintf(stderr, "%s needs a value\n", words[i]), 2;
+    const std::string value = words[++i];
+    const double number = std::atof(value.c_str());
+    if (word == "--motion") {
+      const auto motion = motion_called(value);
+      if (!motion) return std::fprintf(stderr, "no motion %s\n", value.c_str()), 2;
+      options.motion = *motion;
+    } else if (word == "--cameras") {
+      options.cameras = static_cast<int>(number);
+    } else if (word == "--markers") {
+      options.markers = static_cast<int>(number);
+    } else if (word == "--gaps") {
+      options.gap_share = number;
+    } else if (word == "--seconds") {
+      duration = number;
+    } else if (word == "--rate") {
+      options.rate_hz = number;
+    } else if (word == "--noise") {
+      options.noise_px = number;
+    } else if (word == "--seeds") {
+      seeds = static_cast<int>(number);
+    } else if (word == "--first-seed") {
+      first = static_cast<std::uint64_t>(number);
+    } else {
+      return std::fprintf(stderr, "no option %s\n", words[i - 1]), 2;
+    }
+  }
+  options.frames = static_cast<std::int64_t>(duration * options.rate_hz);
+  std::printf("%d cameras, %d markers, %g Hz, %g s, %g px, dropped %g, ghosts %g, gaps %g up to %g s%s\n", options.cameras,
+              options.markers, options.rate_hz, duration, options.noise_px, options.dropped, options.ghosts, options.gap_share,
+              options.gap_s, live ? ", live" : "");
+  std::printf("%6s %7s %7s %7s %7s %7s %8s %22s   peer: %7s %7s %7s\n", "seed", "wrong", "early", "swapped", "renamed", "told %",
+              "nowhere", "mixed of 2, 3, 4 rays", "wrong", "swapped", "renamed");
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(seeds); ++seed) {
+    options.seed = seed;
+    const Result result = judge(options, live, events);
+    std::printf("%6llu %7d %7d %7d %7d %7.2f %8.3f %8.2f %6.2f %6.2f         %7d %7d %7d\n", static_cast<unsigned long long>(seed),
+                result.ours.wrong, result.ours.early, result.ours.swapped, result.ours.renamed, result.told, result.nowhere,
+                result.impure[0], result.impure[1], result.impure[2], result.peer.wrong, result.peer.swapped, result.peer.renamed);
+    std::fflush(stdout);
+  }
+  return 0;
+}
