@@ -25,11 +25,11 @@ constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t kMostKinds = 300;
 
-constexpr int kTurns = 5;        // of learning who left, and where people leave
-constexpr int kRounds = 15;      // of messages between ends and beginnings
-constexpr double kLeast = -6;    // logarithm of odds: pairs that are less likely to begin with are left out
-constexpr double kSurest = 30;   // likewise: surer ones count no more
-constexpr double kBounds = 1.5;  // s
+constexpr int kTurns = 5;          // of learning who left, and where people leave
+constexpr int kMessages = 15;      // of messages between ends and beginnings
+constexpr double kLeastOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are left out
+constexpr double kSurest = 30;     // likewise: surer ones count no more
+constexpr double kBounds = 1.5;    // s
 
 template <int N>
 double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
@@ -150,7 +150,7 @@ class Chainer {
       heads_[i].appearance = tails_[i].appearance = appearance_of(tracklets_[i].samples);
       if (heads_[i].appearance) seen.push_back({*heads_[i].appearance, seconds(tails_[i].time - heads_[i].time)});
     }
-    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen), options_, kLeast);
+    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen), options_, kLeastOdds);
     for (assign::GatedPair& pair : pairs_) pair.gain -= openness_gain(pair);
   }
 
@@ -166,7 +166,7 @@ class Chainer {
     std::vector<double> odds;
     for (const assign::GatedPair& pair : pairs_) odds.push_back(std::exp(std::min(kSurest, pair.gain + openness_gain(pair))));
     std::vector<double> to_heads(odds.size(), 0), to_tails(odds.size(), 1), sums;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kMessages; ++round) {
       sums.assign(tails_.size(), 1);
       for (std::size_t k = 0; k < odds.size(); ++k) sums[row(k)] += odds[k] * to_tails[k];
       for (std::size_t k = 0; k < odds.size(); ++k) to_heads[k] = odds[k] / std::max(1.0, sums[row(k)] - odds[k] * to_tails[k]);

@@ -12,11 +12,11 @@ constexpr double kComingInside = 5e-5;  // people who come from nowhere, per m²
 constexpr double kComingAtBorder = 2e-3;
 constexpr double kLeavingInside = 0.02;  // probability that a track ends because the person left
 constexpr double kLeavingAtBorder = 0.7;
-constexpr double kPriorSeconds = 20;  // that the first two count for
-constexpr double kPriorTracks = 2;    // that the last two count for
-constexpr double kReach = 1.5;        // m, standard deviation: as far round a passage others are likely
-constexpr double kCell = 0.75;        // m
-constexpr double kFew = 0.002;        // of the passages lie beyond the grid on each side
+constexpr double kPriorSeconds = 20;    // that the first two count for
+constexpr double kPriorTracks = 2;      // that the last two count for
+constexpr double kReach = 1.5;          // m, standard deviation: as far round a passage others are likely
+constexpr double kPassageCell = 0.75;   // m
+constexpr double kFewPassages = 0.002;  // of the passages lie beyond the grid on each side
 
 double quantile_of(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -30,8 +30,8 @@ GroundGrid grid_over(std::span<const GroundOpenness::Passage> came, std::span<co
     for (const GroundOpenness::Passage& one : passages) x.push_back(one.place.x()), y.push_back(one.place.y());
   }
   if (x.empty()) return {};
-  return GroundGrid::over({quantile_of(x, kFew), quantile_of(y, kFew)}, {quantile_of(x, 1 - kFew), quantile_of(y, 1 - kFew)},
-                          kCell);
+  return GroundGrid::over({quantile_of(x, kFewPassages), quantile_of(y, kFewPassages)},
+                          {quantile_of(x, 1 - kFewPassages), quantile_of(y, 1 - kFewPassages)}, kPassageCell);
 }
 
 std::vector<double> sums_over(const GroundGrid& grid, std::span<const GroundOpenness::Passage> passages, bool weighted) {
