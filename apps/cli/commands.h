@@ -31,6 +31,7 @@ void add_simulate_markers(Command& simulate);  ///< below `simulate`
 void add_simulate_people(Command& simulate);
 void add_simulate_match(Command& simulate);
 void add_simulate_room(Command& simulate);
+void add_simulate_square(Command& simulate);
 
 void add_calibrate(Command& program);
 void add_calibrate_lens(Command& calibrate);  ///< below `calibrate`

@@ -21,8 +21,8 @@ std::int64_t off_pitch(const pipeline::Summary& summary) {
   return found != summary.left_out.end() ? found->second : 0;
 }
 
-double joining_s(const pipeline::Summary& summary) {
-  const auto found = summary.figures.find("joining_s");
+double figure(const pipeline::Summary& summary, const std::string& name) {
+  const auto found = summary.figures.find(name);
   return found != summary.figures.end() ? found->second : 0;
 }
 
@@ -53,7 +53,9 @@ void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOu
                      {"teams", teams},
                      {"elapsed", elapsed},
                      {"tracking_s", summary.first_pass_s},
-                     {"joining_s", joining_s(summary)},
+                     {"joining_s", figure(summary, "joining_s")},
+                     {"joins", static_cast<std::int64_t>(figure(summary, "joins"))},
+                     {"doubtful_joins", static_cast<std::int64_t>(figure(summary, "doubtful_joins"))},
                      {"stopped", summary.stopped},
                      {"notes", summary.notes},
                      {"warnings", summary.warnings},

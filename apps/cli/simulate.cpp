@@ -9,6 +9,7 @@ void add_simulate(Command& program) {
   add_simulate_people(simulate);
   add_simulate_room(simulate);
   add_simulate_match(simulate);
+  add_simulate_square(simulate);
 }
 
 }  // namespace marey::cli

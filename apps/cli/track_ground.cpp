@@ -43,12 +43,9 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
   return output;
 }
 
-/// Hypotheses cost little beside decoding and looking at pictures; boxes come too fast for them, and live nobody waits for a
-/// decision.
-track::ground::GroundAssociation usual_association(const Rig& rig, bool live) {
-  const bool pictures =
-      std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
-  return pictures && !live ? track::ground::GroundAssociation::mht : track::ground::GroundAssociation::gnn;
+/// Hypotheses are decided later, and live nobody waits for that.
+track::ground::GroundAssociation usual_association(bool live) {
+  return live ? track::ground::GroundAssociation::gnn : track::ground::GroundAssociation::mht;
 }
 
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
@@ -59,13 +56,22 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
+  options.learn.walk = command.filter.empty();
   if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
   options.tracker.associate =
-      flags.associate.empty() ? usual_association(rig, command.live) : track::ground::ground_association_named(flags.associate);
+      flags.associate.empty() ? usual_association(command.live) : track::ground::ground_association_named(flags.associate);
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
-  if (over_pitch || !flags.size.empty()) options.pitch = flags.size.empty() ? geometry::PitchSize{} : parse_pitch_size(flags.size);
-  if (flags.margin && !options.pitch)
-    throw WrongUsage("--margin is counted from the edge of a pitch, and {} tells of none; give its --size", command.rig);
+  if (!flags.area.empty()) {
+    options.area = parse_area(flags.area);
+  } else if (!flags.size.empty()) {
+    options.pitch = parse_pitch_or_rectangle(flags.size);
+    if (!options.pitch) options.area = parse_area(flags.size);
+  } else if (over_pitch) {
+    options.pitch.emplace();
+  }
+  if (flags.margin && !options.pitch && options.area.empty())
+    throw WrongUsage("--margin is counted from the edge of a pitch or an area, and {} tells of none; give its --size or --area",
+                     command.rig);
   options.margin = flags.margin.value_or(options.margin);
   return options;
 }
@@ -79,18 +85,24 @@ void add_ground_options(Command& command, GroundFlags& flags) {
   command.input_files("SOURCES", flags.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
   command
       .text("--size", flags.size,
-            "of the pitch, LENGTHxWIDTH in m (default: 105x68 where the rig was calibrated over one, else there is none)")
+            "of the pitch, or of any other rectangle from the origin on, LENGTHxWIDTH in m (default: 105x68 where the rig was "
+            "calibrated over a pitch, else people count everywhere)")
       .needs(ground)
-      .check(parse_pitch_size);
-  command.number("--margin", flags.margin, "m", closed(0, 1000), "round the pitch where people still count (default: 2)")
+      .check(parse_pitch_or_rectangle);
+  command
+      .text("--area", flags.area,
+            "where people count, in place of a pitch: its corners in order, \"x,y x,y x,y\" in m, or LENGTHxWIDTH")
+      .needs(ground)
+      .check(parse_area);
+  command
+      .number("--margin", flags.margin, "m", closed(0, 1000), "round the pitch or the area where people still count (default: 2)")
       .needs(ground);
   command.text("--teams", flags.teams, "the teams' colours, \"white,blue\", or what they are called, \"City=white,United=blue\"")
       .needs(ground)
       .check(analyse::parse_teams);
   command
       .text("--associate", flags.associate,
-            "how observations are associated with tracks: gnn, jpda or mht (default: mht with pictures; gnn with detections alone, "
-            "or --live)")
+            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live)")
       .needs(ground)
       .check(track::ground::ground_association_named);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);

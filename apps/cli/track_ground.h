@@ -12,7 +12,7 @@ namespace marey::cli {
 struct GroundFlags {
   bool ground = false;
   std::vector<std::string> sources;
-  std::string size;
+  std::string size, area;
   std::optional<double> margin;
   std::string teams;
   std::string associate;

@@ -74,6 +74,18 @@ class TrackGround(unittest.TestCase):
         self.assertTrue(all(-2 <= float(r["x"]) <= 107 and -2 <= float(r["y"]) <= 70 for r in rows))
         self.assertGreater(self.judged("match.csv")["idf1"], 0.9)
 
+    def test_people_of_an_open_square_come_and_leave(self):
+        subprocess.run([MAREY, "simulate", "square", "-o", "square", "-q", "--seconds", "30"], cwd=self.folder, check=True, timeout=120)
+        rig, truth = "square/rig.toml", "square/truth.csv"
+        self.track(rig, "-o", "whole.csv", "--size", "36x12", "-q")
+        told = self.marey("evaluate", "--truth", truth, "--tracks", "whole.csv", "--distance", 1, "--json")
+        self.assertGreater(json.loads(told.stdout)["idf1"], 0.6)
+        self.track(rig, "-o", "corner.csv", "--area", "0,0 12,0 0,12", "--margin", "0", "-q")
+        rows = rows_of(self.folder / "corner.csv")
+        self.assertTrue(rows)
+        self.assertTrue(all(float(r["x"]) + float(r["y"]) < 12.01 for r in rows))
+        self.assertIn("three or more", self.refused(rig, "--targets", "people", "--ground", "--area", "0,0 1,1", "-o", "match.csv", code=2))
+
     def test_the_same_bytes_each_time(self):
         for name in ("a.csv", "b.csv"):
             self.track(self.made / "boxes" / "rig.toml", "-o", name, "-q")

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -14,15 +15,16 @@
 namespace marey::analyse {
 namespace {
 
-constexpr double least_team = 0.12;    // share of all people's time that a team's people have at least
-constexpr double keepers_length = 22;  // m from the goal line: where a keeper is nearly always
-constexpr double keepers_width = 20;   // m to either side of the middle
-constexpr double keepers_time = 0.85;  // nearly always
-constexpr double officials = 0.2;      // share that referees have at most
-constexpr double another_colour = 14;  // L*a*b*: by how much an official's colour differs from each team's
-constexpr float most_cast = 35;        // chroma
-constexpr double longest_step = 0.5;   // s from one row of a person to the next that counts as seen
-constexpr double colours_differ = 25;  // L*a*b*: how far a team's colour may lie from the one that is named
+constexpr double least_team = 0.12;      // share of all people's time that a team's people have at least
+constexpr double keepers_length = 22;    // m from the goal line: where a keeper is nearly always
+constexpr double keepers_width = 20;     // m to either side of the middle
+constexpr double keepers_time = 0.85;    // nearly always
+constexpr std::size_t last_players = 3;  // of a team, that tell which goal is its own
+constexpr double officials = 0.2;        // share that referees have at most
+constexpr double another_colour = 14;    // L*a*b*: by how much an official's colour differs from each team's
+constexpr float most_cast = 35;          // chroma
+constexpr double longest_step = 0.5;     // s from one row of a person to the next that counts as seen
+constexpr double colours_differ = 25;    // L*a*b*: how far a team's colour may lie from the one that is named
 
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
@@ -119,24 +121,30 @@ void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
   teams[1].name = (first_lighter ? "dark " : "light ") + teams[1].name;
 }
 
-/// The team whose players stood nearer to the goal of `end` (0: x = 0) while the keeper was seen.
+/// Mean of the `count` least values, m.
+double mean_of_least(std::vector<double>& values, std::size_t count) {
+  std::partial_sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), values.end());
+  return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), 0.0) / static_cast<double>(count);
+}
+
+/// The team whose last players stood nearer to the goal of `end` (0: x = 0) while the keeper was seen. All of a team say less: who
+/// attacks has most of its players in the other half, and who defends leaves some in front.
 std::optional<int> team_of_keeper(const Recording& recording, std::span<const Teams::Member> members, std::size_t keeper, int end) {
   double lead = 0;
   InstantRows rows(recording);
   for (const std::int32_t instant : recording.tracks()[keeper].at()) {
-    std::array<double, 2> sum{};
-    std::array<std::int64_t, 2> count{};
+    std::array<std::vector<double>, 2> before_goal;
     for (const auto& [index, row] : rows.at(static_cast<std::size_t>(instant))) {
       const Teams::Member& member = members[index];
       if (member.role != Teams::Role::player || !member.team) continue;
-      const auto team = static_cast<std::size_t>(*member.team);
-      sum[team] += recording.tracks()[index].x()[row];
-      ++count[team];
+      const double x = recording.tracks()[index].x()[row];
+      before_goal[static_cast<std::size_t>(*member.team)].push_back(end == 0 ? x : -x);
     }
-    if (count[0] > 0 && count[1] > 0) lead += sum[0] / static_cast<double>(count[0]) - sum[1] / static_cast<double>(count[1]);
+    const std::size_t last = std::min({last_players, before_goal[0].size(), before_goal[1].size()});
+    if (last > 0) lead += mean_of_least(before_goal[0], last) - mean_of_least(before_goal[1], last);
   }
   if (lead == 0) return std::nullopt;
-  return (lead > 0) == (end == 1) ? 0 : 1;
+  return lead < 0 ? 0 : 1;
 }
 
 /// Everybody's colour and time, for those who were seen long enough.
@@ -195,13 +203,22 @@ class Finder {
         member.confidence = probability;
         member.team = static_cast<int>(t);
       }
-      if (member.confidence >= options_.sure) {
+      if (member.confidence >= options_.sure && !may_be_keeper(i, *member.team)) {
         member.role = Teams::Role::player;
         ++teams_.teams[static_cast<std::size_t>(*member.team)].people;
       } else {
         member = {};
       }
     }
+  }
+
+  /// Who is nearly always before a goal, and plainly not in the team's colour although no other is nearer.
+  bool may_be_keeper(std::size_t candidate, int team) const {
+    const ColourSeen& seen = candidates_.seen[candidate];
+    const Presence& presence = presence_[static_cast<std::size_t>(candidates_.people[candidate])];
+    const bool at_home = std::max(presence.near_goal[0], presence.near_goal[1]) >= keepers_time * presence.seconds;
+    const double apart = colours_apart(seen.colour, teams_.teams[static_cast<std::size_t>(team)].colour);
+    return at_home && presence.seconds > 0 && apart > colours_differ;
   }
 
   /// Who is in no team's colour: a keeper, a referee, or nobody knows.

@@ -91,6 +91,19 @@ TEST(Teams, TwoTeamsKeepersAndRefereesAreTold) {
   }
 }
 
+TEST(Teams, KeeperOfTheTeamThatIsAttackedIsItsOwn) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Scene scene(seed);
+    for (int k = 0; k < 10; ++k) scene.add("white", 4, k < 7 ? 85 + k : 65, 6 * k + 5);  // attack towards x = 105
+    for (int k = 0; k < 10; ++k) scene.add("blue", 4, k < 6 ? 92 + k : 55, 6 * k + 8);   // four wait in front
+    scene.add("red", 4, 101, 34);
+    const Teams teams = scene.find();
+    ASSERT_EQ(teams.teams.size(), 2U) << "seed " << seed;
+    EXPECT_EQ(teams.members[20].role, Teams::Role::keeper) << "seed " << seed;
+    EXPECT_EQ(teams.members[20].team, teams.members[10].team) << "seed " << seed;
+  }
+}
+
 TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
   Scene scene = match(3, "red", "yellow");
   const Teams teams = scene.find({.names = parse_teams("Away=yellow, Home=red"), .pitch = geometry::PitchSize{}});

@@ -31,7 +31,7 @@ detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct
 cv::Rect part_with_people(const Camera& camera, const reconstruct::GroundArea& area) {
   const cv::Size size = camera.size();
   const cv::Rect whole({}, size);
-  if (!area.pitch()) return whole;
+  if (!area.bounded()) return whole;
   constexpr int step = 32;
   const GroundView view(camera);
   std::optional<Box> all;

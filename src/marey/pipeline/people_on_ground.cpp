@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,21 +18,12 @@ namespace marey::pipeline {
 namespace {
 
 using track::ground::CameraObservations;
+using track::ground::GroundInstant;
 using track::ground::ObservationMatch;
 
 constexpr std::size_t kMostCameras = 64;
-
-/// What the cameras saw at a moment, kept until the tracker is sure of it.
-struct KeptObservations {
-  KeptObservations(std::int64_t at, std::span<const CameraObservations> all) : index(at), cameras(all.begin(), all.end()) {
-    seen.reserve(cameras.size());
-    for (CameraObservations& camera : cameras) camera.seen = seen.emplace_back(camera.seen.begin(), camera.seen.end());
-  }
-
-  std::int64_t index;
-  std::vector<CameraObservations> cameras;
-  std::vector<std::vector<Observation<2>>> seen;
-};
+constexpr double kPatientFrames = 1.6;  // at few frames a second, a newcomer may be missed in one
+constexpr double kSure = 0.9;           // that a track which was lost is rightly joined: else the join is counted as doubtful
 
 std::vector<double> offsets_of(const Rig& rig) {
   std::vector<double> offsets;
@@ -65,12 +55,19 @@ class GroundStage final : public PeopleOnGround {
   GroundStage(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)
       : options_(options),
         rig_(as_fed(rig, feeds)),
-        area_(rig.ground_from_world, options.pitch, options.margin),
+        area_(area_of(rig, options)),
         paths_(offsets_of(rig)),
         logs_(feeds.size()),
         observations_(feeds.size()) {
     open_cameras(feeds);
-    tracker_ = track::ground::make_ground_tracker(options.tracker, views_);
+    track::ground::GroundTrackerOptions tracker = options.tracker;
+    tracker.evidence.tentative_patience = std::max(tracker.evidence.tentative_patience, kPatientFrames / feeds.front().rate_hz());
+    if (options.live) {
+      tracker_ = track::ground::make_ground_tracker(tracker, views_);
+    } else {
+      run_.emplace(tracker, options.join, options.learn, views_,
+                   [this](const GroundInstant& instant, std::span<const ObservationMatch> matches) { note(instant, matches); });
+    }
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
     header_.made_by.program = "marey track";
@@ -84,26 +81,24 @@ class GroundStage final : public PeopleOnGround {
   const std::vector<analyse::Teams::Team>& teams() const override { return teams_.teams; }
 
   std::span<const Instant> step(const FrameSet& frames) override {
-    const auto seen = observe(frames, tracker_->expected(frames.time));
-    const auto tracks = tracker_->step(frames.time, seen);
-    paths_.add(seen, tracker_->matches());
+    const auto seen = observe(frames, run_ ? run_->expected(frames.time) : tracker_->expected(frames.time));
     for (std::size_t i = 0; i < logs_.size() && wants_boxes_; ++i) {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
     moments_.push_back({frames.index, frames.time - first_offset()});
-    if (options_.live) {
-      live_ = live(frames, tracks, seen);
-      return {&live_, 1};
+    if (!options_.live) {
+      run_->step(static_cast<std::int32_t>(frames.index), frames.time, seen);
+      return {};
     }
-    waiting_.emplace_back(frames.index, seen);
-    record(tracker_->decided());
-    return {};
+    const auto tracks = tracker_->step(frames.time, seen);
+    paths_.add(seen, tracker_->matches());
+    live_ = live(frames, tracks, seen);
+    return {&live_, 1};
   }
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
-    record(tracker_->decide_all());
     const auto begin = std::chrono::steady_clock::now();
     join();
     joining_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -113,6 +108,8 @@ class GroundStage final : public PeopleOnGround {
   void report(Summary& summary) const override {
     if (!options_.live) summary.left_out["off_pitch"] = off_pitch_;
     if (!options_.live) summary.figures["joining_s"] = joining_s_;
+    if (!options_.live) summary.figures["joins"] = static_cast<double>(joins_);
+    if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
     for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
     for (const Summary::Camera& camera : summary.cameras) {
@@ -185,22 +182,18 @@ class GroundStage final : public PeopleOnGround {
     return seen_;
   }
 
-  /// What the tracker is sure of, of moments that waited for it.
-  void record(std::span<const track::ground::GroundDecision> decisions) {
-    for (const track::ground::GroundDecision& decision : decisions) {
-      const KeptObservations& kept = waiting_.front();
-      recorder_.add(static_cast<std::int32_t>(kept.index), decision.now, decision.tracks, kept.cameras, decision.matches);
-      if (wants_boxes_) log_boxes(kept, decision.matches);
-      waiting_.pop_front();
-    }
+  /// What is decided of an instant.
+  void note(const GroundInstant& instant, std::span<const ObservationMatch> matches) {
+    paths_.add(instant.cameras, matches);
+    if (wants_boxes_) log_boxes(instant, matches);
   }
 
-  void log_boxes(const KeptObservations& kept, std::span<const ObservationMatch> matches) {
+  void log_boxes(const GroundInstant& instant, std::span<const ObservationMatch> matches) {
     for (const ObservationMatch& match : matches) {
-      const CameraObservations& camera = kept.cameras[static_cast<std::size_t>(match.view)];
+      const CameraObservations& camera = instant.cameras[static_cast<std::size_t>(match.view)];
       const Observation<2>& seen = camera.seen[static_cast<std::size_t>(match.observation)];
       if (!seen.box || seen.shared) continue;
-      logs_[static_cast<std::size_t>(number(camera.camera))].add_box(static_cast<std::int32_t>(kept.index), match.track, *seen.box);
+      logs_[static_cast<std::size_t>(number(camera.camera))].add_box(instant.frame, match.track, *seen.box);
     }
   }
 
@@ -224,7 +217,7 @@ class GroundStage final : public PeopleOnGround {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
-    log_boxes(KeptObservations(frames.index, seen), tracker_->matches());
+    log_boxes(GroundInstant(static_cast<std::int32_t>(frames.index), frames.time, seen), tracker_->matches());
     for (track::ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;
@@ -232,8 +225,10 @@ class GroundStage final : public PeopleOnGround {
 
   /// The second pass: the tracks of the whole recording, in the user's coordinates, without those who never were in the area.
   void join() {
-    auto joined =
-        std::move(recorder_).join(options_.join, [&](const Vector<2>& place, Timestamp time) { return in_sight(place, time); });
+    auto joined = run_->finish([&](const Vector<2>& place, Timestamp time) { return in_sight(place, time); });
+    joins_ = std::ssize(joined.joins);
+    doubtful_joins_ =
+        std::count_if(joined.joins.begin(), joined.joins.end(), [](const auto& one) { return one.probability < kSure; });
     const std::size_t all = joined.recording.tracks().size();
     reconstruct::KeptPeople people =
         reconstruct::people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
@@ -308,13 +303,13 @@ class GroundStage final : public PeopleOnGround {
   RecordingHeader header_;
   std::shared_ptr<GroundViews> views_;
   std::vector<GroundCamera> cameras_;
-  std::unique_ptr<track::ground::GroundTracker> tracker_;
+  std::unique_ptr<track::ground::GroundTracker> tracker_;  // where `live`
+  std::optional<track::ground::GroundRun> run_;            // else
   GroundPathLog paths_;
   std::vector<track::ViewLog> logs_;  // of each camera, where boxes are wanted
   bool wants_boxes_ = false;
   std::vector<CameraObservations> observations_, seen_;
-  std::deque<KeptObservations> waiting_;
-  track::ground::GroundRecorder recorder_;
+  std::int64_t joins_ = 0, doubtful_joins_ = 0;
   std::vector<Recording::Moment> moments_;  // by the first camera's clock; where `live`, of this step alone
   Recording recording_;
   analyse::Teams teams_;
@@ -324,6 +319,11 @@ class GroundStage final : public PeopleOnGround {
 };
 
 }  // namespace
+
+reconstruct::GroundArea area_of(const Rig& rig, const PeopleOnGroundOptions& options) {
+  if (!options.area.empty()) return {rig.ground_from_world, options.area, options.margin};
+  return {rig.ground_from_world, options.pitch, options.margin};
+}
 
 std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<Feed>& feeds, const Rig& rig,
                                                  const PeopleOnGroundOptions& options) {

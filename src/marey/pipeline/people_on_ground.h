@@ -12,7 +12,9 @@
 #include "marey/geometry/pitch.h"
 #include "marey/pipeline/ground_camera.h"
 #include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_recorder.h"
+#include "marey/track/ground/ground_run.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {
@@ -21,13 +23,18 @@ struct PeopleOnGroundOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
   track::ground::GroundTrackerOptions tracker;
   track::ground::GroundJoinOptions join;
+  track::ground::GroundLearnOptions learn;   ///< from the recording; not where `live`
   analyse::TeamOptions teams;                ///< `pitch` is taken from below
   std::optional<double> rate_hz;             ///< of cameras of which the rig does not say it
   std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
-  double margin = 2;                         ///< m round the pitch where people still count
+  std::vector<Vector<2>> area;               ///< corners of another part of the ground, m, in place of a pitch; none: none
+  double margin = 2;                         ///< m round the pitch or the area where people still count
   /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;
 };
+
+/// The part of a rig's ground whose people count.
+reconstruct::GroundArea area_of(const Rig& rig, const PeopleOnGroundOptions& options);
 
 /// What the second pass found out of the teams; none where `live`.
 class PeopleOnGround : public Stage {

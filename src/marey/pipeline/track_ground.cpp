@@ -59,7 +59,7 @@ Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundO
   }
   if (!output.overlays.empty()) add_films(sinks, output, feeds);
   if (!output.pitch_view.empty()) {
-    const reconstruct::GroundArea area(rig.ground_from_world, options.pitch, options.margin);
+    const reconstruct::GroundArea area = area_of(rig, options);
     const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
     sinks.add(std::make_unique<draw::PitchViewFilm>(output.pitch_view, shown, feeds.front().info().rate_hz));
   }
@@ -90,7 +90,7 @@ GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const Peopl
     RigOffsetsOptions how;
     how.detector = options.detector;
     how.rate_hz = options.rate_hz;
-    offsets = find_rig_offsets(rig, reconstruct::GroundArea(rig.ground_from_world, options.pitch, options.margin), how, hooks);
+    offsets = find_rig_offsets(rig, area_of(rig, options), how, hooks);
     enter_offsets(timed, offsets);
   }
   GroundSummary summary = run_over(timed, sinks_for, options, hooks);

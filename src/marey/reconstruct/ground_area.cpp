@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,11 +23,45 @@ TrackColumns rows_in(const GroundArea& area, const TrackColumns& track) {
   return kept;
 }
 
+std::vector<Vector<2>> corners_of(const std::optional<geometry::PitchSize>& pitch) {
+  if (!pitch) return {};
+  return {{0, 0}, {pitch->length, 0}, {pitch->length, pitch->width}, {0, pitch->width}};
+}
+
+/// Whether a line from the place crosses an odd number of the polygon's edges.
+bool contains(const std::vector<Vector<2>>& corners, const Vector<2>& at) {
+  bool inside = false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vector<2>&a = corners[i], &b = corners[(i + 1) % corners.size()];
+    if ((a.y() > at.y()) == (b.y() > at.y())) continue;
+    if (at.x() < a.x() + (at.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+/// m to the nearest edge.
+double distance_to(const std::vector<Vector<2>>& corners, const Vector<2>& at) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vector<2>& a = corners[i];
+    const Vector<2> edge = corners[(i + 1) % corners.size()] - a;
+    const double along = std::clamp((at - a).dot(edge) / std::max(edge.squaredNorm(), 1e-12), 0.0, 1.0);
+    least = std::min(least, (at - a - along * edge).norm());
+  }
+  return least;
+}
+
 }  // namespace
 
 GroundArea::GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch,
                        double margin)
-    : pitch_(pitch), margin_(margin) {
+    : GroundArea(ground_from_world, corners_of(pitch), margin) {
+  pitch_ = pitch;
+}
+
+GroundArea::GroundArea(const std::optional<Matrix<3>>& ground_from_world, std::vector<Vector<2>> corners, double margin)
+    : corners_(std::move(corners)), margin_(margin) {
+  if (corners_.size() == 1 || corners_.size() == 2) throw Error("an area with {} corners; it needs three or more", corners_.size());
   if (!ground_from_world) return;
   const Matrix<3>& H = *ground_from_world;
   if (H.row(2) != Vector<3>(0, 0, H(2, 2)).transpose() || !(std::abs(H.determinant()) > 1e-12))
@@ -52,10 +87,9 @@ Vector<2> GroundArea::world(const Vector<2>& ground) const {
 }
 
 bool GroundArea::holds(const Vector<2>& world, double slack) const {
-  if (!pitch_) return true;
+  if (corners_.empty()) return true;
   const Vector<2> at = ground(world);
-  const double around = margin_ + slack;
-  return at.x() >= -around && at.y() >= -around && at.x() <= pitch_->length + around && at.y() <= pitch_->width + around;
+  return contains(corners_, at) || distance_to(corners_, at) <= margin_ + slack;
 }
 
 KeptPeople people_in(const GroundArea& area, Recording recording) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "marey/core/geometry.h"
 #include "marey/core/other_ground.h"
@@ -11,13 +12,18 @@
 
 namespace marey::reconstruct {
 
-/// The part of the ground whose people count: a pitch with a margin round it, in the user's frame. Without a pitch all of it.
+/// The part of the ground whose people count: a pitch, or any polygon, with a margin round it, in the user's frame. Without either
+/// all of it.
 class GroundArea {
  public:
   GroundArea() = default;
 
   /// The pitch's corner is the origin of the user's frame, which is the world through `ground_from_world`. `margin` in m.
   GroundArea(const std::optional<Matrix<3>>& ground_from_world, const std::optional<geometry::PitchSize>& pitch, double margin);
+
+  /// Within the polygon of these corners, m in the user's frame, in order round it: three or more, or none for everywhere. Throws
+  /// Error for one or two.
+  GroundArea(const std::optional<Matrix<3>>& ground_from_world, std::vector<Vector<2>> corners, double margin);
 
   /// The user's coordinates of a place in the world, and a velocity's.
   Vector<2> ground(const Vector<2>& world) const;
@@ -32,11 +38,14 @@ class GroundArea {
   /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
   bool mirrored() const { return ground_from_world_.topLeftCorner<2, 2>().determinant() < 0; }
   const std::optional<geometry::PitchSize>& pitch() const { return pitch_; }
+  /// Whether people count on a part of the ground only.
+  bool bounded() const { return pitch_ || !corners_.empty(); }
   double margin() const { return margin_; }
 
  private:
   Matrix<3> ground_from_world_ = Matrix<3>::Identity(), world_from_ground_ = Matrix<3>::Identity();
   std::optional<geometry::PitchSize> pitch_;
+  std::vector<Vector<2>> corners_;  // of the polygon; of a pitch its four
   double margin_ = 0;
 };
 

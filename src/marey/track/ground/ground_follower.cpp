@@ -15,7 +15,7 @@ std::span<const Track<2>> GroundFollower::step(Timestamp now, std::span<const Ca
   for (const CameraObservations& view : views) visibility_.check(view);
   predict_to(now);
   matches_.clear();
-  for (int i = 0; i < std::ssize(views); ++i) take_in(i, views[i]);
+  for (const int i : surest_first(views)) take_in(i, views[i]);
   merge_duplicates();
   std::erase_if(targets_, [&](const GroundTarget& target) { return rules_.lost(target, *now_); });
   return report();

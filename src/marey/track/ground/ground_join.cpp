@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -11,22 +12,24 @@
 
 #include "marey/assign/sparse_assignment.h"
 #include "marey/core/colour.h"
+#include "marey/track/ground/ground_openness.h"
 
 namespace marey::track::ground {
 namespace {
 
 constexpr double end_span = 3;  // s of a tracklet that its end is judged by
 
-constexpr double births_inside = 5e-5;  // people who come from nowhere, per m² and s: 25 people, each lost once in a minute or so
-constexpr double births_at_border = 2e-3;
-constexpr double left_inside = 0.02;  // probability that a track ends because the person left
-constexpr double left_at_border = 0.7;
-
 constexpr double tracker_knows = 2;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
 constexpr double clothes_vary = 5;   // as perceived, one person's colour from one stretch to another: sun, shade, another camera
 constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t kMostKinds = 300;
+
+constexpr int kTurns = 5;          // of learning who left, and where people leave
+constexpr int kMessages = 15;      // of messages between ends and beginnings
+constexpr double kLeastOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are left out
+constexpr double kSurest = 30;     // likewise: surer ones count no more
+constexpr double kBounds = 1.5;    // s
 
 template <int N>
 double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
@@ -58,6 +61,26 @@ bool near_border(const GroundState& state, Timestamp time, double direction, con
   return false;
 }
 
+/// Pairs within the longest gap that gain more than `least`.
+std::vector<assign::GatedPair> gated_pairs(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads,
+                                           const GroundColours& colours, const GroundChainOptions& options, double least) {
+  std::vector<int> by_time(heads.size());
+  std::iota(by_time.begin(), by_time.end(), 0);
+  std::sort(by_time.begin(), by_time.end(),
+            [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
+  const Duration longest = duration_from_seconds(options.longest_gap);
+  std::vector<assign::GatedPair> pairs;
+  for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
+    auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time,
+                                 [&](Timestamp time, int head) { return time < heads[head].time; });
+    for (; next != by_time.end() && heads[*next].time - tails[tail].time <= longest; ++next) {
+      const std::optional<double> gain = gain_of_joining(tails[tail], heads[*next], colours, options);
+      if (gain && *gain > least) pairs.push_back({tail, *next, *gain});
+    }
+  }
+  return pairs;
+}
+
 class Chainer {
  public:
   Chainer(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
@@ -72,24 +95,108 @@ class Chainer {
       tail.time = times[samples.back().instant];
       head.state = first_state(samples, times, options.motion, end_span);
       tail.state = last_state(samples, times, options.motion, end_span);
-      head.at_border = near_border(head.state, head.time, -1, in_sight);
-      tail.at_border = near_border(tail.state, tail.time, 1, in_sight);
+      head_at_border_.push_back(near_border(head.state, head.time, -1, in_sight));
+      tail_at_border_.push_back(near_border(tail.state, tail.time, 1, in_sight));
       heads_.push_back(head);
       tails_.push_back(tail);
     }
+    learn_openness();
   }
 
-  std::vector<std::vector<int>> chains() {
+  std::vector<GroundChain> chains() {
     std::vector<std::vector<int>> chains(tracklets_.size());
     for (std::size_t i = 0; i < chains.size(); ++i) chains[i] = {static_cast<int>(i)};
     for (const double share : {0.05, 0.25, 1.0}) lengthen(chains, share * options_.longest_gap);
     std::sort(chains.begin(), chains.end(), [&](const std::vector<int>& a, const std::vector<int>& b) {
       return std::pair(heads_[a.front()].time, a.front()) < std::pair(heads_[b.front()].time, b.front());
     });
-    return chains;
+    std::vector<GroundChain> result;
+    for (std::vector<int>& members : chains) {
+      GroundChain& one = result.emplace_back(GroundChain{std::move(members), {}});
+      for (std::size_t i = 1; i < one.members.size(); ++i)
+        one.probabilities.push_back(probability(one.members[i - 1], one.members[i]));
+    }
+    return result;
   }
 
  private:
+  /// By turns: how likely each end and beginning are one person's, and where people come and leave.
+  void learn_openness() {
+    const std::size_t n = tracklets_.size();
+    if (n == 0) return;
+    const double recorded = std::max(1.0, seconds(times_.back() - times_.front()));
+    const double bounds = std::min(kBounds, recorded / 4);  // at the recording's own bounds tracks begin and end of themselves
+    std::vector<std::size_t> begun, ended;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (seconds(heads_[i].time - times_.front()) > bounds) begun.push_back(i);
+      if (seconds(times_.back() - tails_[i].time) > bounds) ended.push_back(i);
+    }
+    std::vector<double> came(n, 0.5), left(n, 0.5);
+    for (int turn = 0; turn < kTurns; ++turn) {
+      std::vector<GroundOpenness::Passage> comings, leavings;
+      for (const std::size_t i : begun) comings.push_back({heads_[i].state.place(), head_at_border_[i] != 0, came[i]});
+      for (const std::size_t i : ended) leavings.push_back({tails_[i].state.place(), tail_at_border_[i] != 0, left[i]});
+      const GroundOpenness openness(comings, leavings, recorded);
+      for (std::size_t k = 0; k < begun.size(); ++k) heads_[begun[k]].coming = openness.coming(comings[k]);
+      for (std::size_t k = 0; k < ended.size(); ++k) tails_[ended[k]].leaving = openness.leaving(leavings[k]);
+      weigh_pairs(came, left);
+    }
+  }
+
+  /// Pairs with what does not depend on where people come and leave, found once.
+  void find_pairs() {
+    std::vector<GroundColours::Seen> seen;
+    for (std::size_t i = 0; i < tracklets_.size(); ++i) {
+      heads_[i].appearance = tails_[i].appearance = appearance_of(tracklets_[i].samples);
+      if (heads_[i].appearance) seen.push_back({*heads_[i].appearance, seconds(tails_[i].time - heads_[i].time)});
+    }
+    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen), options_, kLeastOdds);
+    for (assign::GatedPair& pair : pairs_) pair.gain -= openness_gain(pair);
+  }
+
+  double openness_gain(const assign::GatedPair& pair) const {
+    const double leaving = tails_[static_cast<std::size_t>(pair.row)].leaving;
+    return std::log((1 - leaving) / leaving) - std::log(heads_[static_cast<std::size_t>(pair.column)].coming);
+  }
+
+  /// Marginal probabilities of all pairs, each end with one beginning at most and the other way round, by belief propagation
+  /// (Williams & Lau, "Approximate evaluation of marginal association probabilities with belief propagation", 2014).
+  void weigh_pairs(std::vector<double>& came, std::vector<double>& left) {
+    if (pairs_.empty()) find_pairs();
+    std::vector<double> odds;
+    for (const assign::GatedPair& pair : pairs_) odds.push_back(std::exp(std::min(kSurest, pair.gain + openness_gain(pair))));
+    std::vector<double> to_heads(odds.size(), 0), to_tails(odds.size(), 1), sums;
+    for (int round = 0; round < kMessages; ++round) {
+      sums.assign(tails_.size(), 1);
+      for (std::size_t k = 0; k < odds.size(); ++k) sums[row(k)] += odds[k] * to_tails[k];
+      for (std::size_t k = 0; k < odds.size(); ++k) to_heads[k] = odds[k] / std::max(1.0, sums[row(k)] - odds[k] * to_tails[k]);
+      sums.assign(heads_.size(), 1);
+      for (std::size_t k = 0; k < odds.size(); ++k) sums[column(k)] += to_heads[k];
+      for (std::size_t k = 0; k < odds.size(); ++k) to_tails[k] = 1 / std::max(1.0, sums[column(k)] - to_heads[k]);
+    }
+    sums.assign(tails_.size(), 1);
+    for (std::size_t k = 0; k < odds.size(); ++k) sums[row(k)] += odds[k] * to_tails[k];
+    came.assign(heads_.size(), 1);
+    left.assign(tails_.size(), 1);
+    probabilities_.clear();
+    for (std::size_t k = 0; k < odds.size(); ++k) {
+      const double probability = odds[k] * to_tails[k] / sums[row(k)];
+      probabilities_[{pairs_[k].row, pairs_[k].column}] = probability;
+      came[column(k)] -= probability;
+      left[row(k)] -= probability;
+    }
+    for (double& value : came) value = std::clamp(value, 0.0, 1.0);
+    for (double& value : left) value = std::clamp(value, 0.0, 1.0);
+  }
+
+  std::size_t row(std::size_t pair) const { return static_cast<std::size_t>(pairs_[pair].row); }
+  std::size_t column(std::size_t pair) const { return static_cast<std::size_t>(pairs_[pair].column); }
+
+  double probability(int tail, int head) const {
+    const auto found = probabilities_.find({tail, head});
+    return found == probabilities_.end() ? 0 : found->second;
+  }
+
   /// Joins chains over gaps of at most `longest`.
   void lengthen(std::vector<std::vector<int>>& chains, double longest) {
     std::vector<GroundEnd> heads, tails;
@@ -130,6 +237,9 @@ class Chainer {
   std::span<const Timestamp> times_;
   const GroundChainOptions& options_;
   std::vector<GroundEnd> heads_, tails_;
+  std::vector<char> head_at_border_, tail_at_border_;
+  std::vector<assign::GatedPair> pairs_;  // tails and heads; gains without what openness adds
+  std::map<std::pair<int, int>, double> probabilities_;
 };
 
 }  // namespace
@@ -170,34 +280,20 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * square(GroundStray{}.place));
   if (way > options.max_speed * gap + unsure) return std::nullopt;
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
-  const double left = tail.at_border ? left_at_border : left_inside;
-  const double found_again = std::log((1 - left) / left) - 2 * std::log1p(gap);
-  const double came = std::log(head.at_border ? births_at_border : births_inside) + log_normal<2>(head.state.velocity(), anyhow);
+  const double found_again = std::log((1 - tail.leaving) / tail.leaving) - 2 * std::log1p(gap);
+  const double came = std::log(head.coming) + log_normal<2>(head.state.velocity(), anyhow);
   const double thought = tail.goes_on && head.piece == tail.piece + 1 ? tracker_knows : 0;
   return log_continuity(tail, head, colours, options.motion) + found_again - came + thought;
 }
 
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
                         const GroundChainOptions& options) {
-  std::vector<int> by_time(heads.size());
-  std::iota(by_time.begin(), by_time.end(), 0);
-  std::sort(by_time.begin(), by_time.end(),
-            [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
-  const Duration longest = duration_from_seconds(options.longest_gap);
-  std::vector<assign::GatedPair> pairs;
-  for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
-    auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time,
-                                 [&](Timestamp time, int head) { return time < heads[head].time; });
-    for (; next != by_time.end() && heads[*next].time - tails[tail].time <= longest; ++next) {
-      const std::optional<double> gain = gain_of_joining(tails[tail], heads[*next], colours, options);
-      if (gain && *gain > 0) pairs.push_back({tail, *next, *gain});
-    }
-  }
+  const std::vector<assign::GatedPair> pairs = gated_pairs(tails, heads, colours, options, 0);
   return assign::sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
 }
 
-std::vector<std::vector<int>> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                    const InSight& in_sight, const GroundChainOptions& options) {
+std::vector<GroundChain> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
+                               const GroundChainOptions& options) {
   return Chainer(tracklets, times, in_sight, options).chains();
 }
 

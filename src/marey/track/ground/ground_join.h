@@ -7,7 +7,8 @@
 //   motion     the state at the end, predicted over the gap by the damped walk of ground_smooth.h, meets the state at the beginning
 //              (place and velocity, both with what is uncertain of them), against somebody who comes from anywhere, anyhow;
 //   time       lost people are found again sooner rather than later;
-//   place      where people come into sight and leave it, they are likely to have done so; elsewhere they are not;
+//   place      where people come into sight and leave it, they are likely to have done so; elsewhere they are not: that is learned
+//              from the recording (ground_openness.h);
 //   clothes    the two colours are as one person's, against how common such a colour is in this recording.
 // Nobody is in two places at once, since a chain never goes back in time, and nobody is faster than people are. Short gaps are
 // settled first: what that joins is longer, and surer of its velocities and colours, when the long gaps follow. Cost: pairs within
@@ -40,7 +41,8 @@ struct GroundEnd {
   GroundState state;
   int piece = 0;                              ///< index of the tracklet
   bool goes_on = false;                       ///< the tracker thought that the next tracklet follows
-  bool at_border = false;                     ///< somebody may well have come into sight, or left it, just there
+  double coming = 5e-5;                       ///< people who come into sight there, per m² and s
+  double leaving = 0.02;                      ///< of those whose tracks end there, the share who left for good
   std::optional<Appearance> appearance = {};  ///< of the whole tracklet
 };
 
@@ -80,10 +82,15 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
                         const GroundChainOptions& options);
 
-/// Indices of tracklets, chain by chain, each in the order of time; chains in the order of their first samples.
-/// `times` by instant; no tracklet is empty.
-std::vector<std::vector<int>> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                    const InSight& in_sight, const GroundChainOptions& options);
+/// Tracklets that are one person's.
+struct GroundChain {
+  std::vector<int> members;           ///< indices, in the order of time
+  std::vector<double> probabilities;  ///< of each member but the first: that it is the same person as the one before
+};
+
+/// Chains in the order of their first samples. `times` by instant; no tracklet is empty.
+std::vector<GroundChain> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
+                               const GroundChainOptions& options);
 
 /// What somebody wears by all samples: the median of each component. Nothing where no sample has a colour.
 std::optional<Appearance> appearance_of(std::span<const GroundSample> samples);

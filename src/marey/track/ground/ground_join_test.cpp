@@ -1,5 +1,6 @@
 #include "marey/track/ground/ground_join.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -42,7 +43,9 @@ std::vector<Timestamp> clock_of(int instants) {
 using Chains = std::vector<std::vector<int>>;
 
 Chains chains_of(const std::vector<GroundTracklet>& tracklets, const InSight& in_sight = {}) {
-  return chain(tracklets, clock_of(1000), in_sight, {});
+  Chains chains;
+  for (const GroundChain& one : chain(tracklets, clock_of(1000), in_sight, {})) chains.push_back(one.members);
+  return chains;
 }
 
 TEST(GroundJoin, OneWhoWalksOnIsOne) {
@@ -112,7 +115,8 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
         end->state.x[1] = Vector<2>(uniform(-3, 3), uniform(-3, 3));
         end->state.P[0] = 0.1 * Matrix<2>::Identity();
         end->state.P[3] = end->state.P[5] = Matrix<2>::Identity();
-        end->at_border = uniform(0, 1) < 0.3;
+        end->coming = std::exp(uniform(-10, -6));
+        end->leaving = uniform(0.02, 0.7);
       }
       if (uniform(0, 1) < 0.8) {
         head.appearance = tail.appearance = uniform(0, 1) < 0.5 ? white : blue;

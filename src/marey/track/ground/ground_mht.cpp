@@ -56,7 +56,7 @@ class GroundMht final : public GroundTracker {
     predict_to(now);
     history_.forget_decided();
     history_.begin(now);
-    for (int i = 0; i < std::ssize(views); ++i) take_in(i, views[i]);
+    for (const int i : surest_first(views)) take_in(i, views[i]);
     merge_duplicates();
     retire_lost();
     note();

@@ -12,8 +12,8 @@ namespace {
 
 class Writer {
  public:
-  Writer(std::span<const Timestamp> times, const GroundJoinOptions& options)
-      : times_(times), options_(options), motion_(options.motion) {}
+  Writer(const GroundInstants& instants, const GroundJoinOptions& options)
+      : times_(instants.times), camera_begins_(instants.camera_begins), options_(options), motion_(options.motion) {}
 
   /// Too brief, or seen too seldom, to be somebody.
   bool is_false_alarm(const std::vector<GroundTracklet>& tracklets, const std::vector<int>& chain) const {
@@ -39,6 +39,7 @@ class Writer {
     const std::vector<GroundMoment> moments = smooth_ground(samples, times_, motion_);
     TrackColumns track({person, {}, {}}, 2);
     track.reserve(count(samples));
+    if (!samples.empty() && began_with_cameras(samples.front())) predict_back(samples.front().instant, moments.front(), track);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i > 0 && fills(samples[i - 1], samples[i])) fill(samples, moments, i, track);
       add(samples[i].instant, moments[i], samples[i].cameras, track);
@@ -47,6 +48,28 @@ class Writer {
   }
 
  private:
+  /// Whether no camera that saw this had given a frame before, but for one or two, and the recording had begun.
+  bool began_with_cameras(const GroundSample& first) const {
+    constexpr std::int32_t unnoticed = 2;  // instants in which a newcomer may be missed
+    if (first.instant == 0 || seconds(times_[first.instant] - times_.front()) > options_.longest_begun) return false;
+    for (std::size_t camera = 0; camera < camera_begins_.size(); ++camera) {
+      const bool saw = (first.cameras & mask_of(CameraId{static_cast<int>(camera)})) != 0;
+      if (saw && (camera_begins_[camera] == 0 || first.instant - camera_begins_[camera] > unnoticed)) return false;
+    }
+    return true;
+  }
+
+  /// Straight back to the recording's beginning.
+  void predict_back(std::int32_t until, const GroundMoment& first, TrackColumns& track) const {
+    for (std::int32_t k = 0; k < until; ++k) {
+      Sample sample;
+      sample.position.head<2>() = first.place - seconds(times_[until] - times_[k]) * first.velocity;
+      sample.velocity = Vector<3>(first.velocity.x(), first.velocity.y(), 0);
+      sample.provenance = Provenance::predicted;
+      track.add(k, sample);
+    }
+  }
+
   bool fills(const GroundSample& before, const GroundSample& after) const {
     return seconds(times_[after.instant] - times_[before.instant]) <= options_.longest_filled;
   }
@@ -79,6 +102,7 @@ class Writer {
   }
 
   std::span<const Timestamp> times_;
+  std::span<const std::int32_t> camera_begins_;
   const GroundJoinOptions& options_;
   GroundMotion motion_;
 };
@@ -92,25 +116,40 @@ RecordingHeader header_of(std::span<const Recording::Moment> moments) {
   return header;
 }
 
+/// Where pieces that the tracker had not taken for one person follow each other.
+void note_joins(const GroundChain& chain, TrackId person, const std::vector<GroundTracklet>& tracklets,
+                std::span<const std::int32_t> frames, GroundRecorder::Joined& joined) {
+  for (std::size_t i = 1; i < chain.members.size(); ++i) {
+    const int before = chain.members[i - 1], after = chain.members[i];
+    const GroundTracklet& tail = tracklets[static_cast<std::size_t>(before)];
+    const GroundTracklet& head = tracklets[static_cast<std::size_t>(after)];
+    if (tail.goes_on && after == before + 1) continue;
+    joined.joins.push_back({person, frames[static_cast<std::size_t>(tail.samples.back().instant)],
+                            frames[static_cast<std::size_t>(head.samples.front().instant)], chain.probabilities[i - 1]});
+  }
+}
+
 }  // namespace
 
-GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets, const std::vector<std::vector<int>>& chains,
-                                          std::span<const std::int32_t> frames, std::span<const Timestamp> times,
-                                          const GroundJoinOptions& options) {
+GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets, const std::vector<GroundChain>& chains,
+                                          const GroundInstants& instants, const GroundJoinOptions& options) {
+  const std::span<const std::int32_t> frames = instants.frames;
+  const std::span<const Timestamp> times = instants.times;
   std::vector<Recording::Moment> moments;
   for (std::size_t i = 0; i < frames.size(); ++i) moments.push_back({frames[i], times[i]});
   GroundRecorder::Joined joined;
   joined.recording.header = header_of(moments);
   for (const Recording::Moment& moment : moments) joined.recording.add_moment(moment);
-  const Writer writer(times, options);
-  std::vector<const std::vector<int>*> kept;
-  for (const std::vector<int>& chain : chains) {
-    if (!writer.is_false_alarm(tracklets, chain)) kept.push_back(&chain);
+  const Writer writer(instants, options);
+  std::vector<const GroundChain*> kept;
+  for (const GroundChain& chain : chains) {
+    if (!writer.is_false_alarm(tracklets, chain.members)) kept.push_back(&chain);
   }
-  for (const std::vector<int>* chain : kept) {
+  for (const GroundChain* chain : kept) {
     const TrackId person{static_cast<int>(joined.recording.tracks().size()) + 1};
+    note_joins(*chain, person, tracklets, frames, joined);
     std::vector<GroundSample> samples;
-    for (const int member : *chain) {
+    for (const int member : chain->members) {
       const GroundTracklet piece = std::move(tracklets[member]);
       for (std::size_t r = 0; r < piece.runs.size(); ++r) {
         const std::size_t end = r + 1 < piece.runs.size() ? piece.runs[r + 1].first : piece.samples.size();

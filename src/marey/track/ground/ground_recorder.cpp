@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/LU>
@@ -17,6 +18,9 @@ namespace {
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
 
 constexpr double kUnseenPush = 1.6;  // times the usual: an unseen target may have done anything; a wrong join costs an identity
+
+constexpr double kNear =
+    4 / 1.5;  // m: who was nearer than this, for each m/s^1.5 of how hastily people move, may have been taken over
 
 std::int8_t rounded(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));
@@ -84,6 +88,11 @@ void GroundRecorder::add(std::int32_t frame, Timestamp time, std::span<const Tra
   const auto instant = static_cast<std::int32_t>(frames_.size());
   frames_.push_back(frame);
   times_.push_back(time);
+  for (const CameraObservations& view : views) {
+    const auto camera = static_cast<std::size_t>(number(view.camera));
+    if (camera >= camera_begins_.size()) camera_begins_.resize(camera + 1, std::numeric_limits<std::int32_t>::max());
+    camera_begins_[camera] = std::min(camera_begins_[camera], instant);
+  }
   std::vector<GroundTracklet> still_open;
   still_open.reserve(tracks.size());
   auto open = open_.begin();  // both lists are in the order of ids
@@ -113,21 +122,26 @@ std::optional<TrackId> GroundRecorder::Joined::person_of(TrackId track, std::int
   return std::prev(next)->person;
 }
 
-GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, const InSight& in_sight) && {
+std::vector<GroundTracklet> GroundRecorder::tracklets() && {
   for (GroundTracklet& open : open_) {
     if (open.confirmed && !open.samples.empty()) closed_.push_back(std::move(open));
   }
   open_.clear();
   std::sort(closed_.begin(), closed_.end(),
             [](const GroundTracklet& a, const GroundTracklet& b) { return a.runs.front().track < b.runs.front().track; });
-  repair_swaps(closed_, times_, {.max_speed = options.max_speed, .motion = options.motion});
-  std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(closed_), times_);
-  tracklets = cut_where_others_end(std::move(tracklets), times_);
+  return std::move(closed_);
+}
+
+GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, const InSight& in_sight) && {
+  std::vector<GroundTracklet> whole = std::move(*this).tracklets();
+  repair_swaps(whole, times_, {.max_speed = options.max_speed, .motion = options.motion});
+  std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(whole), times_);
+  tracklets = cut_where_others_end(std::move(tracklets), times_, {.near = kNear * options.motion.acceleration});
   GroundMotion unseen = options.motion;
   unseen.acceleration *= kUnseenPush;
-  const std::vector<std::vector<int>> chains =
+  const std::vector<GroundChain> chains =
       chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen});
-  return people_from_chains(std::move(tracklets), chains, frames_, times_, options);
+  return people_from_chains(std::move(tracklets), chains, {frames_, times_, camera_begins_}, options);
 }
 
 }  // namespace marey::track::ground

@@ -17,12 +17,13 @@ namespace marey::track::ground {
 
 /// Lengths in m, times in s.
 struct GroundJoinOptions {
-  double longest_gap = 20;    ///< who reappears later is somebody new
-  double longest_filled = 5;  ///< a longer gap is joined, but nothing is said of where the person was meanwhile
-  double shortest = 0.5;      ///< who is seen for less is taken for a false alarm
-  double rarest = 0.4;        ///< who is seen in a smaller share of the instants between first and last likewise
-  double max_speed = 12;      ///< m/s; nobody runs faster
-  GroundMotion motion;        ///< how people move
+  double longest_gap = 20;     ///< who reappears later is somebody new
+  double longest_filled = 5;   ///< a longer gap is joined, but nothing is said of where the person was meanwhile
+  double longest_begun = 0.5;  ///< who is seen from a camera's own first instant on is told before that, for so long at most
+  double shortest = 0.5;       ///< who is seen for less is taken for a false alarm
+  double rarest = 0.4;         ///< who is seen in a smaller share of the instants between first and last likewise
+  double max_speed = 12;       ///< m/s; nobody runs faster
+  GroundMotion motion;         ///< how people move
 };
 
 /// What was seen of people on the ground, instant by instant, kept for a second pass that may look ahead: 48 bytes a person and
@@ -39,9 +40,16 @@ class GroundRecorder {
     std::int32_t first = 0, last = 0;
     TrackId person{};  ///< its track in the recording
   };
+  /// After frame `before` it was not followed until frame `after`, from which on another track of the tracker's is taken for it.
+  struct Join {
+    TrackId person{};
+    std::int32_t before = 0, after = 0;
+    double probability = 0;  ///< that both are the same person
+  };
   struct Joined {
     marey::Recording recording;  ///< a track a person, smoothed, on the world's ground; every frame that was added is an instant
     std::vector<Piece> pieces;   ///< by track, then by frame; what is in none was a false alarm
+    std::vector<Join> joins;     ///< by person, then by frame
     std::vector<std::optional<Appearance>> wears;  ///< of each of its tracks: the median over all that was seen of it
 
     /// Who it was that the tracker called `track` in `frame`.
@@ -53,10 +61,15 @@ class GroundRecorder {
   /// come and go; without it, nowhere. Used up afterwards.
   Joined join(const GroundJoinOptions& options = {}, const InSight& in_sight = {}) &&;
 
+  /// What was confirmed so far, by track, to learn from; used up afterwards.
+  std::vector<GroundTracklet> tracklets() &&;
+  std::span<const Timestamp> times() const { return times_; }
+
  private:
   std::vector<Timestamp> times_;
   std::vector<std::int32_t> frames_;
-  std::vector<GroundTracklet> open_;  // by id
+  std::vector<std::int32_t> camera_begins_;  // the first instant of each camera
+  std::vector<GroundTracklet> open_;         // by id
   std::vector<GroundTracklet> closed_;
 };
 

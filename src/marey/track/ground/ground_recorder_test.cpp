@@ -88,6 +88,26 @@ std::vector<Row> rows_of(const Recording& recording) {
   return rows;
 }
 
+TEST(GroundRecorder, WhoStoodThereBeforeACameraBeganIsPredicted) {
+  Story story;
+  for (int k = 0; k < 50; ++k) {
+    std::vector<Sighting> seen = {{.track = 1, .x = 0.2 * k, .y = 0}};
+    if (k >= 5) seen.push_back({.track = 2, .x = 30 + 0.08 * k, .y = 5, .camera = CameraId{1}});
+    if (k >= 20) seen.push_back({.track = 3, .x = 60 + 0.08 * k, .y = 5, .camera = CameraId{1}});
+    story.instant(seen);
+  }
+  const GroundRecorder::Joined joined = story.join();
+  ASSERT_EQ(joined.recording.tracks().size(), 3U);
+  const TrackColumns& late = joined.recording.tracks()[1];
+  ASSERT_EQ(late.at().front(), 0);
+  for (std::size_t row = 0; row < 5; ++row) {
+    EXPECT_EQ(late.sample(row).provenance, Provenance::predicted);
+    EXPECT_NEAR(late.x()[row], 30 + 0.08 * static_cast<double>(row), 0.15) << row;
+  }
+  EXPECT_EQ(late.sample(5).provenance, Provenance::measured);
+  EXPECT_EQ(joined.recording.tracks()[2].at().front(), 20) << "the camera had seen before, and not this one";
+}
+
 TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
   Story story;
   for (int k = 0; k < 200; ++k) {

@@ -1,6 +1,7 @@
 #include "marey/track/ground/ground_visibility.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "marey/track/check_frame.h"
 
@@ -41,6 +42,20 @@ double GroundVisibility::covered(const Vector<2>& foot) const {
     most = std::max(most, geometry::intersection(body, other).area() / other.area());
   }
   return most;
+}
+
+std::vector<int> surest_first(std::span<const CameraObservations> views) {
+  std::vector<double> spread;
+  for (const CameraObservations& view : views) {
+    double sum = 0;
+    for (const Observation<2>& one : view.seen) sum += one.covariance.trace();
+    spread.push_back(view.seen.empty() ? 0 : sum / static_cast<double>(view.seen.size()));
+  }
+  std::vector<int> order(views.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return spread[static_cast<std::size_t>(a)] < spread[static_cast<std::size_t>(b)]; });
+  return order;
 }
 
 }  // namespace marey::track::ground

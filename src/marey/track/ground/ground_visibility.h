@@ -41,4 +41,8 @@ class GroundVisibility {
   std::vector<Box> boxes_;  // of this view
 };
 
+/// The views' numbers, those first whose places are surest: who stands close together is told apart by them, and what they say
+/// guides what the others are taken for.
+std::vector<int> surest_first(std::span<const CameraObservations> views);
+
 }  // namespace marey::track::ground

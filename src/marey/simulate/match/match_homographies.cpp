@@ -1,0 +1,93 @@
+#include "marey/simulate/match/match_homographies.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "marey/geometry/camera.h"
+#include "marey/simulate/random.h"
+
+namespace marey::simulate::match {
+namespace {
+
+/// A place of the pitch and where a camera sees it.
+struct SeenGround {
+  Vector<2> ground, pixel;
+};
+
+std::vector<SeenGround> ground_seen_by(const Camera& camera, const geometry::PitchSize& pitch) {
+  std::vector<SeenGround> seen;
+  for (double x = 0; x <= pitch.length; x += 2) {
+    for (double y = 0; y <= pitch.width; y += 2) {
+      const auto pixel = camera.project({x, y, 0});
+      if (pixel && camera.in_picture(*pixel)) seen.push_back({{x, y}, *pixel});
+    }
+  }
+  return seen;
+}
+
+/// The homography that takes pixels nearest to places, algebraically.
+Matrix<3> fitted(const std::vector<SeenGround>& seen, const cv::Size& size) {
+  Matrix<3> scale = Matrix<3>::Identity();
+  scale(0, 0) = scale(1, 1) = 2.0 / size.width;
+  scale(0, 2) = scale(1, 2) = -1;
+  Eigen::Matrix<double, 9, 9> sum = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const SeenGround& one : seen) {
+    const Vector<3> p = scale * one.pixel.homogeneous();
+    Eigen::Matrix<double, 2, 9> rows;
+    rows << p.transpose(), Vector<3>::Zero().transpose(), -one.ground.x() * p.transpose(), Vector<3>::Zero().transpose(),
+        p.transpose(), -one.ground.y() * p.transpose();
+    sum += rows.transpose() * rows;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd(sum, Eigen::ComputeFullV);
+  const Eigen::Matrix<double, 9, 1> h = svd.matrixV().col(8);
+  Matrix<3> H;
+  H << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(), h.segment<3>(6).transpose();
+  return H * scale;
+}
+
+double error_of(const Matrix<3>& ground_from_image, const std::vector<SeenGround>& seen) {
+  double sum = 0;
+  for (const SeenGround& one : seen)
+    sum += ((ground_from_image * one.pixel.homogeneous()).hnormalized() - one.ground).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(seen.size()));
+}
+
+/// Off by `wanted` m, root mean square.
+Matrix<3> off_by(const std::vector<SeenGround>& seen, const cv::Size& size, const geometry::PitchSize& pitch, double wanted,
+                 Random& random) {
+  std::vector<Vector<2>> terms;
+  for (int i = 0; i < 5; ++i) terms.emplace_back(random.gaussian(), random.gaussian());
+  double strength = wanted;
+  Matrix<3> H;
+  for (int turn = 0; turn < 6; ++turn) {
+    std::vector<SeenGround> wrong = seen;
+    for (SeenGround& one : wrong) {
+      const double u = 2 * one.ground.x() / pitch.length - 1, v = 2 * one.ground.y() / pitch.width - 1;
+      one.ground += strength * (terms[0] + u * terms[1] + v * terms[2] + (u * u - v * v) * terms[3] + u * v * terms[4]);
+    }
+    H = fitted(wrong, size);
+    strength *= std::min(2.0, wanted / error_of(H, seen));
+  }
+  return H;
+}
+
+}  // namespace
+
+Rig known_by_homographies(const Rig& exact, const geometry::PitchSize& pitch, double least, double most, std::uint64_t seed) {
+  Random random(seed * 7919 + 3);
+  Rig rig = exact;
+  for (RigCamera& camera : rig.cameras) {
+    const Camera truth = camera.camera().value();
+    const std::vector<SeenGround> seen = ground_seen_by(truth, pitch);
+    camera.ground_from_image = off_by(seen, truth.size(), pitch, random.uniform(least, most), random);
+    camera.lens.reset();
+    camera.camera_from_world.reset();
+  }
+  return rig;
+}
+
+}  // namespace marey::simulate::match

@@ -1,0 +1,298 @@
+#include "marey/track/ground/ground_agreement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include <Eigen/LU>
+
+namespace marey::track::ground {
+namespace {
+
+constexpr std::size_t kMostInstants = 400;  // that are looked at, evenly over those that were kept
+constexpr std::size_t kFewestPairs = 300;
+constexpr double kClearly = 1.6;                     // times the nearest's distance: so much farther the second nearest must be
+constexpr double kFirstGate = 2.2;                   // m
+constexpr double kLastGate = 1.0;                    // m
+constexpr double kCell = 1;                          // m
+constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of what is seen, but
+constexpr double kNarrowest = 2.5;                   // m at least
+constexpr double kPriorPairs = 12;                   // with which a field holds to 0
+constexpr int kRounds = 12;
+constexpr double kWorthIt = 0.97;  // of the distances of pairs held out, that must be left by fields that are kept
+constexpr double kLeastRemains = 0.05, kMostRemains = 0.4;  // m: what fields leave, as no noise that could be averaged away
+constexpr double kOwnErrors = 0.6;          // of a deviation: a person's own errors, of height, gait and clothes, last
+constexpr double kNeighbourhood = 4;        // m, within which that is the same
+constexpr double kFew = 0.01;               // of the places lie beyond the grid on each side: some are near the horizon
+constexpr double kChiSquareMedian = 1.386;  // of two degrees
+
+struct Seen {
+  Vector<2> place;  // m, as the camera has it
+  Matrix<2> covariance;
+};
+
+/// One instant: what each camera saw.
+using Shot = std::vector<std::vector<Seen>>;
+
+struct Pair {
+  int a = 0, b = 0;  // cameras
+  const Seen* of_a = nullptr;
+  const Seen* of_b = nullptr;
+};
+
+std::vector<Shot> shots_of(std::span<const GroundInstant> instants, int cameras) {
+  std::vector<Shot> shots;
+  const std::size_t step = std::max<std::size_t>(1, instants.size() / kMostInstants);
+  for (std::size_t k = 0; k < instants.size(); k += step) {
+    Shot& shot = shots.emplace_back(static_cast<std::size_t>(cameras));
+    for (const CameraObservations& view : instants[k].cameras) {
+      for (const Observation<2>& one : view.seen) {
+        if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, one.covariance});
+      }
+    }
+  }
+  return shots;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+class Agreeing {
+ public:
+  Agreeing(const std::vector<Shot>& shots, int cameras) : shots_(shots), cameras_(static_cast<std::size_t>(cameras)) {
+    std::array<std::vector<double>, 2> all;
+    for (const Shot& shot : shots) {
+      for (const std::vector<Seen>& camera : shot) {
+        for (const Seen& one : camera) all[0].push_back(one.place.x()), all[1].push_back(one.place.y());
+      }
+    }
+    const Vector<2> least(quantile(all[0], kFew), quantile(all[1], kFew)),
+        most(quantile(all[0], 1 - kFew), quantile(all[1], 1 - kFew));
+    grid_ = GroundGrid::over(least, most, kCell);
+    extent_ = std::max(1.0, (most - least).maxCoeff());
+    bias_.assign(cameras_, GroundField(grid_));
+  }
+
+  /// By the shots of odd or even blocks of time, or all.
+  std::vector<GroundField> fields(std::optional<bool> odd, double finest_part) {
+    bias_.assign(cameras_, GroundField(grid_));
+    for (int round = 0; round < kRounds; ++round) {
+      const double share = std::min(1.0, 1.5 * round / (kRounds - 1));
+      const double finest = std::max(kNarrowest, extent_ / finest_part);
+      improve(pairs(odd, kFirstGate + share * (kLastGate - kFirstGate)), extent_ * std::pow(finest / extent_, share));
+    }
+    return bias_;
+  }
+
+  /// Those who are each other's nearest, and plainly so.
+  std::vector<Pair> pairs(std::optional<bool> odd, double gate) const {
+    std::vector<Pair> found;
+    for (std::size_t k = 0; k < shots_.size(); ++k) {
+      if (odd && (k * kBlocks / shots_.size() % 2 == 1) != *odd) continue;
+      const std::vector<std::vector<Vector<2>>> places = corrected(shots_[k]);
+      for (std::size_t a = 0; a < cameras_; ++a) {
+        for (std::size_t b = a + 1; b < cameras_; ++b) pair_up(shots_[k], places, a, b, gate, found);
+      }
+    }
+    return found;
+  }
+
+  Vector<2> difference(const Pair& pair) const { return placed(pair.b, *pair.of_b) - placed(pair.a, *pair.of_a); }
+
+  void set(std::vector<GroundField> fields) { bias_ = std::move(fields); }
+  const std::vector<GroundField>& fields() const { return bias_; }
+  void forget() { bias_.assign(cameras_, GroundField(grid_)); }
+
+ private:
+  static constexpr std::size_t kBlocks = 10;  // of time, by turns learned from and held out
+
+  Vector<2> placed(int camera, const Seen& one) const { return one.place - bias_[static_cast<std::size_t>(camera)].at(one.place); }
+
+  std::vector<std::vector<Vector<2>>> corrected(const Shot& shot) const {
+    std::vector<std::vector<Vector<2>>> places(cameras_);
+    for (std::size_t c = 0; c < cameras_; ++c) {
+      for (const Seen& one : shot[c]) places[c].push_back(placed(static_cast<int>(c), one));
+    }
+    return places;
+  }
+
+  struct Nearest {
+    std::size_t index = 0;
+    double first = std::numeric_limits<double>::infinity(), second = first;  // m
+  };
+
+  static Nearest nearest(const Vector<2>& place, const std::vector<Vector<2>>& among) {
+    Nearest found;
+    for (std::size_t i = 0; i < among.size(); ++i) {
+      const double distance = (among[i] - place).norm();
+      if (distance < found.first) {
+        found.second = found.first;
+        found.first = distance;
+        found.index = i;
+      } else {
+        found.second = std::min(found.second, distance);
+      }
+    }
+    return found;
+  }
+
+  void pair_up(const Shot& shot, const std::vector<std::vector<Vector<2>>>& places, std::size_t a, std::size_t b, double gate,
+               std::vector<Pair>& found) const {
+    for (std::size_t i = 0; i < places[a].size(); ++i) {
+      const Nearest there = nearest(places[a][i], places[b]);
+      if (there.first > gate || there.second < kClearly * there.first) continue;
+      const Nearest back = nearest(places[b][there.index], places[a]);
+      if (back.index != i || back.second < kClearly * back.first) continue;
+      found.push_back({static_cast<int>(a), static_cast<int>(b), &shot[a][i], &shot[b][there.index]});
+    }
+  }
+
+  /// Each camera of a pair comes half of the way to the other.
+  void improve(const std::vector<Pair>& pairs, double sigma) {
+    std::vector<std::array<std::vector<double>, 3>> sums(cameras_);
+    for (auto& of : sums) of.fill(std::vector<double>(grid_.size(), 0));
+    for (const Pair& pair : pairs) {
+      const Vector<2> half = difference(pair) / 2;
+      const double spread = pair.of_a->covariance.trace() + pair.of_b->covariance.trace();
+      const double weight = 0.1 / (0.1 + spread);
+      const auto add = [&](int camera, const Vector<2>& place, const Vector<2>& error) {
+        auto& of = sums[static_cast<std::size_t>(camera)];
+        const std::size_t cell = grid_.index(place);
+        of[0][cell] += weight * error.x();
+        of[1][cell] += weight * error.y();
+        of[2][cell] += weight;
+      };
+      add(pair.a, pair.of_a->place, -half);
+      add(pair.b, pair.of_b->place, half);
+    }
+    for (std::size_t c = 0; c < cameras_; ++c) {
+      for (auto& sum : sums[c]) sum = spread_over(grid_, sum, sigma);
+      for (std::size_t cell = 0; cell < grid_.size(); ++cell)
+        bias_[c].add(cell, Vector<2>(sums[c][0][cell], sums[c][1][cell]) / (sums[c][2][cell] + kPriorPairs));
+    }
+  }
+
+  const std::vector<Shot>& shots_;
+  std::size_t cameras_;
+  GroundGrid grid_;
+  double extent_ = 1;
+  std::vector<GroundField> bias_;
+};
+
+double median_distance(const Agreeing& agreeing, bool odd) {
+  std::vector<double> distances;
+  for (const Pair& pair : agreeing.pairs(odd, kFirstGate)) distances.push_back(agreeing.difference(pair).norm());
+  return distances.empty() ? 0 : quantile(distances, 0.5);
+}
+
+/// How finely fields vary that best bring pairs together which they were not learned from; nothing where none is worth it.
+std::optional<double> best_part(Agreeing& agreeing) {
+  agreeing.forget();
+  double least = kWorthIt * (median_distance(agreeing, false) + median_distance(agreeing, true));
+  std::optional<double> best;
+  for (const double part : kFinest) {
+    double left = 0;
+    for (const bool odd : {false, true}) {
+      agreeing.set(agreeing.fields(odd, part));
+      left += median_distance(agreeing, !odd);
+    }
+    if (left >= least) continue;
+    least = left;
+    best = part;
+  }
+  return best;
+}
+
+/// Standard deviation per axis and camera of what is the same for pairs of two cameras in one neighbourhood: variances of means
+/// beyond what noise makes of so many.
+double remaining(const Agreeing& agreeing, const std::vector<Pair>& pairs) {
+  struct Sum {
+    Vector<2> mean = Vector<2>::Zero();
+    double squares = 0;
+    int count = 0;
+  };
+  std::map<std::array<int, 4>, Sum> sums;
+  for (const Pair& pair : pairs) {
+    const Vector<2> apart = agreeing.difference(pair);
+    const Vector<2> at = pair.of_a->place / kNeighbourhood;
+    Sum& sum = sums[{pair.a, pair.b, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))}];
+    sum.mean += apart;
+    sum.squares += apart.squaredNorm();
+    ++sum.count;
+  }
+  double variance = 0, weights = 0;
+  for (const auto& [where, sum] : sums) {
+    constexpr int fewest = 6;
+    if (sum.count < fewest) continue;
+    const double n = sum.count;
+    const double mean = (sum.mean / n).squaredNorm();
+    const double of_mean = std::max(0.0, sum.squares / n - mean) / (n - 1);
+    variance += n * (mean - of_mean);
+    weights += n;
+  }
+  // Of differences of two cameras in two axes.
+  return weights > 0 ? std::clamp(std::sqrt(std::max(0.0, variance / weights / 4)), kLeastRemains, kMostRemains) : kMostRemains;
+}
+
+/// By camera: what its standard deviations are to be multiplied by.
+std::vector<double> noise_of(const Agreeing& agreeing, const std::vector<Pair>& pairs, int cameras) {
+  std::vector<std::vector<double>> ratios(static_cast<std::size_t>(cameras));
+  for (const Pair& pair : pairs) {
+    const Vector<2> apart = agreeing.difference(pair);
+    const Matrix<2> S = pair.of_a->covariance + pair.of_b->covariance;
+    const double ratio = apart.dot(S.inverse() * apart);
+    ratios[static_cast<std::size_t>(pair.a)].push_back(ratio);
+    ratios[static_cast<std::size_t>(pair.b)].push_back(ratio);
+  }
+  std::vector<double> noise;
+  for (std::vector<double>& of : ratios) {
+    constexpr std::size_t fewest = 30;
+    noise.push_back(of.size() < fewest ? 1.0 : std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), 0.5, 3.0));
+  }
+  return noise;
+}
+
+/// Standard deviation per axis of an observation in the middle, m.
+double typical_deviation(const std::vector<Pair>& pairs, const std::vector<double>& noise) {
+  std::vector<double> deviations;
+  for (const Pair& pair : pairs) {
+    deviations.push_back(noise[static_cast<std::size_t>(pair.a)] * std::sqrt(pair.of_a->covariance.trace() / 2));
+    deviations.push_back(noise[static_cast<std::size_t>(pair.b)] * std::sqrt(pair.of_b->covariance.trace() / 2));
+  }
+  return quantile(deviations, 0.5);
+}
+
+}  // namespace
+
+GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, int cameras) {
+  GroundAgreement agreement;
+  if (cameras < 2 || instants.empty()) return agreement;
+  const std::vector<Shot> shots = shots_of(instants, cameras);
+  Agreeing agreeing(shots, cameras);
+  if (agreeing.pairs({}, kFirstGate).size() < kFewestPairs) return agreement;
+  if (const std::optional<double> part = best_part(agreeing)) {
+    agreement.bias_ = agreeing.fields({}, *part);
+  } else {
+    agreeing.forget();
+  }
+  const std::vector<Pair> pairs = agreeing.pairs({}, kLastGate);
+  agreement.noise_ = noise_of(agreeing, pairs, cameras);
+  agreement.disagreement_ = std::max(remaining(agreeing, pairs), kOwnErrors * typical_deviation(pairs, agreement.noise_));
+  return agreement;
+}
+
+Observation<2> GroundAgreement::corrected(Observation<2> seen) const {
+  const auto camera = static_cast<std::size_t>(number(seen.camera));
+  if (!bias_.empty()) seen.value -= bias_[camera].at(seen.value);
+  if (!noise_.empty()) seen.covariance *= noise_[camera] * noise_[camera];
+  return seen;
+}
+
+}  // namespace marey::track::ground

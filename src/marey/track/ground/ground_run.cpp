@@ -1,0 +1,111 @@
+#include "marey/track/ground/ground_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "marey/track/ground/ground_walk.h"
+
+namespace marey::track::ground {
+namespace {
+
+constexpr double kCalmer = 0.75;               // of the tracker's accelerations, that the smoother takes: it has pushes beside
+constexpr double kSlowest = 1, kFastest = 20;  // s in which velocities settle
+constexpr double kHaste = 1.5;                 // of people's speed: of those of whom nothing is known yet
+
+/// A quick one, for what is learned from and expected meanwhile.
+GroundTrackerOptions ahead(GroundTrackerOptions options) {
+  options.associate = GroundAssociation::gnn;
+  return options;
+}
+
+}  // namespace
+
+GroundRun::GroundRun(const GroundTrackerOptions& tracker, const GroundJoinOptions& join, const GroundLearnOptions& learn,
+                     std::shared_ptr<const GroundViews> views, OnDecided on_decided)
+    : options_(tracker), join_(join), learn_(learn), views_(std::move(views)), on_decided_(std::move(on_decided)) {
+  learned_ = !learn.agreement && !learn.walk;
+  make_ground_tracker(options_, views_);  // refuses now what it would refuse later
+  tracker_ = make_ground_tracker(learned_ ? options_ : ahead(options_), views_);
+}
+
+void GroundRun::step(std::int32_t frame, Timestamp now, std::span<const CameraObservations> views) {
+  GroundInstant& instant = kept_.emplace_back(frame, now, views);
+  if (!learning()) {
+    correct(instant);
+    follow(instant);
+    return;
+  }
+  tracker_->step(now, instant.cameras);
+  kept_observations_ += instant.observations();
+  if (kept_observations_ >= learn_.most_observations) learn();
+}
+
+GroundRecorder::Joined GroundRun::finish(const InSight& in_sight) {
+  if (learning()) learn();
+  record(tracker_->decide_all());
+  return std::move(recorder_).join(join_, in_sight);
+}
+
+void GroundRun::learn() {
+  std::vector<GroundInstant> all(std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
+  kept_.clear();
+  if (learn_.agreement) agreement_ = GroundAgreement::learn(all, views_->cameras());
+  if (agreement_.learned()) options_.disagreement = agreement_.disagreement();
+  for (GroundInstant& instant : all) {
+    correct(instant);
+    kept_.push_back(std::move(instant));
+  }
+  if (learn_.walk) learn_motion();
+  learned_ = true;
+  tracker_ = make_ground_tracker(options_, views_);
+  std::deque<GroundInstant> seen = std::exchange(kept_, {});
+  for (GroundInstant& instant : seen) {
+    kept_.push_back(std::move(instant));
+    follow(kept_.back());
+  }
+}
+
+/// From what a quick tracker makes of what was kept.
+void GroundRun::learn_motion() {
+  const auto quick = make_ground_tracker(ahead(options_), views_);
+  GroundRecorder recorder;
+  for (const GroundInstant& instant : kept_) {
+    const auto tracks = quick->step(instant.time, instant.cameras);
+    recorder.add(instant.frame, instant.time, tracks, instant.cameras, quick->matches());
+  }
+  const std::vector<Timestamp> times(recorder.times().begin(), recorder.times().end());
+  const std::optional<GroundWalk> walk = learn_walk(std::move(recorder).tracklets(), times);
+  if (!walk) return;
+  if (auto* kalman = std::get_if<filter::KalmanOptions>(&options_.filter)) {
+    kalman->acceleration_noise = walk->acceleration;
+    kalman->initial_speed = kHaste * walk->speed;
+  }
+  join_.motion.acceleration = kCalmer * walk->acceleration;
+  join_.motion.settling = std::clamp(2 * std::pow(walk->speed / join_.motion.acceleration, 2), kSlowest, kFastest);
+}
+
+void GroundRun::follow(const GroundInstant& instant) {
+  tracker_->step(instant.time, instant.cameras);
+  record(tracker_->decided());
+}
+
+void GroundRun::record(std::span<const GroundDecision> decisions) {
+  for (const GroundDecision& decision : decisions) {
+    const GroundInstant& instant = kept_.front();
+    recorder_.add(instant.frame, decision.now, decision.tracks, instant.cameras, decision.matches);
+    if (on_decided_) on_decided_(instant, decision.matches);
+    kept_.pop_front();
+  }
+}
+
+void GroundRun::correct(GroundInstant& instant) const {
+  if (!agreement_.learned()) return;
+  for (std::vector<Observation<2>>& of : instant.seen) {
+    for (Observation<2>& one : of) one = agreement_.corrected(one);
+  }
+}
+
+}  // namespace marey::track::ground

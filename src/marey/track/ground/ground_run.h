@@ -1,0 +1,66 @@
+// Following people over a whole recording: what is learned from its beginning serves all of it.
+//
+// How cameras disagree (ground_agreement.h) and how people move (ground_walk.h) differ from rig to rig and from square to pitch.
+// Until there is enough to learn from, or the recording ends, instants are kept and a quick tracker goes ahead, for who asks where
+// people are expected; then what was kept is followed again by the tracker that was asked for, corrected by what was learned, and
+// so on to the end. Memory: what is kept, 200 bytes an observation; later what the tracker has not decided yet, and 48 bytes a
+// person and instant.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/ground_instant.h"
+#include "marey/track/ground/ground_recorder.h"
+#include "marey/track/ground/ground_tracker.h"
+
+namespace marey::track::ground {
+
+struct GroundLearnOptions {
+  bool agreement = true;                    ///< of cameras
+  bool walk = true;                         ///< how people move: else the tracker's filter and the join's motion stay as they are
+  std::size_t most_observations = 400'000;  ///< that are kept to learn from
+};
+
+class GroundRun {
+ public:
+  /// Called once an instant, in order, with what was seen of it and whose that is.
+  using OnDecided = std::function<void(const GroundInstant&, std::span<const ObservationMatch>)>;
+
+  GroundRun(const GroundTrackerOptions& tracker, const GroundJoinOptions& join, const GroundLearnOptions& learn,
+            std::shared_ptr<const GroundViews> views, OnDecided on_decided);
+
+  /// As Tracker::expected.
+  std::span<const Track<2>> expected(Timestamp now) { return tracker_->expected(now); }
+  /// The next instant; frames grow.
+  void step(std::int32_t frame, Timestamp now, std::span<const CameraObservations> views);
+  /// Everybody, once all was seen. Nothing may follow.
+  GroundRecorder::Joined finish(const InSight& in_sight);
+
+ private:
+  bool learning() const { return !learned_; }
+  void learn();
+  void learn_motion();
+  void follow(const GroundInstant& instant);
+  void record(std::span<const GroundDecision> decisions);
+  void correct(GroundInstant& instant) const;
+
+  GroundTrackerOptions options_;
+  GroundJoinOptions join_;
+  GroundLearnOptions learn_;
+  std::shared_ptr<const GroundViews> views_;
+  OnDecided on_decided_;
+  std::unique_ptr<GroundTracker> tracker_;
+  GroundAgreement agreement_;
+  bool learned_ = false;
+  std::size_t kept_observations_ = 0;
+  std::deque<GroundInstant> kept_;  // to learn from; later those that are not decided yet
+  GroundRecorder recorder_;
+};
+
+}  // namespace marey::track::ground

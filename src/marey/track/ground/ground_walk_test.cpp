@@ -1,0 +1,58 @@
+#include "marey/track/ground/ground_walk.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "marey/track/ground/ground_scene_test.h"
+
+namespace marey::track::ground {
+namespace {
+
+/// Twenty people whose velocity strays by `acceleration` each √second, seen `rate` times a second with `noise` m, of which 0.1 m is
+/// known.
+std::vector<GroundTracklet> walks(double acceleration, double rate, double noise, int instants) {
+  ground_scene::Random random(7);
+  std::vector<GroundTracklet> tracklets;
+  for (int i = 0; i < 20; ++i) {
+    GroundTracklet& one = tracklets.emplace_back();
+    one.runs = {{TrackId{i + 1}, 0}};
+    one.confirmed = true;
+    Vector<2> place = random.gaussian(10), velocity = random.gaussian(1);
+    for (int k = 0; k < instants; ++k) {
+      velocity += random.gaussian(acceleration / std::sqrt(rate));
+      place += velocity / rate;
+      const Vector<2> seen = place + random.gaussian(noise);
+      GroundSample& sample = one.samples.emplace_back();
+      sample.instant = k;
+      sample.place = {static_cast<float>(seen.x()), static_cast<float>(seen.y())};
+      sample.covariance = {0.01F, 0, 0.01F};
+    }
+  }
+  return tracklets;
+}
+
+std::vector<Timestamp> times_of(int instants, double rate) {
+  std::vector<Timestamp> times;
+  for (int k = 0; k < instants; ++k) times.push_back(timestamp_from_seconds(k / rate));
+  return times;
+}
+
+TEST(GroundWalk, HasteIsMeasuredWhateverTheNoise) {
+  for (const double noise : {0.1, 0.2}) {
+    for (const double acceleration : {0.4, 1.0, 2.6}) {
+      const auto walk = learn_walk(walks(acceleration, 2, noise, 60), times_of(60, 2));
+      ASSERT_TRUE(walk);
+      EXPECT_GT(walk->acceleration, acceleration / 1.5) << noise;
+      EXPECT_LT(walk->acceleration, acceleration * 1.5) << noise;
+    }
+  }
+}
+
+TEST(GroundWalk, FewPlacesTellNothing) {
+  EXPECT_FALSE(learn_walk(walks(1, 2, 0.1, 4), times_of(4, 2)));
+  EXPECT_FALSE(learn_walk({}, {}));
+}
+
+}  // namespace
+}  // namespace marey::track::ground
