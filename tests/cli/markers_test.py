@@ -54,6 +54,37 @@ class Markers(unittest.TestCase):
                 self.assertEqual(len(tracks), 160)
                 self.assertLessEqual(self.far_from_truth(tracks, self.rows("crossing/truth.csv")), 16)
 
+    def test_detected_markers_are_written_drawn_and_tracked(self):
+        self.marey("simulate", "markers", "crossing", "--seed", 3, "-o", "crossing", "-q")
+        done = self.marey("detect", "crossing/video.mp4", "-o", "blobs.csv", "--overlay", "blobs.mp4", "--json")
+        summary = json.loads(done.stdout)
+        rows = self.rows("blobs.csv")
+        self.assertEqual(len(rows), summary["markers"])
+        self.assertEqual(summary["frames"], 80)
+        self.assertGreater(len(rows), 150)
+        self.assertTrue(all(0 < float(row["var_x"]) < 0.1 and float(row["area"]) > 20 for row in rows))
+        self.assertTrue((self.folder / "blobs.mp4").exists())
+        self.marey("detect", "crossing/video.mp4", "-o", "blobs.jsonl", "--overlay", "first.png", "-q")
+        self.assertEqual((self.folder / "first.png").read_bytes()[1:4], b"PNG")
+        self.names("left", "right")
+        for name in ("blobs.csv", "blobs.jsonl"):
+            self.marey("track", "--targets", "markers", "--detections", name, "--labels", "names.txt", "-o", "t.csv", "-q")
+            tracks = self.rows("t.csv")
+            self.assertEqual({row["label"] for row in tracks}, {"left", "right"})
+            self.assertLessEqual(self.far_from_truth(tracks, self.rows("crossing/truth.csv")), 16)
+        self.assertIn("blobs", self.marey("info", "blobs.jsonl").stdout)
+        one = self.marey("detect", "first.png", "-o", "-", "-q").stdout
+        self.assertTrue(one.startswith("camera,frame,time,x,y,"))
+
+    def test_blobs_that_cannot_be_used_are_refused(self):
+        head = "camera,frame,x,y\n"
+        for text, said in ((head + "a,0,1,2\nb,0,3,4\n", "several cameras"), (head + "a,5,1,2\na,3,3,4\n", "sort the lines"),
+                           (head + "a,0,x,2\n", "must be a number"), (head + "a,-1,1,2\n", "whole number from 0")):
+            with self.subTest(said=said):
+                (self.folder / "blobs.csv").write_text(text)
+                done = self.marey("track", "--targets", "markers", "--detections", "blobs.csv", "-o", "t.csv", code=1)
+                self.assertIn(said, done.stderr)
+
     def test_the_same_seed_gives_the_same_files(self):
         for name in ("a", "b"):
             self.marey("simulate", "markers", "plain", "--seed", 9, "--frames", 12, "--markers", 5, "-o", name, "-q")

@@ -32,8 +32,8 @@ constexpr double kMovingClearly = 0.9;    // of the squares that one swept disc 
 constexpr double kSimpler = 1.3;          // of the squares that three or four discs at rest leave: it has fewer parameters
 constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
 constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
-constexpr int kMostMoving = 4000;         // px, of a window in which two in motion are looked for
-constexpr double kWellTold = 0.08;        // of the contrast: what an explanation leaves at most
+constexpr int kFewestMoving = 120, kMostMoving = 4000;  // px, of a window in which two in motion are looked for
+constexpr double kWellTold = 0.08;                      // of the contrast: what an explanation leaves at most
 
 /// The level of a disc, where pixels are brighter than that: an overlap of discs that add up. Else nothing.
 std::optional<float> level_below_overlap(const std::vector<float>& value, double noise) {
@@ -236,7 +236,8 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
   const double most = std::max(kWellTold, 3 * task.noise);
   const MarkerShape swept = shapes(rival, window, task.stiffness).front();
   const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
-  if ((told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2) && window.count <= kMostMoving) {
+  const bool large_enough = window.count >= kFewestMoving && window.count <= kMostMoving;
+  if (large_enough && (told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2)) {
     const DiscsSolution pair = fit_moving_pair(task);
     const double limit = (best.discs.size() > 2 ? kSimpler : kMovingClearly) * to_beat;
     if (distinct(pair.model, kMovingApart) && pair.normal.squares < limit) best.discs = shapes(pair, window, task.stiffness);
