@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
 
-/// Clears the way for a new take. What is no take is somebody's work, named by mistake.
+/// Where a new take would lie. What is no take is somebody's work, named by mistake.
 std::string place_for(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -55,6 +55,9 @@ void require_valid(const RecordingHeader& header, const std::string& path) {
   if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
     throw Error("{}: a rate of {} frames a second; it must be positive", path, header.rate_hz);
   }
+  for (const Body& body : header.bodies) {
+    if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path, number(body.id));
+  }
 }
 
 }  // namespace
@@ -63,8 +66,7 @@ class TakeWriter::Recorder {
  public:
   Recorder(const std::string& path, const RecordingHeader& header)
       : path_(place_for(path)),
-        lock_(path_),
-        database_((require_valid(header, path), remove_old(path_), path_), Database::Mode::create),
+        database_((remove_old(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
         dimensions_(header.frame.dimensions()),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
@@ -181,7 +183,6 @@ class TakeWriter::Recorder {
   void set_bodies(const std::vector<Body>& bodies) {
     Statement add_body(database_, "INSERT INTO body VALUES (?, ?, ?)");
     for (const Body& body : bodies) {
-      if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path_, number(body.id));
       const std::string definition = body_definition(body);
       add_body.bind(0, std::int64_t{number(body.id)});
       add_body.bind(1, std::string_view(body.label));
@@ -333,7 +334,6 @@ class TakeWriter::Recorder {
   }
 
   std::string path_;
-  FileLock lock_;
   Database database_;
   int schema_;
   int dimensions_;
@@ -366,12 +366,15 @@ TakeWriter::~TakeWriter() {
 }
 
 TakeWriter::Recorder& TakeWriter::recorder() {
-  if (!recorder_) throw Error("{}: is written before it was begun, or after it was finished", path_);
+  if (!lock_) throw Error("{}: is written before it was begun, or after it was finished", path_);
+  if (!recorder_) recorder_ = std::make_unique<Recorder>(path_, header_);
   return *recorder_;
 }
 
 Sink::Wants TakeWriter::begin(const RecordingHeader& header) {
-  recorder_ = std::make_unique<Recorder>(path_, header);
+  require_valid(header, path_);
+  lock_ = std::make_unique<FileLock>(place_for(path_));
+  header_ = header;
   return {.pictures = false, .seen = true};
 }
 void TakeWriter::write(const Instant& instant) {
@@ -380,6 +383,7 @@ void TakeWriter::write(const Instant& instant) {
 void TakeWriter::finish() {
   recorder().finish();
   recorder_.reset();
+  lock_.reset();
 }
 void TakeWriter::set_name(const TrackName& name) {
   recorder().set_name(name);
