@@ -156,6 +156,9 @@ class Hostile(unittest.TestCase):
                 done = self.accepted(*arguments)
                 self.assertNotRegex(done.stdout + done.stderr, rb"[\x00-\x08\x0b-\x1f\x7f]")
         self.assertNotRegex((self.folder / "out.csv").read_bytes(), rb"[\x00-\x09\x0b-\x1f\x7f]")
+        long = "x" * 5000
+        self.write("edits.txt", f"rename #1 {long}\n")
+        self.refused("edit", take, "--script", "edits.txt", words=["5000 bytes", "the limit label_bytes"])
 
     # --- size ---
 

@@ -120,6 +120,15 @@ class LiveCameras(unittest.TestCase):
         self.assertIn("/dev/video63", done.stderr)
         self.assertFalse((self.folder / "take.marey").exists())
 
+    def test_a_take_stays_where_the_next_run_sees_nothing(self):
+        self.live(ROOM, "--for", 1, "-o", "take.marey")
+        before = (self.folder / "take.marey").read_bytes()
+        for name in ("take.marey", "new.marey"):
+            done = self.marey("live", "v4l2:/dev/video63", "--for", 0.5, "--patience", 0.1, "-o", name, code=1)
+            self.assertIn("no camera gave a frame", done.stderr)
+        self.assertEqual((self.folder / "take.marey").read_bytes(), before)
+        self.assertFalse((self.folder / "new.marey").exists())
+
     def test_a_film_is_played_in_real_time_and_ends(self):
         self.marey("simulate", "people", "-o", "film", "--frames", 30, "--size", 192, 144, "-q")
         begin = time.monotonic()

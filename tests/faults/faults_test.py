@@ -215,7 +215,7 @@ class Faults:
             problem = "exit 0, and standard output is another"
         elif done.returncode > 0 and not killed and not err.strip():
             problem = f"exit {done.returncode} without a word"
-        elif done.returncode != 130:  # stopped: what was tracked until then is written, and that is said
+        elif done.returncode != 130 and "until then" not in err:  # what was known until then is written, and that is said
             problem = self.half_file(outputs, there, whole)
         left = [str(path.relative_to(self.folder)) for path in (self.folder / "out").rglob("*") if ".part" in path.name or "-journal" in path.name]
         if not problem and left and not may_leave_parts:

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/limits.h"
+#include "marey/core/text_safety.h"
 
 namespace marey::edit {
 namespace {
@@ -89,7 +91,8 @@ Operation parsed(Kind kind, const json& payload) {
   Operation operation{.kind = kind};
   operation.tracks = tracks_of(payload.value("tracks", json::array()));
   if (payload.contains("frames")) operation.frames = range_of(payload["frames"]);
-  operation.label = payload.value("label", std::string());
+  operation.label = plain_text(payload.value("label", std::string()));
+  if (operation.label.size() > Limits::in_force().label_bytes) throw json::other_error::create(500, "a name", &payload);
   if (payload.contains("born")) operation.born = track_of(payload["born"]);
   for (const json& gap : payload.value("gaps", json::array())) operation.gaps.push_back(gap_of(gap));
   for (const json& cutoff : payload.value("cutoffs_hz", json::array())) operation.cutoffs_hz.push_back(positive(cutoff));

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "marey/core/error.h"
+#include "marey/core/limits.h"
 #include "marey/core/text_safety.h"
 
 namespace marey::edit {
@@ -173,11 +174,18 @@ void read_filter(Reader& words, Request& request) {
   request.frames = words.next(range_in);
 }
 
+std::string new_name(Reader& words) {
+  std::string name = plain_text(words.name("its new name"));
+  const std::size_t most = Limits::in_force().label_bytes;
+  if (name.size() > most) throw Error("a name has {} bytes; they have at most {} (the limit label_bytes)", name.size(), most);
+  return name;
+}
+
 void read(Reader& words, Request& request) {
   switch (request.kind) {
     case Kind::rename:
       request.tracks = {words.name("the track")};
-      request.label = words.name("its new name");
+      request.label = new_name(words);
       break;
     case Kind::swap:
     case Kind::join:
@@ -189,7 +197,7 @@ void read(Reader& words, Request& request) {
       const auto frame = words.next(frame_in);
       if (!frame) throw Error("split: the frame from which on it is another track is missing");
       request.frames = {*frame, *frame};
-      if (!words.ended()) request.label = words.name("its new name");
+      if (!words.ended()) request.label = new_name(words);
       break;
     }
     case Kind::remove:

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -136,7 +137,10 @@ TEST(Run, ASinkThatFailsEndsTheRunAndTheOthersKeepWhatTheyHave) {
     run(stage, clock, sinks);
     FAIL() << "nothing was said";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "keeper: no space left");
+    const std::string_view said = error.what();
+    EXPECT_TRUE(said.starts_with("keeper: no space left; the run ended there, and what was known until then is in keeper, "))
+        << said;
+    EXPECT_TRUE(said.ends_with("out.txt")) << said;
   }
   EXPECT_EQ(broken.indices.size(), 5u);
   EXPECT_FALSE(broken.finished);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/concurrent_queue.h>
 
 #include "marey/core/error.h"
@@ -42,6 +43,9 @@ class Sinks::Lane {
   const Sink::Wants& wants() const { return wants_; }
   const std::string& name() const { return name_; }
   bool failed() const { return failed_; }
+  /// Called where the run ends because it failed.
+  void end_run() { ended_run_ = true; }
+  bool ended_run() const { return ended_run_; }
   void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
   /// Only where there is room.
   void offer(const std::shared_ptr<const Instant>& instant) { passed_over_ += failed_ || queue_.try_push(instant) ? 0 : 1; }
@@ -104,6 +108,7 @@ class Sinks::Lane {
   tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
   std::atomic<bool> failed_ = false, given_up_ = false;
   std::exception_ptr failure_;  // before failed_
+  bool ended_run_ = false;
   std::int64_t passed_over_ = 0;
   std::thread writer_;
 };
@@ -137,7 +142,9 @@ bool Sinks::write(Instant instant) {
       lane->offer(shared);
     } else {
       lane->give(shared);
-      all = all && !lane->failed();
+      if (!lane->failed()) continue;
+      lane->end_run();
+      all = false;
     }
   }
   return all;
@@ -168,7 +175,15 @@ std::vector<std::string> Sinks::drop_pictures() {
 void Sinks::finish() {
   for (const auto& lane : lanes_) lane->drain();
   if (slow_ == Slow::passed_over) return;
-  for (const auto& lane : lanes_) lane->rethrow();
+  std::vector<std::string> whole;
+  for (const auto& lane : lanes_) {
+    if (!lane->failed()) whole.push_back(lane->name());
+  }
+  for (const auto& lane : lanes_) {
+    if (lane->ended_run() && !whole.empty())
+      throw Error("{}; the run ended there, and what was known until then is in {}", lane->trouble(), fmt::join(whole, ", "));
+    lane->rethrow();
+  }
 }
 
 }  // namespace marey::pipeline

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/take/schema_1_records.h"
 #include "marey/format/take/take_cursor.h"
 
@@ -26,7 +27,7 @@ class CursorOfSchema1 : public TakeCursor {
                                 : "SELECT frame, time_ns, points FROM frame WHERE frame >= ? ORDER BY frame LIMIT ?"),
         options_(options),
         header_(common_header(*database_, values_)) {
-    header_.made_by.program = values_.text("made_by");
+    header_.made_by.program = plain_text(values_.text("made_by"));
     header_.frame.kind = FrameOfReference::Kind::space;
   }
 
@@ -44,7 +45,7 @@ class CursorOfSchema1 : public TakeCursor {
     while (tracks.step()) {
       RecordingSummary::TrackCount count;
       count.name.id = checked_track(tracks.integer(0), *database_);
-      count.name.label = tracks.text(1);
+      count.name.label = plain_text(tracks.text(1));
       check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       for (int i = 0; i < 3; ++i) count.by_provenance[static_cast<std::size_t>(i)] = tracks.integer(4 + i);
       if (count.samples() > 0) {

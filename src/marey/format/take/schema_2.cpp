@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_reader.h"
 #include "marey/format/take/frame_names.h"
@@ -47,7 +48,7 @@ class CursorOfSchema2 : public TakeCursor {
                      "SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved FROM track ORDER BY id");
     while (tracks.step()) {
       RecordingSummary::TrackCount count;
-      count.name = {checked_track(tracks.integer(0), *database_), std::string(tracks.text(1)), std::string(tracks.text(2))};
+      count.name = {checked_track(tracks.integer(0), *database_), plain_text(tracks.text(1)), plain_text(tracks.text(2))};
       check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       if (tracks.is_number(3)) count.first_index = tracks.integer(3);
       if (tracks.is_number(4)) count.last_index = tracks.integer(4);
@@ -130,7 +131,7 @@ class CursorOfSchema2 : public TakeCursor {
     RecordingHeader header = common_header(*database_, values_);
     const std::string frame = values_.text("frame");
     const auto kind = frame_kind_of(frame);
-    if (!kind) throw Error("{}: is damaged (its frame of reference is \"{}\")", database_->path(), frame.substr(0, 40));
+    if (!kind) throw Error("{}: is damaged (its frame of reference is \"{}\")", database_->path(), plain_text(frame.substr(0, 40)));
     header.frame.kind = *kind;
     if (values_.has("camera")) {
       const std::int64_t camera = values_.integer("camera");
@@ -138,11 +139,11 @@ class CursorOfSchema2 : public TakeCursor {
       header.frame.camera = CameraId{static_cast<int>(camera)};
     }
     header.smoothed = values_.integer("smoothed") != 0;
-    header.made_by.program = values_.text("program");
+    header.made_by.program = plain_text(values_.text("program"));
     Statement options(*database_, "SELECT name, value FROM option ORDER BY name");
-    while (options.step()) header.made_by.options.emplace(options.text(0), options.text(1));
+    while (options.step()) header.made_by.options.emplace(plain_text(options.text(0)), plain_text(options.text(1)));
     Statement inputs(*database_, "SELECT name, hash FROM input ORDER BY id");
-    while (inputs.step()) header.made_by.inputs.push_back({std::string(inputs.text(0)), std::string(inputs.text(1))});
+    while (inputs.step()) header.made_by.inputs.push_back({plain_text(inputs.text(0)), plain_text(inputs.text(1))});
     read_bodies(header.bodies);
     return header;
   }
@@ -156,7 +157,7 @@ class CursorOfSchema2 : public TakeCursor {
         throw Error("{}: has more than {} bodies (the limit tracks)", database_->path(), options_.limits.tracks);
       Body& body = bodies.emplace_back();
       body.id = BodyId{static_cast<int>(id)};
-      body.label = std::string(rows.text(1));
+      body.label = plain_text(rows.text(1));
       check_name({.id = TrackId{static_cast<int>(id)}, .label = body.label, .team = {}}, 0, options_.limits, *database_);
       read_body_definition(rows.text(2), database_->path(), body);
     }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/format/rig/rig_file.h"
 
 namespace marey::format::take {
@@ -50,8 +51,8 @@ void require_tables(const Database& database, const char* tables, int count) {
 
 RecordingHeader common_header(const Database& database, TakeValues& values) {
   RecordingHeader header;
-  header.name = values.text("name");
-  header.recorded_at = values.text("recorded_at");
+  header.name = plain_text(values.text("name"));
+  header.recorded_at = plain_text(values.text("recorded_at"));
   header.rate_hz = values.real("rate_hz");
   const std::string rig = values.text("rig");
   if (!rig.empty()) header.rig = rig::parse_rig(rig, database.path() + " (its rig)");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/file_lock.h"
 #include "marey/core/limits.h"
 #include "marey/core/recording.h"
 #include "marey/core/recording_reader.h"
@@ -20,12 +21,14 @@ namespace marey::format::take {
 class TakeWriter : public Sink {
  public:
   explicit TakeWriter(std::string path);
-  /// Keeps what was written. Without `finish` before, the take is marked as cut off.
+  /// Keeps what was written. Without `finish` before, the take is marked as cut off; where nothing was written at all none is made,
+  /// and one that bears the name already stays.
   ~TakeWriter() override;
 
   std::string name() const override { return path_; }
-  /// Begins a new take. One that bears the name already is replaced. Throws Error where the place cannot be written, where the name
-  /// is another kind of file's, where another TakeWriter has it open, and where the header is not valid.
+  /// Begins a new take, which is in its place from the first thing that is written on, or `flush`; one that bears the name already
+  /// is replaced then. Throws Error where the place cannot be written, where the name is another kind of file's, where another
+  /// TakeWriter has it open, and where the header is not valid.
   Wants begin(const RecordingHeader& header) override;
   /// Instants come in growing order of their indices; some may be left out. Each track has at most one sample. Throws Error where
   /// the disk is full; all instants but those of the last second are then in the file, and this writer takes no more.
@@ -45,6 +48,8 @@ class TakeWriter : public Sink {
   Recorder& recorder();
 
   std::string path_;
+  RecordingHeader header_;          // of what was begun
+  std::unique_ptr<FileLock> lock_;  // from `begin` to `finish`
   std::unique_ptr<Recorder> recorder_;
 };
 

@@ -238,6 +238,7 @@ TEST_F(TakeFile, SeeksAndLeavesOutWhatWasSeen) {
 TEST_F(TakeFile, IsReadWhileItIsWritten) {
   TakeWriter writer(path_);
   writer.begin(header());
+  writer.flush();
   TakeReader reader(path_);
   EXPECT_FALSE(reader.next());
   for (int i = 0; i < 200; ++i) writer.write(instant_of(i));
@@ -286,6 +287,28 @@ TEST_F(TakeFile, TakesOneWriter) {
   second.begin(header());
   second.finish();
   EXPECT_EQ(read_recording(path_).instants().size(), 0U) << "the second replaces the first";
+}
+
+TEST_F(TakeFile, StaysAsItWasWhereNothingIsWritten) {
+  {
+    TakeWriter writer(path_);
+    writer.begin(header());
+  }
+  EXPECT_FALSE(fs::exists(path_));
+  {
+    TakeWriter writer(path_);
+    writer.begin(header());
+    writer.write(instant_of(0));
+    writer.finish();
+  }
+  const std::string before = test::read_file(path_);
+  {
+    TakeWriter writer(path_);
+    writer.begin(header());
+    EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is being written by another run"), std::string::npos);
+  }
+  EXPECT_EQ(test::read_file(path_), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
 }
 
 // At 2,000 frames a second, so that several transactions end before the kill. What was written before is in the file.

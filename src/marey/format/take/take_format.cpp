@@ -1,5 +1,6 @@
 // The take's row of the register: how commands that handle any format read and write it.
 #include <memory>
+#include <utility>
 
 #include "marey/format/format.h"
 #include "marey/format/take/take_file.h"
@@ -32,19 +33,28 @@ class TakeCopy : public Sink {
  public:
   TakeCopy(const std::string& path, const WritePlan& plan) : writer_(path), info_(plan.info) {}
   std::string name() const override { return writer_.name(); }
-  Wants begin(const RecordingHeader& header) override {
-    const Wants wants = writer_.begin(header);
+  Wants begin(const RecordingHeader& header) override { return writer_.begin(header); }
+  void write(const Instant& instant) override {
+    copy_names();
+    writer_.write(instant);
+  }
+  void finish() override {
+    copy_names();
+    writer_.finish();
+  }
+
+ private:
+  /// Once there is something to be written, not before: a take of that name stays until then.
+  void copy_names() {
+    if (std::exchange(copied_, true)) return;
     for (const TrackName& track : info_.tracks) writer_.set_name(track);
     for (const Edit& edit : info_.edits) writer_.add_edit(edit);
     if (info_.frame_count) writer_.set_head(info_.head);  // a plan is there
-    return wants;
   }
-  void write(const Instant& instant) override { writer_.write(instant); }
-  void finish() override { writer_.finish(); }
 
- private:
   TakeWriter writer_;
   FileInfo info_;
+  bool copied_ = false;
 };
 
 }  // namespace

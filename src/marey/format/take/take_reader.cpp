@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/text_safety.h"
 #include "marey/edit/operation.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_cursor.h"
@@ -130,7 +131,7 @@ std::vector<std::string> TakeReader::warnings() const {
     warnings.push_back(path_ + ": its recording was cut off, or still goes on; what there is was read");
   std::set<std::string> unknown;
   for (const Edit& edit : cursor_->edits()) {
-    if (!edit::is_known(edit)) unknown.insert(edit.operation.substr(0, 40));
+    if (!edit::is_known(edit)) unknown.insert(plain_text(edit.operation.substr(0, 40)));
   }
   for (const std::string& operation : unknown) {
     warnings.push_back(

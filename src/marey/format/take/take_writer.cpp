@@ -37,6 +37,9 @@ void require_valid(const RecordingHeader& header, const std::string& path) {
   if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
     throw Error("{}: a rate of {} frames a second; it must be positive", path, header.rate_hz);
   }
+  for (const Body& body : header.bodies) {
+    if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path, number(body.id));
+  }
 }
 
 }  // namespace
@@ -45,8 +48,7 @@ class TakeWriter::Recorder {
  public:
   Recorder(const std::string& path, const RecordingHeader& header)
       : path_(place_for_take(path)),
-        lock_(path_),
-        database_((require_valid(header, path), remove_old_take(path_), path_), Database::Mode::create),
+        database_((remove_old_take(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
         dimensions_(header.frame.dimensions()),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
@@ -164,7 +166,6 @@ class TakeWriter::Recorder {
   void set_bodies(const std::vector<Body>& bodies) {
     Statement add_body(database_, "INSERT INTO body VALUES (?, ?, ?)");
     for (const Body& body : bodies) {
-      if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path_, number(body.id));
       const std::string definition = body_definition(body);
       add_body.bind(0, std::int64_t{number(body.id)});
       add_body.bind(1, std::string_view(body.label));
@@ -316,7 +317,6 @@ class TakeWriter::Recorder {
   }
 
   std::string path_;
-  FileLock lock_;
   Database database_;
   int schema_;
   int dimensions_;
@@ -349,12 +349,15 @@ TakeWriter::~TakeWriter() {
 }
 
 TakeWriter::Recorder& TakeWriter::recorder() {
-  if (!recorder_) throw Error("{}: is written before it was begun, or after it was finished", path_);
+  if (!lock_) throw Error("{}: is written before it was begun, or after it was finished", path_);
+  if (!recorder_) recorder_ = std::make_unique<Recorder>(path_, header_);
   return *recorder_;
 }
 
 Sink::Wants TakeWriter::begin(const RecordingHeader& header) {
-  recorder_ = std::make_unique<Recorder>(path_, header);
+  require_valid(header, path_);
+  lock_ = std::make_unique<FileLock>(place_for_take(path_));
+  header_ = header;
   return {.pictures = false, .seen = true};
 }
 void TakeWriter::write(const Instant& instant) {
@@ -363,6 +366,7 @@ void TakeWriter::write(const Instant& instant) {
 void TakeWriter::finish() {
   recorder().finish();
   recorder_.reset();
+  lock_.reset();
 }
 void TakeWriter::set_name(const TrackName& name) {
   recorder().set_name(name);
