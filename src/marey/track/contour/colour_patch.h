@@ -27,6 +27,11 @@ struct ColourPatch {
   }
 };
 
+/// The box and `by` px more on every side.
+inline Box grown(const Box& box, double by) {
+  return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
+}
+
 /// The part of the picture (8 bits) within `box`, px; empty where they do not meet. `mask` is CV_8UC1, of the picture's size.
 ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step);
 

@@ -22,6 +22,14 @@ inline constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from 
 inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
                         kHiddenCentre = 4;  // how the centre swings with the steps; the last: factor where a part is hidden
 
+inline constexpr double kShareMemory = 0.05;  // what a frame counts in what is usual of a target
+
+// Doubts of a target that begins, or begins anew.
+inline constexpr double kBend = 0.12;        // heights each √second, of a control point against all others
+inline constexpr double kGrowthDoubt = 0.5;  // 1/s
+inline constexpr double kGrowthNoise = 2;    // 1/s, of the growth read off two outlines
+inline constexpr int kHeldTooLong = 5;       // frames after which a shape that was held says little
+
 /// px, standard deviation axis by axis.
 struct MeasuredCentre {
   Vector<2> centre, deviation;

@@ -25,10 +25,6 @@ constexpr double kFine = 80;                       // px of height, up to which 
 constexpr int kLongHeld = 5;                       // frames
 constexpr int kFewFrames = 6;                      // alone, up to which the silhouettes may have held pixels of others
 
-Box grown(const Box& box, double by) {
-  return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
-}
-
 bool hardly_known(const FollowedTarget& target) {
   return target.learned < kFewFrames;
 }

@@ -1,0 +1,166 @@
+// For each target and frame: the shape filter is predicted by the motion filter (the paper's equation), the outline is searched
+// along lines normal to it, the lines correct the shape filter, and the centre and the growth of the corrected outline correct the
+// motion filter. Beyond the paper: lines carry variances and must agree with the filter's own; targets nearer to the camera own
+// their pixels, so that lines on a neighbour say nothing; one of which too little is seen keeps its shape and coasts on its motion
+// filter; one of which a part is hidden by the scene is held stiff. Cost a target: lines × (length of a line + (2M)²) + (2M)².
+// References: Arnaut & Costa, TECCEN 2(1), 2009; MacCormick & Blake, IJCV 39(1), 2000; Blake & Isard, "Active Contours", 1998.
+#include "marey/track/contour/line_correction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/silhouette_spline.h"
+
+namespace marey::track::contour {
+namespace {
+
+using Finding = MeasurementLine::Finding;
+
+// Noise, in heights of the target (px where it says so); each √second where it is a motion.
+constexpr double kTogether = 0.3, kStiff = 0.1;  // the last: of bend and together, while a part may be hidden
+constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
+constexpr double kGate = 3.5;                                  // standard deviations
+constexpr double kLeastReachPx = 4, kMostReachHeights = 0.25;  // of a line: px; heights
+constexpr double kSeen = 0.6, kPartly = 0.25;                  // shares of the lines found
+constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
+
+}  // namespace
+
+void LineCorrection::predict(FollowedTarget& target, double dt) {
+  const bool held = target.state == Outline::State::held;
+  const double stiff = target.state == Outline::State::seen && !target.crowded ? 1 : kStiff;
+  const double step = std::sqrt(dt) * target.height;
+  const double growth = held ? 0 : std::clamp(dt * target.motion.growth(), -0.2, 0.2);
+  const ShapeNoise noise{.bend = held ? 0 : kBend * stiff * step,
+                         .together = held ? 0 : kTogether * stiff * step,
+                         .shift = dt * target.motion.velocity_deviation().mean(),
+                         .growth = held ? 0 : dt * target.motion.growth_deviation()};
+  target.shape.predict(dt * target.motion.velocity(), growth, target.shape.spline().centroid(), noise);
+  target.predicted = target.shape.spline();
+  target.behind.clear();
+  target.hidden.clear();
+  target.motion.predict(dt, {.acceleration = kAcceleration * target.height, .growth = kGrowthDrift});
+  target.box = target.shape.spline().box();
+  polygon_ = target.shape.spline().polygon(4);
+  target.footprint.fill(polygon_);
+}
+
+void LineCorrection::correct(FollowedTarget& target, std::span<const FollowedTarget> all, const cv::Mat& mask, double dt) {
+  others_.clear();
+  target.crowded = false;
+  const Box wide = grown(target.box, 2 + kMostReachHeights * target.height);
+  for (const FollowedTarget& other : all) {
+    if (&other == &target || geometry::intersection(other.box, wide).area() <= 0) continue;
+    others_.push_back(&other.footprint);
+    target.crowded = target.crowded || geometry::intersection(other.box, target.box).area() > 0;
+  }
+  target.share = foreground_share(target, mask);
+  place_lines(target);
+  const LineScene scene{mask, others_};
+  int found = 0, askable = 0;
+  for (std::size_t i = 0; i < target.lines.size(); ++i) {
+    MeasurementLine& line = target.lines[i];
+    search_line(line, scene, deviations_[i]);
+    found += line.finding == Finding::found ? 1 : 0;
+    askable += line.finding != Finding::outside ? 1 : 0;
+  }
+  correct_shape(target, found, askable, dt);
+}
+
+/// Of the pixels that the target covers and no other does.
+double LineCorrection::foreground_share(const FollowedTarget& target, const cv::Mat& mask) const {
+  const Footprint& own = target.footprint;
+  const int left = std::max(0, own.left()), right = std::min(mask.cols, own.left() + own.width());
+  int covered = 0, filled = 0;
+  for (int y = std::max(0, own.top()); y < std::min(mask.rows, own.top() + own.height()); ++y) {
+    const std::uint8_t* pixels = mask.ptr<std::uint8_t>(y);
+    const std::uint8_t* inside = own.row(y).data();
+    for (int x = left; x < right; ++x) {
+      const int one = inside[x - own.left()];
+      covered += one;
+      filled += one & (pixels[x] >> 7);
+    }
+  }
+  return covered > 0 ? static_cast<double>(filled) / covered : 0;
+}
+
+void LineCorrection::place_lines(FollowedTarget& target) {
+  const geometry::ClosedSpline& spline = target.shape.spline();
+  spline.evenly_spaced(places_);
+  target.lines.clear();
+  weights_.clear();
+  deviations_.clear();
+  for (const double place : places_) {
+    const geometry::SplineWeights weights = geometry::spline_weights(spline.order(), spline.count(), place);
+    Vector<2> at = Vector<2>::Zero(), slope = Vector<2>::Zero();
+    for (int j = 0; j < spline.order(); ++j) {
+      const Vector<2>& point = spline.control_points()[(weights.first + j) % spline.count()];
+      at += weights.value[j] * point;
+      slope += weights.derivative[j] * point;
+    }
+    const double length = slope.norm();
+    if (!(length > 1e-6)) continue;
+    const Vector<2> normal(slope.y() / length, -slope.x() / length);
+    const double deviation = std::sqrt(std::max(0.0, target.shape.variance(weights, normal)));
+    const double most = std::max(kLeastReachPx, kMostReachHeights * target.height);
+    target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kLeastReachPx, most)});
+    weights_.push_back(weights);
+    deviations_.push_back(deviation);
+  }
+}
+
+/// How many lines the shape filter believed. Where they tie a loop they are believed as to where the target is, not as to its
+/// shape.
+int LineCorrection::believe_lines(FollowedTarget& target) {
+  const ShapeFilter predicted = target.shape;
+  int believed = 0;
+  for (std::size_t i = 0; i < target.lines.size(); ++i) {
+    MeasurementLine& line = target.lines[i];
+    if (line.finding != Finding::found) continue;
+    const double position = line.normal.dot(line.foot) + line.offset;
+    if (target.shape.correct(weights_[i], line.normal, position, line.variance, kGate)) {
+      ++believed;
+    } else {
+      line.finding = Finding::outlier;
+    }
+  }
+  target.knotted = is_knotted(target.shape.spline());
+  if (target.knotted) {
+    const Vector<2> shift = target.shape.spline().centroid() - predicted.spline().centroid();
+    target.shape = predicted;
+    target.shape.predict(shift, 0, target.shape.spline().centroid(), {});
+  }
+  return believed;
+}
+
+void LineCorrection::correct_shape(FollowedTarget& target, int found, int askable, double dt) {
+  const bool hidden = target.share < kHiddenShare * target.usual_share;
+  const double part = askable > 0 ? static_cast<double>(found) / askable : 0;
+  if (part < kPartly || target.share < 0.4 * target.usual_share) {
+    target.state = Outline::State::held;
+    return;
+  }
+  const double predicted_area = target.shape.spline().area();
+  const int believed = believe_lines(target);
+  target.state = believed >= kSeen * askable && !hidden && !target.knotted ? Outline::State::seen
+                 : believed >= kPartly * askable                           ? Outline::State::partly
+                                                                           : Outline::State::held;
+  if (target.state == Outline::State::held) return;
+  const bool clear = target.state == Outline::State::seen;
+  const Matrix<2> P = target.shape.centroid_covariance();
+  const Vector<2> gait = (clear ? 1 : kHiddenCentre) * target.height * Vector<2>(kGaitAcross, kGaitDown);
+  const Vector<2> deviation = (P.diagonal() + gait.cwiseAbs2()).cwiseSqrt();
+  const Vector<2> centre = target.shape.spline().centroid();
+  target.measured = {centre, deviation};
+  const double area = target.shape.spline().area();
+  if (clear && dt > 0 && area > 0 && predicted_area > 0) {
+    const double measured = target.motion.growth() + (std::sqrt(area / predicted_area) - 1) / dt;
+    target.motion.correct_growth(measured, kGrowthNoise);
+    target.usual_share += kShareMemory * (target.share - target.usual_share);
+    target.height += kShareMemory * (target.shape.spline().box().height - target.height);
+  }
+}
+
+}  // namespace marey::track::contour

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/geometry.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/line_search.h"
+
+namespace marey::track::contour {
+
+/// The paper's two filters for one target and frame: predicted by the motion, corrected by measurement lines across the outline.
+class LineCorrection {
+ public:
+  /// `lines` measurement lines an outline.
+  explicit LineCorrection(int lines) : places_(static_cast<std::size_t>(lines)) {}
+
+  /// To a frame `dt` seconds later.
+  void predict(FollowedTarget& target, double dt);
+
+  /// Searches the lines in `mask` (CV_8UC1, 255 foreground) and corrects the target by them; `all` are the targets that may own
+  /// pixels, `target` among them. Says how much of it was seen (`state`).
+  void correct(FollowedTarget& target, std::span<const FollowedTarget> all, const cv::Mat& mask, double dt);
+
+ private:
+  double foreground_share(const FollowedTarget& target, const cv::Mat& mask) const;
+  void place_lines(FollowedTarget& target);
+  void correct_shape(FollowedTarget& target, int found, int askable, double dt);
+  int believe_lines(FollowedTarget& target);
+
+  // What a frame needs, kept so that it is allocated once.
+  std::vector<const Footprint*> others_;
+  std::vector<double> places_, deviations_;
+  std::vector<geometry::SplineWeights> weights_;
+  std::vector<Vector<2>> polygon_;
+};
+
+}  // namespace marey::track::contour

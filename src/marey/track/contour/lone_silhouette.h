@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/detection.h"
+#include "marey/core/picture.h"
+#include "marey/core/track.h"
+#include "marey/geometry/bspline.h"
+#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/followed_target.h"
+
+namespace marey::track::contour {
+
+/// Takes outlines from silhouettes that nobody shares, and learns from them how their targets look.
+class LoneSilhouettes {
+ public:
+  /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
+  void look_at(const Picture& picture, const cv::Mat& mask);
+  bool has_colours() const;  ///< whether the frame's picture can tell where a body ends
+
+  /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
+  std::optional<geometry::ClosedSpline> fitted(const Detection& seen, const geometry::SplineFitOptions& options);
+
+  /// The tracker says that `seen` is this target: its whole edge tells more than the lines, which a leg that swings leaves behind.
+  /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
+  bool take(FollowedTarget& target, const Detection& seen, const Track<2>& track);
+
+ private:
+  void learn(FollowedTarget& target, const Vector<2>& centre, const Track<2>& track);
+
+  Picture picture_;
+  cv::Mat mask_;
+  ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty where colours were not used
+  cv::Mat share_;
+};
+
+}  // namespace marey::track::contour
