@@ -1,6 +1,6 @@
 # Every library that Marey is built on, found in one place. `script/setup` installs them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video calib3d aruco)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video calib3d aruco dnn)
 find_package(Ceres 2.1 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(TBB REQUIRED)

@@ -27,6 +27,11 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   command.group("Options for --targets people");
   command.text("--background", flags.background, "the model of the empty scene, one of " + detect::background::background_names())
       .check(detect::background::parse_background);
+  const Option detector =
+      command.input_file("--detector", flags.detector,
+                         "a detection network beside the background model: the file that describes it (docs/network.md)");
+  const Option every = command.whole("--every", flags.every, "N", 1, 1000, "the network looks at every N-th frame").needs(detector);
+  command.flag("--without-background", flags.without_background, "the network alone").needs(detector).excludes(every);
   const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
       .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,
@@ -42,7 +47,15 @@ void add_people_options(Command& command, PeopleFlags& flags) {
 }
 
 detect::DetectorOptions detector_options(const PeopleFlags& flags) {
-  return detect::people::PeopleDetectorOptions{.background = detect::background::parse_background(flags.background), .people = {}};
+  const detect::people::PeopleDetectorOptions people{.background = detect::background::parse_background(flags.background),
+                                                     .people = {}};
+  if (flags.detector.empty()) return people;
+  detect::network::NetworkDetectorOptions network;
+  network.model = flags.detector;
+  network.background = !flags.without_background;
+  network.every = flags.every;
+  network.people = people;
+  return network;
 }
 
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {

@@ -15,6 +15,9 @@ constexpr double kBodyPixels = 100;
 /// What `marey track --targets people` understands beyond what every target needs.
 struct PeopleFlags {
   std::string background = std::string(detect::background::AdaptiveOptions::name);
+  std::string detector;
+  bool without_background = false;
+  int every = 1;
   bool outline = false;
   std::optional<int> control_points;
   std::optional<int> order;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/detect/network/network_detector.h"
 
 namespace marey::detect {
 namespace {
@@ -15,6 +16,10 @@ std::unique_ptr<Detector> make(const people::PeopleDetectorOptions& options) {
 
 std::unique_ptr<Detector> make(const markers::MarkerOptions& options) {
   return std::make_unique<markers::MarkerDetector>(options);
+}
+
+std::unique_ptr<Detector> make(const network::NetworkDetectorOptions& options) {
+  return std::make_unique<network::NetworkDetector>(options);
 }
 
 template <std::size_t... I>
@@ -50,6 +55,12 @@ DetectorOptions detector_named(std::string_view name) {
 
 std::string_view name_of(const DetectorOptions& options) {
   return std::visit([](const auto& chosen) { return std::string_view(chosen.name); }, options);
+}
+
+people::PeopleOptions* people_options_of(DetectorOptions& options) {
+  if (auto* people = std::get_if<people::PeopleDetectorOptions>(&options)) return &people->people;
+  if (auto* network = std::get_if<network::NetworkDetectorOptions>(&options)) return &network->people.people;
+  return nullptr;
 }
 
 }  // namespace marey::detect

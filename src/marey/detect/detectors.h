@@ -7,13 +7,14 @@
 
 #include "marey/detect/detector.h"
 #include "marey/detect/markers/marker_detector.h"
+#include "marey/detect/network/network_options.h"
 #include "marey/detect/people/people.h"
 
 namespace marey::detect {
 
 /// The register of detectors that look at pictures: which one, with its parameters. A new one is named here and made in
 /// detectors.cpp, which does not compile before. Detections that another program found come through a source (pipeline).
-using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions>;
+using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions, network::NetworkDetectorOptions>;
 
 std::unique_ptr<Detector> make_detector(const DetectorOptions& options);
 
@@ -24,5 +25,8 @@ std::string detector_names();
 DetectorOptions detector_named(std::string_view name);
 
 std::string_view name_of(const DetectorOptions& options);
+
+/// What a detector of people takes their sizes from; nothing of one that finds something else.
+people::PeopleOptions* people_options_of(DetectorOptions& options);
 
 }  // namespace marey::detect

@@ -31,8 +31,9 @@ TEST(Detectors, AreMadeByNameAndSayWhatTheirBoxesMean) {
 }
 
 TEST(Detectors, NamesAndOptionsBelongTogether) {
-  EXPECT_EQ(detector_names(), "people, markers");
+  EXPECT_EQ(detector_names(), "people, markers, network");
   EXPECT_EQ(name_of(detector_named("markers")), "markers");
+  EXPECT_EQ(name_of(detector_named("network")), "network");
   EXPECT_EQ(name_of(people::PeopleDetectorOptions{}), "people");
   try {
     detector_named("birds");

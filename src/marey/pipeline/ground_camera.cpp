@@ -79,8 +79,8 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
     if (whole != nullptr) {
       const cv::Rect part = part_with_people(*whole, area);
       if (part.size() != whole->size()) part_ = part;
-      if (auto* people = std::get_if<detect::people::PeopleDetectorOptions>(&detector))
-        people->people.sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
+      if (detect::people::PeopleOptions* people = detect::people_options_of(detector))
+        people->sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
     }
     detector_ = detect::make_detector(detector);
   }

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "marey/detect/people/people.h"
+
+namespace marey::detect::network {
+
+/// The detector as the register of detectors knows it (detect/detectors.h).
+struct NetworkDetectorOptions {
+  static constexpr std::string_view name = "network";
+
+  std::string model = {};   ///< a file that describes a network (model_file.h)
+  bool background = true;   ///< a background model beside it, which sees whoever moves between the frames that the network looks at
+  int every = 1;            ///< the network looks at every n-th frame; 1 where there is no background model
+  double everywhere_s = 2;  ///< beside a background model, the network looks all over the picture this often, else where people are
+  double first_height = 84;                   ///< px: as high people are taken to be until some were found
+  people::PeopleDetectorOptions people = {};  ///< the background model and, where they are known, the sizes of people
+};
+
+}  // namespace marey::detect::network

@@ -1,0 +1,180 @@
+// OpenCV's dnn behind one source: its header and what is instantiated of it stay here.
+#include "marey/detect/network/run_network.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+
+namespace marey::detect::network {
+
+struct LoadedNetwork::Engine {
+  cv::dnn::Net net;
+  std::vector<std::string> outputs;
+};
+
+namespace {
+
+constexpr double kGrey = 114;  // what is round a picture in its letterbox
+
+/// OpenCV writes to standard error what it also throws: not while this lives.
+class QuietOpenCv {
+ public:
+  QuietOpenCv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietOpenCv() { cv::utils::logging::setLogLevel(before_); }
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel before_;
+};
+
+/// Where a picture lies in the network's: px there = offset + scale · px of the picture.
+struct Fitted {
+  double scale_x = 1, scale_y = 1, left = 0, top = 0;
+};
+
+Fitted fitted(cv::Size picture, const NetworkModel& model) {
+  const double x = static_cast<double>(model.input.width) / picture.width,
+               y = static_cast<double>(model.input.height) / picture.height;
+  if (*model.resize == NetworkModel::Resize::stretch) return {x, y, 0, 0};
+  const double scale = std::min(x, y);
+  Fitted fit{scale, scale, 0, 0};
+  if (*model.resize == NetworkModel::Resize::letterbox) {
+    fit.left = std::floor((model.input.width - std::round(scale * picture.width)) / 2);
+    fit.top = std::floor((model.input.height - std::round(scale * picture.height)) / 2);
+  }
+  return fit;
+}
+
+cv::Mat placed(const cv::Mat& bgr, const Fitted& fit, const NetworkModel& model) {
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(fit.scale_x * bgr.cols))),
+                      std::max(1, static_cast<int>(std::lround(fit.scale_y * bgr.rows))));
+  cv::Mat resized;
+  cv::resize(bgr, resized, size, 0, 0, fit.scale_x < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  if (size == model.input) return resized;
+  cv::Mat whole(model.input, CV_8UC3, cv::Scalar::all(kGrey));
+  const cv::Rect where(cv::Point(static_cast<int>(fit.left), static_cast<int>(fit.top)), size);
+  const cv::Rect inside = where & cv::Rect(cv::Point(), model.input);
+  resized(cv::Rect(cv::Point(), inside.size())).copyTo(whole(inside));
+  return whole;
+}
+
+/// 1×3×h×w of floats.
+cv::Mat planes_of(const cv::Mat& picture, const NetworkModel& model) {
+  cv::Mat blob = cv::dnn::blobFromImage(picture, 1, picture.size(), {}, *model.rgb);
+  const std::size_t plane = static_cast<std::size_t>(picture.rows) * static_cast<std::size_t>(picture.cols);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto scale = static_cast<float>(*model.scale / (*model.deviation)[c]);
+    const auto shift = static_cast<float>((*model.mean)[c] / (*model.deviation)[c]);
+    float* values = blob.ptr<float>() + c * plane;
+    for (std::size_t i = 0; i < plane; ++i) values[i] = values[i] * scale - shift;
+  }
+  return blob;
+}
+
+/// What the layout's networks are usually given, where the model's file does not say.
+void fill_usual(NetworkModel& model) {
+  const Layout layout = *model.layout;
+  const bool ssd = layout == Layout::ssd_raw || layout == Layout::ssd;
+  const bool detr = layout == Layout::rt_detr || layout == Layout::rf_detr;
+  const bool raw_colours = layout == Layout::yolox || layout == Layout::nanodet;
+  using Resize = NetworkModel::Resize;
+  if (!model.resize) model.resize = ssd || detr ? Resize::stretch : layout == Layout::yolox ? Resize::corner : Resize::letterbox;
+  if (!model.rgb) model.rgb = !raw_colours;
+  const bool said = model.mean || model.deviation;
+  if (!model.scale) model.scale = ssd ? 1 / 127.5 : raw_colours ? 1 : 1 / 255.0;
+  if (!model.mean) {
+    model.mean = ssd ? std::array<double, 3>{1, 1, 1} : std::array<double, 3>{};
+    if (layout == Layout::nanodet && !said) model.mean = {103.53, 116.28, 123.675};
+    if (layout == Layout::rf_detr && !said) model.mean = {0.485, 0.456, 0.406};
+  }
+  if (!model.deviation) {
+    model.deviation = {1, 1, 1};
+    if (layout == Layout::nanodet && !said) model.deviation = {57.375, 57.12, 58.395};
+    if (layout == Layout::rf_detr && !said) model.deviation = {0.229, 0.224, 0.225};
+  }
+}
+
+/// OpenCV's sentence without its file and line, and only its first line.
+std::string reason_of(const cv::Exception& error) {
+  std::string text = error.err.empty() ? error.what() : error.err;
+  return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
+}
+
+Tensor tensor_of(const cv::Mat& values, const std::string& name) {
+  Tensor tensor;
+  tensor.name = name;
+  for (int i = 0; i < values.dims; ++i) tensor.shape.push_back(values.size[i]);
+  cv::Mat numbers;
+  values.convertTo(numbers, CV_32F);
+  tensor.values.assign(numbers.ptr<float>(), numbers.ptr<float>() + numbers.total());
+  return tensor;
+}
+
+}  // namespace
+
+LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model), engine_(std::make_unique<Engine>()) {
+  if (!std::filesystem::is_regular_file(model_.network))
+    throw Error("{}: its network {} is not there", model_.path, model_.network);
+  const QuietOpenCv quiet;
+  try {
+    engine_->net = cv::dnn::readNetFromONNX(model_.network);
+    engine_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    engine_->outputs = engine_->net.getUnconnectedOutLayersNames();
+  } catch (const cv::Exception& error) {
+    throw Error("{}: cannot be loaded as an ONNX network ({}); export it with opset 11 or 12 and a fixed input", model_.network,
+                reason_of(error));
+  }
+  NetworkModel trial = model_;
+  if (!trial.layout) trial.layout = Layout::yolov8;
+  fill_usual(trial);
+  std::swap(model_, trial);
+  const std::vector<Tensor> outputs = run(cv::Mat(model_.input, CV_8UC3, cv::Scalar::all(kGrey)));
+  std::swap(model_, trial);
+  if (!model_.layout) model_.layout = layout_of(outputs, model_.input);
+  if (!model_.layout)
+    throw Error("{}: the outputs of {} are of no known layout; say layout = one of {}, if it is a detector", model_.path,
+                model_.network, layout_names());
+  fill_usual(model_);
+  try {
+    candidates_of(outputs, *model_.layout, model_.input, model_.person, model_.score);
+  } catch (const Error& error) {
+    throw Error("{}: {}", model_.path, error.what());
+  }
+}
+
+LoadedNetwork::~LoadedNetwork() = default;
+LoadedNetwork::LoadedNetwork(LoadedNetwork&&) noexcept = default;
+
+std::vector<Tensor> LoadedNetwork::run(const cv::Mat& bgr) {
+  const cv::Mat blob = planes_of(placed(bgr, fitted(bgr.size(), model_), model_), model_);
+  std::vector<Tensor> tensors;
+  const QuietOpenCv quiet;
+  try {
+    engine_->net.setInput(blob);
+    std::vector<cv::Mat> outputs;
+    engine_->net.forward(outputs, engine_->outputs);
+    for (std::size_t i = 0; i < outputs.size(); ++i) tensors.push_back(tensor_of(outputs[i], engine_->outputs[i]));
+  } catch (const cv::Exception& error) {
+    throw Error("{}: does not run on pictures of {}x{} px ({}); is input in {} what the network wants?", model_.network,
+                model_.input.width, model_.input.height, reason_of(error), model_.path);
+  }
+  return tensors;
+}
+
+std::vector<Candidate> LoadedNetwork::find(const cv::Mat& bgr) {
+  std::vector<Candidate> found = candidates_of(run(bgr), *model_.layout, model_.input, model_.person, model_.score);
+  const Fitted fit = fitted(bgr.size(), model_);
+  for (Candidate& one : found) {
+    one.left = (one.left - fit.left) / fit.scale_x, one.right = (one.right - fit.left) / fit.scale_x;
+    one.top = (one.top - fit.top) / fit.scale_y, one.bottom = (one.bottom - fit.top) / fit.scale_y;
+  }
+  return found;
+}
+
+}  // namespace marey::detect::network

@@ -1,0 +1,46 @@
+// Where a network looks: square parts of the picture so large that people fill the share of them that networks find best,
+// overlapping by more than a person, so that everybody lies whole in some part; and one list of people out of what is found in all
+// of them.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/core/geometry.h"
+#include "marey/detect/network/output_layout.h"
+
+namespace marey::detect::network {
+
+struct TileOptions {
+  double share = 0.28;    ///< a person's height over the tile's: SSD-MobileNet finds most at 0.2 to 0.35
+  double apart = 1.6;     ///< sizes of people that differ by more get tiles of their own
+  double overlap = 1.25;  ///< of neighbouring tiles, in heights of a person
+};
+
+/// How high a person with feet at (x, y) is, px; nothing where nobody can stand.
+using HeightAt = std::function<std::optional<double>(double, double)>;
+
+/// The tiles of a picture; without `height_at`, people are taken to be seen as `usual` px high everywhere.
+std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, double usual, const TileOptions& options = {});
+
+/// What one tile gave; candidates in px of the whole picture.
+struct TileFinds {
+  cv::Rect tile;
+  std::vector<Candidate> found;
+};
+
+struct JoinOptions {
+  double same = 0.5;      ///< intersection over union from which on two finds are one person
+  double within = 0.75;   ///< of the smaller one's area, that lies in the other: likewise
+  double border = 0.015;  ///< of the tile's side: who comes so near an inner edge is cut off by it
+};
+
+/// One find a person, the surest of all tiles; who is cut off by an inner edge is left to the tile that holds it whole. The surest
+/// first.
+std::vector<Candidate> join_finds(std::span<const TileFinds> tiles, cv::Size picture, const JoinOptions& options = {});
+
+}  // namespace marey::detect::network
