@@ -33,17 +33,19 @@ constexpr std::array kAssociations{Association{"gnn", track::ground::GroundAssoc
                                    Association{"mht", track::ground::GroundAssociation::mht, false},
                                    Association{"mht, live", track::ground::GroundAssociation::mht, true}};
 
-void add(std::vector<evaluate::PersonPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
+void add(std::vector<evaluate::TargetPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
   for (const Track<2>& track : tracks) {
-    if (track.confirmed) places.push_back({frame, number(track.id), track.position, track.velocity});
+    if (track.confirmed)
+      places.push_back({frame, number(track.id), evaluate::on_ground(track.position), evaluate::on_ground(track.velocity)});
   }
 }
 
-std::vector<evaluate::PersonPlace> truth_of(const simulate::EncounterScene& scene) {
-  std::vector<evaluate::PersonPlace> places;
+std::vector<evaluate::TargetPlace> truth_of(const simulate::EncounterScene& scene) {
+  std::vector<evaluate::TargetPlace> places;
   for (std::size_t frame = 0; frame < scene.truth.size(); ++frame) {
     for (std::size_t i = 0; i < scene.truth[frame].size(); ++i)
-      places.push_back({static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), scene.truth[frame][i], {}});
+      places.push_back(
+          {static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), evaluate::on_ground(scene.truth[frame][i]), {}});
   }
   return places;
 }
@@ -63,11 +65,11 @@ struct Followed {
   std::int64_t steps = 0;
 };
 
-Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate::PersonPlace> truth, const Association& method,
+Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate::TargetPlace> truth, const Association& method,
                 track::ground::GroundTrackerOptions options) {
   options.associate = method.association;
   const auto tracker = track::ground::make_ground_tracker(options, ground_views({view_of(scene.options)}));
-  std::vector<evaluate::PersonPlace> said;
+  std::vector<evaluate::TargetPlace> said;
   std::int32_t decided = 0;
   Followed outcome;
   for (std::size_t frame = 0; frame < scene.seen.size(); ++frame) {
@@ -109,7 +111,7 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     encounters.kind = kKinds[kind].encounter;
     const simulate::EncounterScene scene =
         simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kKinds.size(), encounters);
-    const std::vector<evaluate::PersonPlace> truth = truth_of(scene);
+    const std::vector<evaluate::TargetPlace> truth = truth_of(scene);
     for (std::size_t m = 0; m < kAssociations.size(); ++m) {
       const Followed outcome = follow(scene, truth, kAssociations[m], options.tracker);
       const std::lock_guard lock(mutex);

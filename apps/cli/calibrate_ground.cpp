@@ -46,7 +46,7 @@ void run(const CalibrateGround& command) {
   pipeline::CalibrateGroundOptions options = command.options;
   if (!command.board.empty()) options.board = calibrate::board::parse_board(command.board);
   options.frame = frame_of(command.frame);
-  options.observations = command.inputs.observations;
+  options.observations = observations_of(command.inputs);
   const pipeline::GroundCalibration result = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_ground(rig_of(command.inputs), options, hooks); });
   const calibrate::GroundFound& found = result.found;

@@ -109,7 +109,7 @@ void print_table(const calibrate::wand::WandResult& result) {
 
 void run(const CalibrateWand& command) {
   pipeline::CalibrateWandOptions options = command.options;
-  options.observations = command.inputs.observations;
+  options.observations = observations_of(command.inputs);
   options.wand = wand_of(command.wand);
   options.how.distance = distance_of(command.distance);
   const pipeline::WandCalibration result = with_progress(

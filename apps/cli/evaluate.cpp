@@ -13,7 +13,7 @@
 
 #include "command_line.h"
 #include "commands.h"
-#include "evaluate_ground.h"
+#include "evaluate_places.h"
 #include "json_value.h"
 #include "run_hooks.h"
 #include "scores.h"
@@ -110,7 +110,7 @@ void print_table(const evaluate::Evaluation& result, double iou) {
 
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw WrongUsage("only one of --truth and --tracks can be standard input");
-  if (options.distance) return evaluate_ground_files(options.truth, options.tracks, *options.distance, options.json, options.quiet);
+  if (options.distance) return evaluate_places(options.truth, options.tracks, *options.distance, options.json, options.quiet);
   format::tracks::MotTable truth = format::tracks::read_boxes(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const format::tracks::MotTable tracks = format::tracks::read_boxes(options.tracks, format::tracks::MotKind::tracks);
@@ -130,9 +130,10 @@ void add_evaluate(Command& program) {
   auto options = std::make_shared<EvaluateOptions>();
   Command command = program.subcommand("evaluate", "Judge tracks against the truth");
   command
-      .input_file("--truth", options->truth,
-                  "the truth: MOTChallenge text, or any file of tracks in a picture (with --distance, of people on the ground); - "
-                  "for standard input")
+      .input_file(
+          "--truth", options->truth,
+          "the truth: MOTChallenge text, or any file of tracks in a picture (with --distance, of people on the ground or of "
+          "markers in space); - for standard input")
       .required();
   command.input_file("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input").required();
   const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");
@@ -140,7 +141,7 @@ void add_evaluate(Command& program) {
                                            "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
   command
       .number("--distance", options->distance, "m", closed(1e-6, 1e3),
-              "judge people on the ground: from how near someone counts as found")
+              "judge people on the ground, or markers in space: from how near one counts as found")
       .excludes(iou)
       .excludes(motchallenge);
   command.reports(options->json, options->quiet, "figures");

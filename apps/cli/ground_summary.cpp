@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "json_value.h"
+#include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
@@ -14,20 +15,6 @@ std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
   std::int64_t sum = 0;
   for (const auto& camera : summary.cameras) sum += camera.frames;
   return sum;
-}
-
-std::int64_t off_pitch(const pipeline::Summary& summary) {
-  const auto found = summary.left_out.find("off_pitch");
-  return found != summary.left_out.end() ? found->second : 0;
-}
-
-double figure(const pipeline::Summary& summary, const std::string& name) {
-  const auto found = summary.figures.find(name);
-  return found != summary.figures.end() ? found->second : 0;
-}
-
-double share(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
 }  // namespace
@@ -48,14 +35,14 @@ void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOu
                      {"people", summary.tracks},
                      {"rows", summary.samples},
                      {"predicted", summary.samples - summary.measured},
-                     {"off_pitch", off_pitch(summary)},
+                     {"off_pitch", left_out_of(summary, "off_pitch")},
                      {"cameras", cameras},
                      {"teams", teams},
                      {"elapsed", elapsed},
                      {"tracking_s", summary.first_pass_s},
-                     {"joining_s", figure(summary, "joining_s")},
-                     {"joins", static_cast<std::int64_t>(figure(summary, "joins"))},
-                     {"doubtful_joins", static_cast<std::int64_t>(figure(summary, "doubtful_joins"))},
+                     {"joining_s", figure_of(summary, "joining_s")},
+                     {"joins", static_cast<std::int64_t>(figure_of(summary, "joins"))},
+                     {"doubtful_joins", static_cast<std::int64_t>(figure_of(summary, "doubtful_joins"))},
                      {"stopped", summary.stopped},
                      {"notes", summary.notes},
                      {"warnings", summary.warnings},
@@ -75,8 +62,8 @@ void print_summary(const pipeline::GroundSummary& summary, const pipeline::Groun
   const std::int64_t predicted = summary.samples - summary.measured;
   if (predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
-               share(predicted, summary.samples));
-  if (const auto off = off_pitch(summary)) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
+               percent_of(predicted, summary.samples));
+  if (const auto off = left_out_of(summary, "off_pitch")) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
   for (const pipeline::Summary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
                static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));

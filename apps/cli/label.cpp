@@ -15,6 +15,7 @@
 #include "json_value.h"
 #include "label_list.h"
 #include "run_hooks.h"
+#include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
@@ -48,16 +49,12 @@ void run(LearnLabelsCommand& command) {
   }
 }
 
-double share_of(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
-}
-
 void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& summary) {
-  fmt::print(stderr, "{:.2f} % of {} points in {} frames have names\n", share_of(summary.named, summary.points), summary.points,
+  fmt::print(stderr, "{:.2f} % of {} points in {} frames have names\n", percent_of(summary.named, summary.points), summary.points,
              summary.instants);
   fmt::print(stderr, "  {:<16} {:>8} {:>6} {:>9} {:>9}\n", "marker", "seen", "gaps", "renamed", "outliers");
   for (const auto& marker : summary.health)
-    fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, share_of(marker.seen, summary.instants),
+    fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, percent_of(marker.seen, summary.instants),
                marker.gaps, marker.renamed, marker.outliers);
   if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
   int told = 0;

@@ -25,6 +25,7 @@
 #include "people_options.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
+#include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
@@ -79,8 +80,7 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
             {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
-  for (const pipeline::Summary::StepTime& step : summary.steps)
-    json["stages"][step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
+  if (!summary.steps.empty()) json["stages"] = stages_of(summary);
   return json;
 }
 
@@ -95,9 +95,7 @@ void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command
   const pipeline::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
              drops.empty, drops.late_frames);
-  for (const pipeline::Summary::StepTime& step : summary.steps) {
-    fmt::print(stderr, "  {:<18} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
-  }
+  print_stages(summary);
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
 }
 

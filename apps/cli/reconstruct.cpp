@@ -15,6 +15,7 @@
 #include "json_value.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
+#include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
@@ -27,31 +28,24 @@ struct ReconstructCommand {
   bool quiet = false;
 };
 
-double figure(const pipeline::Summary& summary, const char* name) {
-  const auto found = summary.figures.find(name);
-  return found != summary.figures.end() ? found->second : 0;
-}
-
 Json as_json(const pipeline::Summary& summary, const std::string& out) {
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
                {"markers", summary.tracks},
                {"labelled", summary.labelled},
-               {"observations", static_cast<std::int64_t>(figure(summary, "observations"))},
-               {"unexplained", static_cast<std::int64_t>(figure(summary, "unexplained"))},
+               {"observations", static_cast<std::int64_t>(figure_of(summary, "observations"))},
+               {"unexplained", static_cast<std::int64_t>(figure_of(summary, "unexplained"))},
                {"points", {{"measured", summary.measured}, {"filled", summary.filled}, {"predicted", summary.predicted}}},
-               {"noise_px", figure(summary, "noise_px")},
+               {"noise_px", figure_of(summary, "noise_px")},
                {"stopped", summary.stopped},
                {"warnings", summary.warnings},
                {"take", out}};
-  json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure(summary, "residual_px")) : Json();
+  json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure_of(summary, "residual_px")) : Json();
   json["left_out"] = Json::object();
   for (const auto& [reason, count] : summary.left_out) json["left_out"][reason] = count;
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
-  for (const pipeline::Summary::StepTime& step : summary.steps) {
-    json["stages"][step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
-  }
+  json["stages"] = stages_of(summary);
   return json;
 }
 
@@ -59,16 +53,14 @@ void print_points_summary(const pipeline::Summary& summary, const std::string& o
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
-             summary.filled, summary.predicted, figure(summary, "unexplained"), figure(summary, "observations"));
+             summary.filled, summary.predicted, figure_of(summary, "unexplained"), figure_of(summary, "observations"));
   for (const auto& [reason, count] : summary.left_out) {
     if (count > 0) fmt::print(stderr, "not placed, {} times: {}\n", count, reason);
   }
   if (summary.measured > 0)
-    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", figure(summary, "residual_px"),
-               figure(summary, "noise_px"));
-  for (const pipeline::Summary::StepTime& step : summary.steps) {
-    fmt::print(stderr, "  {:<14} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
-  }
+    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", figure_of(summary, "residual_px"),
+               figure_of(summary, "noise_px"));
+  print_stages(summary);
   fmt::print(stderr, "take: {}\n", out);
 }
 
@@ -78,7 +70,7 @@ void run(const ReconstructCommand& command) {
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
-        return pipeline::reconstruct(rig_of(command.inputs), command.inputs.observations, command.out, options, hooks);
+        return pipeline::reconstruct(rig_of(command.inputs), observations_of(command.inputs), command.out, options, hooks);
       },
       [&](const pipeline::Summary& summary, double) {
         if (command.json) {

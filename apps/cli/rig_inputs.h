@@ -35,4 +35,7 @@ Option add_rig_inputs(Command& command, RigInputs& inputs);
 /// The rig that they name; of observations alone the rig that these name. Throws Error.
 Rig rig_of(const RigInputs& inputs);
 
+/// Where the observations come from: those that are named, else a take's own; empty for the cameras' sources.
+std::string observations_of(const RigInputs& inputs);
+
 }  // namespace marey::cli

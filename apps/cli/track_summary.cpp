@@ -7,14 +7,10 @@
 #include <fmt/core.h>
 
 #include "json_value.h"
+#include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
-
-std::int64_t left_out(const pipeline::Summary& summary, std::string_view reason) {
-  const auto found = summary.left_out.find(reason);
-  return found != summary.left_out.end() ? found->second : 0;
-}
 
 std::string_view counted(bool markers, std::int64_t count) {
   if (markers) return count == 1 ? "marker" : "markers";
@@ -23,7 +19,7 @@ std::string_view counted(bool markers, std::int64_t count) {
 
 void print_left_out(const pipeline::Summary& summary) {
   const auto print = [&](std::string_view reason, std::string_view what) {
-    if (const auto count = left_out(summary, reason)) fmt::print(stderr, "left out: {} {}\n", count, what);
+    if (const auto count = left_out_of(summary, reason)) fmt::print(stderr, "left out: {} {}\n", count, what);
   };
   print("too_brief", "seen too briefly to be believed");
   print("noise", "moving regions too small to be a part of a person");
@@ -45,9 +41,9 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
                {"overlay", path_or_null(output.overlay)},
                {"plot", path_or_null(output.plot)}};
   if (!markers) {
-    json["dropped"] = {{"noise", left_out(summary, "noise")},
-                       {"misfits", left_out(summary, "misfits")},
-                       {"too_brief", left_out(summary, "too_brief")}};
+    json["dropped"] = {{"noise", left_out_of(summary, "noise")},
+                       {"misfits", left_out_of(summary, "misfits")},
+                       {"too_brief", left_out_of(summary, "too_brief")}};
   }
   for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
   if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};

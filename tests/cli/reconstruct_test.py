@@ -52,6 +52,19 @@ class Reconstruct(unittest.TestCase):
             self.assertIn("correspond", summary["stages"])
         self.assertLess(from_videos["residual_px"], 0.5)
 
+    def test_a_take_is_solved_again(self):
+        self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "-o", "first.marey", "-q")
+        first = json.loads(self.marey("info", "first.marey", "--json").stdout)
+        for again in (["first.marey"], ["room/rig.toml", "--observations", "first.marey"], ["--observations", "first.marey"]):
+            summary = json.loads(self.marey("reconstruct", *again, "--fill", 0, "-o", "again.marey", "--json").stdout)
+            self.assertEqual(summary["frames"], 60)
+            self.assertEqual(summary["points"]["filled"], 0)
+            self.assertGreater(summary["points"]["measured"], 0.7 * 60 * 12)
+        self.assertEqual(json.loads(self.marey("info", "again.marey", "--json").stdout).keys(), first.keys())
+        self.marey("convert", "first.marey", "walk.c3d", "-q")
+        self.marey("convert", "walk.c3d", "bare.marey", "-q")
+        self.assertIn("cameras", self.refused("bare.marey"))
+
     def test_other_formats(self):
         for ending in ("c3d", "trc", "csv"):
             self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "-o", f"walk.{ending}", "-q")

@@ -10,7 +10,7 @@
 namespace marey::evaluate {
 namespace {
 
-[[maybe_unused]] bool by_frame(const PersonPlace& a, const PersonPlace& b) {
+[[maybe_unused]] bool by_frame(const TargetPlace& a, const TargetPlace& b) {
   return a.frame < b.frame;
 }
 
@@ -31,12 +31,12 @@ std::optional<ErrorSpread> spread_of(std::vector<double>& errors) {
 
 }  // namespace
 
-GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<const PersonPlace> tracks, double farthest) {
+GroundEvaluation evaluate_ground(std::span<const TargetPlace> truth, std::span<const TargetPlace> tracks, double farthest) {
   assert(std::is_sorted(truth.begin(), truth.end(), by_frame) && "truth is ordered by frame");
   assert(std::is_sorted(tracks.begin(), tracks.end(), by_frame) && "tracks are ordered by frame");
   assert(farthest > 0 && "a distance up to which someone counts as found");
   std::vector<double> position, speed, velocity;
-  const auto close = [farthest](const PersonPlace& a, const PersonPlace& b) {
+  const auto close = [farthest](const TargetPlace& a, const TargetPlace& b) {
     const double distance = (a.place - b.place).norm();
     return Closeness{distance, std::max(0.0, 1 - distance / farthest)};
   };
@@ -44,7 +44,7 @@ GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<c
     for (std::size_t row = 0; row < walk.rows().size(); ++row) {
       const int column = clear.column_of_row()[row];
       if (column == assign::kNoIndex) continue;
-      const PersonPlace &is = walk.rows()[row], &said = walk.columns()[static_cast<std::size_t>(column)];
+      const TargetPlace &is = walk.rows()[row], &said = walk.columns()[static_cast<std::size_t>(column)];
       position.push_back((is.place - said.place).norm());
       if (!is.velocity || !said.velocity) continue;
       speed.push_back(std::abs(is.velocity->norm() - said.velocity->norm()));
@@ -57,7 +57,7 @@ GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<c
   const IdNumbers people(truth), names(tracks);
   for (std::size_t i = 0; i < judged.objects.size(); ++i) {
     const ClearCounter::Object& object = judged.objects[i];
-    PersonFate& fate = result.people.emplace_back();
+    TargetFate& fate = result.people.emplace_back();
     fate.id = people.id(static_cast<int>(i));
     if (judged.track_of_object[i] != assign::kNoIndex) fate.track = names.id(judged.track_of_object[i]);
     fate.frames = object.frames, fate.found = object.found, fate.switches = object.switches;

@@ -9,16 +9,20 @@
 
 namespace marey::evaluate {
 
-/// Where someone was at one instant.
-struct PersonPlace {
+/// Where a person or a marker was at one instant. On the ground the third coordinate is 0.
+struct TargetPlace {
   std::int32_t frame = 0;
   std::int32_t id = 0;
-  Vector<2> place = Vector<2>::Zero();     ///< m
-  std::optional<Vector<2>> velocity = {};  ///< m/s
+  Vector<3> place = Vector<3>::Zero();     ///< m
+  std::optional<Vector<3>> velocity = {};  ///< m/s
 };
 
-/// What became of one true person.
-struct PersonFate {
+inline Vector<3> on_ground(const Vector<2>& place) {
+  return {place.x(), place.y(), 0};
+}
+
+/// What became of one true target.
+struct TargetFate {
   int id = 0;
   std::optional<int> track;  ///< the one that the identity scores give them for good
   std::int64_t frames = 0;
@@ -37,7 +41,7 @@ struct ErrorSpread {
 /// Everything that `marey evaluate --distance` reports of places.
 struct GroundEvaluation {
   Evaluation scores;  ///< as of boxes, with places for boxes; MOTP is a mean distance, m
-  std::vector<PersonFate> people;
+  std::vector<TargetFate> people;
   /// Over CLEAR's matches; none without.
   std::optional<ErrorSpread> position;  ///< m
   std::optional<ErrorSpread> speed;     ///< of the amount of the velocity, m/s, where both are known
@@ -46,6 +50,6 @@ struct GroundEvaluation {
 
 /// Judges places by their distance: up to `farthest` m they may match, and for HOTA the similarity is 1 − distance / farthest.
 /// Both are ordered by frame, and an id stands once a frame. Cost as of `evaluate`.
-GroundEvaluation evaluate_ground(std::span<const PersonPlace> truth, std::span<const PersonPlace> tracks, double farthest);
+GroundEvaluation evaluate_ground(std::span<const TargetPlace> truth, std::span<const TargetPlace> tracks, double farthest);
 
 }  // namespace marey::evaluate

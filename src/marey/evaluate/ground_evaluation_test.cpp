@@ -8,17 +8,17 @@
 namespace marey::evaluate {
 namespace {
 
-PersonPlace place_at(int frame, int id, double x, double y = 0) {
-  return {frame, id, {x, y}, Vector<2>(1, 0)};
+TargetPlace place_at(int frame, int id, double x, double y = 0) {
+  return {frame, id, {x, y, 0}, Vector<3>(1, 0, 0)};
 }
 
 TEST(GroundEvaluation, ErrorsAreInMetres) {
-  std::vector<PersonPlace> truth, tracks;
+  std::vector<TargetPlace> truth, tracks;
   for (int frame = 0; frame < 10; ++frame) {
     truth.push_back(place_at(frame, 1, 0.1 * frame));
     truth.push_back(place_at(frame, 2, 50));
     tracks.push_back(place_at(frame, 7, 0.1 * frame, 0.3));
-    tracks.back().velocity = {1, 1};
+    tracks.back().velocity = {1, 1, 0};
     tracks.push_back(place_at(frame, 8, 50, 0.4));
   }
   const GroundEvaluation result = evaluate_ground(truth, tracks, 1.5);
@@ -34,7 +34,7 @@ TEST(GroundEvaluation, ErrorsAreInMetres) {
 }
 
 TEST(GroundEvaluation, FarthestIsStillAMatchAndFartherIsNot) {
-  const std::vector<PersonPlace> truth{place_at(0, 1, 0)}, near{place_at(0, 1, 1.5)}, far{place_at(0, 1, 1.5001)};
+  const std::vector<TargetPlace> truth{place_at(0, 1, 0)}, near{place_at(0, 1, 1.5)}, far{place_at(0, 1, 1.5001)};
   EXPECT_EQ(evaluate_ground(truth, near, 1.5).scores.clear.matches, 1);
   const GroundEvaluation missed = evaluate_ground(truth, far, 1.5);
   EXPECT_EQ(missed.scores.clear.matches, 0);
@@ -43,7 +43,7 @@ TEST(GroundEvaluation, FarthestIsStillAMatchAndFartherIsNot) {
 }
 
 TEST(GroundEvaluation, ATrackThatChangesThePersonKeepsNobody) {
-  std::vector<PersonPlace> truth, tracks;
+  std::vector<TargetPlace> truth, tracks;
   for (int frame = 0; frame < 10; ++frame) {
     for (int id : {1, 2}) {
       truth.push_back(place_at(frame, id, 10 * id));
@@ -55,13 +55,13 @@ TEST(GroundEvaluation, ATrackThatChangesThePersonKeepsNobody) {
   std::sort(tracks.begin(), tracks.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   const GroundEvaluation result = evaluate_ground(truth, tracks, 1);
   EXPECT_EQ(result.scores.clear.switches, 2);
-  for (const PersonFate& fate : result.people) EXPECT_FALSE(fate.kept()) << fate.id;
+  for (const TargetFate& fate : result.people) EXPECT_FALSE(fate.kept()) << fate.id;
   EXPECT_EQ(result.people[2].agreeing, 7);
 }
 
 TEST(GroundEvaluation, NothingToJudge) {
   EXPECT_FALSE(evaluate_ground({}, {}, 1).position);
-  const std::vector<PersonPlace> truth{place_at(0, 1, 0)};
+  const std::vector<TargetPlace> truth{place_at(0, 1, 0)};
   const GroundEvaluation none = evaluate_ground(truth, {}, 1);
   EXPECT_FALSE(none.people[0].track);
   EXPECT_FALSE(none.people[0].kept());

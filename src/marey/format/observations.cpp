@@ -17,6 +17,7 @@
 #include "marey/core/input_file.h"
 #include "marey/format/format.h"
 #include "marey/format/rig/self_cal_folder.h"
+#include "marey/format/take_observations.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format {
@@ -171,7 +172,7 @@ std::vector<SeenFrame> frames_of_folder(const std::string& path, const Rig& rig)
     throw Error("{}: there are no observations in this folder: neither points.dat nor camN.points4cal.dat", path);
   std::vector<SeenFrame> frames;
   for (const rig::SelfCalFolder::Point& point : folder.points()) {
-    if (frames.empty() || frames.back().frame != point.frame) frames.push_back({point.frame, {}});
+    if (frames.empty() || frames.back().frame != point.frame) frames.push_back({.frame = point.frame});
     frames.back().points.push_back({cameras[static_cast<std::size_t>(point.camera)], point.pixel, ""});
   }
   for (SeenFrame& frame : frames) in_order(frame);
@@ -181,13 +182,14 @@ std::vector<SeenFrame> frames_of_folder(const std::string& path, const Rig& rig)
 }  // namespace
 
 std::span<const SeenPoint> SeenFrame::of(CameraId camera) const {
-  const auto [begin, end] = std::equal_range(points.begin(), points.end(), SeenPoint{camera, {}, {}},
+  const auto [begin, end] = std::equal_range(points.begin(), points.end(), SeenPoint{.camera = camera},
                                              [](const SeenPoint& a, const SeenPoint& b) { return a.camera < b.camera; });
   return {begin, end};
 }
 
 struct ObservationReader::Parts {
-  // One of the two: a table that is read as it goes, or all frames.
+  // One of the three: a take or a table that is read as it goes, or all frames.
+  std::optional<TakeObservations> take;
   std::optional<Table> table;
   std::vector<SeenFrame> frames;
   std::size_t at = 0;
@@ -209,7 +211,7 @@ struct ObservationReader::Parts {
       if (!row.seen) continue;
       const bool other = frame && frame->frame != row.frame;
       std::optional<SeenFrame>& into = other ? pending : frame;
-      if (!into) into = SeenFrame{row.frame, {}};
+      if (!into) into = SeenFrame{.frame = row.frame};
       add(row, *into);
       if (other) break;
     }
@@ -238,6 +240,10 @@ ObservationReader::ObservationReader(const std::string& path, const Rig& rig) : 
     parts_->frames = frames_of_folder(path, rig);
     return;
   }
+  if (take::is_take(path)) {
+    parts_->take.emplace(path, rig);
+    return;
+  }
   for (int i = 0; i < std::ssize(rig.cameras); ++i) {
     const std::string& name = rig.cameras[static_cast<std::size_t>(i)].name;
     parts_->cameras.emplace(name, CameraId{i});
@@ -253,9 +259,15 @@ ObservationReader::ObservationReader(ObservationReader&&) noexcept = default;
 ObservationReader& ObservationReader::operator=(ObservationReader&&) noexcept = default;
 
 std::optional<SeenFrame> ObservationReader::next() {
+  if (parts_->take) return parts_->take->next();
   if (parts_->table) return parts_->next_of_table();
   if (parts_->at == parts_->frames.size()) return std::nullopt;
   return std::move(parts_->frames[parts_->at++]);
+}
+
+std::optional<double> ObservationReader::rate_hz() const {
+  if (parts_->take) return parts_->take->rate_hz();
+  return std::nullopt;
 }
 
 std::vector<SeenFrame> read_observations(const std::string& path, const Rig& rig) {
@@ -278,6 +290,7 @@ Rig rig_of_observations(const std::string& path) {
     }
     return rig;
   }
+  if (take::is_take(path)) return rig_of_take(path);
   Table table(path);
   std::set<std::string, std::less<>> names;
   for (Row row; table.next(row);) {

@@ -36,7 +36,10 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig) {
   for (const format::SeenFrame& frame : format::read_observations(observations, rig)) {
     for (const format::SeenPoint& point : frame.points) {
       const auto c = static_cast<std::size_t>(point.camera);
-      const double time = static_cast<double>(frame.frame) / rig.cameras[c].rate_hz.value_or(any_rate.value_or(1));
+      const RigCamera& camera = rig.cameras[c];
+      const double time = frame.time ? seconds(*frame.time) - camera.offset_s.value_or(0)
+                                     : static_cast<double>(frame.frame) / camera.rate_hz.value_or(any_rate.value_or(1));
+      blobs.timed |= frame.time.has_value();
       auto& frames = blobs.seen[c];
       if (frames.empty() || frames.back().time_s != time) frames.push_back({time, {}});
       frames.back().blobs.push_back(point.pixel);

@@ -110,6 +110,8 @@ class ObservationDeal {
  public:
   ObservationDeal(const std::string& path, const Rig& rig) : reader_(path, rig), waiting_(rig.cameras.size()) {}
 
+  std::optional<double> rate_hz() const { return reader_.rate_hz(); }
+
   /// Cameras ask side by side, each for its own.
   std::optional<format::SeenFrame> next(std::size_t camera) {
     const std::lock_guard lock(dealing_);
@@ -119,7 +121,7 @@ class ObservationDeal {
       if (!frame) return std::nullopt;
       for (std::size_t c = 0; c < waiting_.size(); ++c) {
         const auto part = frame->of(CameraId{static_cast<int>(c)});
-        waiting_[c].push_back({frame->frame, {part.begin(), part.end()}});
+        waiting_[c].push_back({.frame = frame->frame, .points = {part.begin(), part.end()}, .time = frame->time});
       }
     }
     format::SeenFrame first = std::move(waiting_[camera].front());
@@ -134,10 +136,23 @@ class ObservationDeal {
   std::vector<std::deque<format::SeenFrame>> waiting_;
 };
 
+Detection blob_of(const format::SeenPoint& point) {
+  Detection blob;
+  blob.centre = point.pixel;
+  const double sigma = point.sigma.value_or(0);
+  blob.covariance = sigma * sigma * Matrix<2>::Identity();
+  if (!point.area) return blob;
+  const double side = std::sqrt(*point.area);  // of what had a shape once, the area was kept
+  blob.area = *point.area;
+  blob.box = {point.pixel.x() - side / 2, point.pixel.y() - side / 2, side, side};
+  return blob;
+}
+
 class Feed::Observations final : public Input {
  public:
-  Observations(std::shared_ptr<ObservationDeal> deal, std::size_t camera, const std::string& name, double rate_hz)
-      : deal_(std::move(deal)), camera_(camera), rate_hz_(rate_hz) {
+  /// `offset` is what is added to this camera's times afterwards.
+  Observations(std::shared_ptr<ObservationDeal> deal, std::size_t camera, const std::string& name, double rate_hz, Duration offset)
+      : deal_(std::move(deal)), camera_(camera), rate_hz_(rate_hz), offset_(offset) {
     info_.name = name;
     info_.rate_hz = rate_hz;
   }
@@ -148,14 +163,9 @@ class Feed::Observations final : public Input {
     if (!seen) return std::nullopt;
     CameraFrame result;
     result.frame.index = seen->frame;
-    result.frame.time = timestamp_from_seconds(static_cast<double>(seen->frame) / rate_hz_);
+    result.frame.time = seen->time ? *seen->time - offset_ : timestamp_from_seconds(static_cast<double>(seen->frame) / rate_hz_);
     auto& detections = result.detections.emplace();
-    for (const format::SeenPoint& point : seen->points) {
-      Detection blob;
-      blob.centre = point.pixel;
-      blob.covariance.setZero();
-      detections.push_back(std::move(blob));
-    }
+    for (const format::SeenPoint& point : seen->points) detections.push_back(blob_of(point));
     return result;
   }
 
@@ -163,6 +173,7 @@ class Feed::Observations final : public Input {
   std::shared_ptr<ObservationDeal> deal_;
   std::size_t camera_;
   double rate_hz_;
+  Duration offset_;
   SourceInfo info_;
 };
 
@@ -373,8 +384,10 @@ std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std
   std::vector<Feed> feeds;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
-    const double rate = camera.rate_hz ? *camera.rate_hz : rate_hz.value_or(kObservationRate);
-    feeds.push_back(Feed(camera, CameraId{static_cast<int>(c)}, {}, std::make_unique<Feed::Observations>(deal, c, path, rate)));
+    const double rate = deal->rate_hz().value_or(camera.rate_hz.value_or(rate_hz.value_or(kObservationRate)));
+    const Duration offset = duration_from_seconds(camera.offset_s.value_or(0));
+    feeds.push_back(
+        Feed(camera, CameraId{static_cast<int>(c)}, {}, std::make_unique<Feed::Observations>(deal, c, path, rate, offset)));
   }
   return feeds;
 }

@@ -1,5 +1,5 @@
-// Judging tracks on the ground: which instants of the two recordings are the same, then the comparison place by place, then the
-// paths' lengths. A recording's period is the median time between two of its instants.
+// Judging tracks on the ground, or in space: which instants of the two recordings are the same, then the comparison place by place,
+// then the paths' lengths. A recording's period is the median time between two of its instants.
 #include "marey/pipeline/judge_match.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "marey/analyse/smooth_path.h"
+#include "marey/core/error.h"
 #include "marey/evaluate/pair_instants.h"
 
 namespace marey::pipeline {
@@ -15,17 +16,22 @@ namespace {
 
 constexpr double kSlowest = 0.25;  // s between instants up to which a way between them is known
 
-/// A velocity of each row of a track: as recorded, else of smoothed paths. What is on no path, because it stands alone, has none.
-using Velocities = std::vector<std::optional<Vector<2>>>;
+/// On the ground: they have paths that are smoothed and added up.
+bool of_people(const Recording& recording) {
+  return recording.header.frame.dimensions() == 2;
+}
+
+/// A velocity of each row of a track: as recorded, else, of people, of smoothed paths. What is on no path, because it stands alone,
+/// has none.
+using Velocities = std::vector<std::optional<Vector<3>>>;
 
 Velocities velocities_of(const Recording& recording, const TrackColumns& track, bool recorded) {
   Velocities velocities(track.size());
   if (recorded) {
-    for (std::size_t row = 0; row < track.size(); ++row) {
-      if (const auto velocity = track.velocity(row)) velocities[row] = velocity->head<2>();
-    }
+    for (std::size_t row = 0; row < track.size(); ++row) velocities[row] = track.velocity(row);
     return velocities;
   }
+  if (!of_people(recording)) return velocities;
   const std::vector<analyse::Path> paths = analyse::paths_of(recording, track);
   for (std::size_t row = 0; row < track.size(); ++row) {
     const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[row]));
@@ -33,24 +39,24 @@ Velocities velocities_of(const Recording& recording, const TrackColumns& track, 
       const double at = (time - path.start_s) / path.step_s;
       if (at < -0.5 || at > static_cast<double>(path.velocity.size()) - 0.5) continue;
       const auto nearest = static_cast<std::size_t>(std::max(0.0, std::round(at)));
-      velocities[row] = path.velocity[std::min(nearest, path.velocity.size() - 1)];
+      velocities[row] = evaluate::on_ground(path.velocity[std::min(nearest, path.velocity.size() - 1)]);
     }
   }
   return velocities;
 }
 
-std::vector<evaluate::PersonPlace> places_of(const Recording& recording, const evaluate::CommonNumbers& numbers) {
+std::vector<evaluate::TargetPlace> places_of(const Recording& recording, const evaluate::CommonNumbers& numbers) {
   const bool recorded = has_velocities(recording);
   std::vector<Velocities> velocities;
   for (const TrackColumns& track : recording.tracks()) velocities.push_back(velocities_of(recording, track, recorded));
-  std::vector<evaluate::PersonPlace> places;
+  std::vector<evaluate::TargetPlace> places;
   places.reserve(static_cast<std::size_t>(recording.samples()));
   InstantRows rows(recording);
   for (std::size_t instant = 0; instant < numbers.size(); ++instant) {
     if (!numbers[instant]) continue;
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = recording.tracks()[index];
-      places.push_back({*numbers[instant], marey::number(track.id()), track.place(row), velocities[index][row]});
+      places.push_back({*numbers[instant], marey::number(track.id()), track.position(row), velocities[index][row]});
     }
   }
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
@@ -60,7 +66,7 @@ std::vector<evaluate::PersonPlace> places_of(const Recording& recording, const e
 struct PathColumns {
   std::vector<double> x, y;
 
-  void add(const Vector<2>& place) { x.push_back(place.x()), y.push_back(place.y()); }
+  void add(const Vector<3>& place) { x.push_back(place.x()), y.push_back(place.y()); }
 
   double length(const std::vector<double>& times) const {
     double length = 0;
@@ -78,17 +84,17 @@ struct SharedPath {
 
 /// The paths of people and of their tracks, over the instants that both have; `times` are those of the common numbers, by the
 /// truth.
-std::vector<PathLengths> path_lengths(const std::vector<evaluate::PersonPlace>& truth,
-                                      const std::vector<evaluate::PersonPlace>& tracks,
-                                      const std::vector<evaluate::PersonFate>& people,
+std::vector<PathLengths> path_lengths(const std::vector<evaluate::TargetPlace>& truth,
+                                      const std::vector<evaluate::TargetPlace>& tracks,
+                                      const std::vector<evaluate::TargetFate>& people,
                                       const std::map<std::int32_t, double>& times) {
   std::map<int, int> track_of;
-  for (const evaluate::PersonFate& person : people) {
+  for (const evaluate::TargetFate& person : people) {
     if (person.track) track_of[person.id] = *person.track;
   }
   std::map<int, SharedPath> shared;
   std::size_t begin = 0;  // of the tracks' places in this frame
-  for (const evaluate::PersonPlace& place : truth) {
+  for (const evaluate::TargetPlace& place : truth) {
     while (begin < tracks.size() && tracks[begin].frame < place.frame) ++begin;
     const auto track = track_of.find(place.id);
     if (track == track_of.end()) continue;
@@ -108,22 +114,25 @@ std::vector<PathLengths> path_lengths(const std::vector<evaluate::PersonPlace>& 
 }  // namespace
 
 MatchJudgement judge_match(const Recording& truth, const Recording& tracks, double farthest) {
-  require_ground(truth, "judging places");
-  require_ground(tracks, "judging places");
+  require_metric(truth.header, "judging places");
+  require_metric(tracks.header, "judging places");
+  if (of_people(truth) != of_people(tracks))
+    throw Error("{}: its positions are {}, those of {} are {}; both must be on the ground, or in space", tracks.header.name,
+                to_string(tracks.header.frame), truth.header.name, to_string(truth.header.frame));
   MatchJudgement judgement;
   const evaluate::InstantClock true_clock = evaluate::clock_of(truth), track_clock = evaluate::clock_of(tracks);
   const evaluate::InstantPairing pairing = evaluate::pair_instants(true_clock, track_clock);
   judgement.warnings = pairing.warnings;
   judgement.by_time = pairing.by_time;
   const auto moving = [](const Recording& recording, const evaluate::InstantClock& clock) {
-    return has_velocities(recording) || (clock.period > 0 && clock.period <= kSlowest);
+    return has_velocities(recording) || (of_people(recording) && clock.period > 0 && clock.period <= kSlowest);
   };
-  const std::vector<evaluate::PersonPlace> true_places = places_of(truth, pairing.truth),
+  const std::vector<evaluate::TargetPlace> true_places = places_of(truth, pairing.truth),
                                            track_places = places_of(tracks, pairing.tracks);
   judgement.evaluation = evaluate::evaluate_ground(true_places, track_places, farthest);
   judgement.has_speed = moving(truth, true_clock) && moving(tracks, track_clock);
   const double period = std::max(true_clock.period, track_clock.period);
-  if (period > 0 && period <= kSlowest) {
+  if (of_people(truth) && period > 0 && period <= kSlowest) {
     std::map<std::int32_t, double> times;
     for (std::size_t i = 0; i < pairing.truth.size(); ++i) {
       if (pairing.truth[i]) times[*pairing.truth[i]] = true_clock.time(i);

@@ -15,10 +15,10 @@ struct PathLengths {
   double true_m = 0, track_m = 0;
 };
 
-/// Tracks on the ground against the truth.
+/// Tracks on the ground, or in space, against the truth.
 struct MatchJudgement {
   evaluate::GroundEvaluation evaluation;
-  std::vector<PathLengths> ways;         ///< of the people with a track; none where the instants are too far apart to add up ways
+  std::vector<PathLengths> ways;         ///< of people with a track; none where the instants are too far apart to add up ways
   std::optional<double> distance_error;  ///< differences of the lengths by amount, over the true lengths: a share
   bool by_time = false;                  ///< instants were paired by time, not by frame number
   bool has_speed = false;                ///< whether the speeds of both sides are known
@@ -27,7 +27,8 @@ struct MatchJudgement {
 
 /// Pairs the instants of both and judges the tracks. Instants go together by frame number where frames mean the same time in both,
 /// else by time, the nearest within half a period; where one file has instants more often, the other's instants alone are judged. A
-/// side without velocities gets them from its smoothed paths. Throws Error where a recording is not of the ground in m.
+/// side of people without velocities gets them from its smoothed paths. Throws Error where a recording is not in m, or one is of
+/// the ground and the other of space.
 MatchJudgement judge_match(const Recording& truth, const Recording& tracks, double farthest);
 
 }  // namespace marey::pipeline

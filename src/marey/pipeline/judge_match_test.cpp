@@ -98,6 +98,34 @@ TEST(JudgeMatch, NobodyIsAnAnswerToo) {
   EXPECT_EQ(judge_match(runners(), nobody, 1).evaluation.scores.clear.misses, 502);
 }
 
+/// The same who climb, in space.
+Recording climbers(double shift_m, bool with_velocity) {
+  const Recording flat = runners({.with_velocity = with_velocity});
+  Recording recording(flat.header);
+  recording.header.frame.kind = FrameOfReference::Kind::space;
+  InstantsOf instants(flat);
+  while (auto instant = instants.next()) {
+    for (Sample& sample : instant->samples) {
+      sample.position.z() = shift_m + 0.01 * static_cast<double>(instant->index);
+      if (sample.velocity) sample.velocity->z() = 0.25;
+    }
+    recording.add(*instant);
+  }
+  return recording;
+}
+
+TEST(JudgeMatch, MarkersInSpaceAreJudgedInAllThreeDirections) {
+  const MatchJudgement judgement = judge_match(climbers(0, true), climbers(0.004, true), 0.01);
+  EXPECT_EQ(judgement.evaluation.scores.clear.matches, 502);
+  EXPECT_NEAR(judgement.evaluation.position->rms, 0.004, 1e-9);
+  EXPECT_TRUE(judgement.has_speed);
+  EXPECT_NEAR(judgement.evaluation.velocity->rms, 0, 1e-9);
+  EXPECT_TRUE(judgement.ways.empty()) << "nobody asks how far a marker went";
+  EXPECT_EQ(judge_match(climbers(0, true), climbers(0.02, true), 0.01).evaluation.scores.clear.matches, 0);
+  EXPECT_FALSE(judge_match(climbers(0, false), climbers(0, true), 0.01).has_speed);
+  EXPECT_THROW(judge_match(climbers(0, true), runners(), 0.01), Error) << "the one on the ground, the other in space";
+}
+
 TEST(JudgeMatch, PixelsAreRefused) {
   Recording pixels = runners();
   pixels.header.frame.kind = FrameOfReference::Kind::image;

@@ -147,6 +147,56 @@ TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
   EXPECT_LT(score.median(), 0.001);
 }
 
+TEST(Reconstruct, ATakeIsSolvedAgainFromWhatItsCamerasSaw) {
+  const test::TemporaryFolder folder;
+  const simulate::room::RoomScene scene({.markers = 20, .frames = 240, .gap_share = 0.02, .offset_s = 0.02, .bump = {}});
+  write_room(scene, folder.path());
+  const Rig rig = format::rig::read_rig(folder / "rig.toml");
+  MarkersInSpaceOptions no_gaps;
+  no_gaps.fill_s = 0;
+  const auto first = reconstruct(rig, folder / "observations.csv", folder / "walk.marey", no_gaps);
+  EXPECT_EQ(first.filled, 0);
+  const auto better = reconstruct(rig, folder / "walk.marey", folder / "better.marey");
+  EXPECT_EQ(better.frames, first.frames);
+  EXPECT_EQ(better.rate_hz, first.rate_hz);
+  EXPECT_EQ(better.figures.at("observations"), first.figures.at("observations"));
+  EXPECT_NEAR(static_cast<double>(better.measured), static_cast<double>(first.measured),
+              0.001 * static_cast<double>(first.measured));
+  EXPECT_GT(better.filled, 0);
+  Score score = score_of(folder / "better.marey", scene);
+  EXPECT_LT(score.median(), 0.001) << "what was moved to an instant is not moved again";
+
+  // What a take keeps of a blob it keeps for good.
+  reconstruct(rig, folder / "better.marey", folder / "again.marey");
+  const Recording one = format::take::read_recording(folder / "better.marey");
+  const Recording two = format::take::read_recording(folder / "again.marey");
+  ASSERT_EQ(one.samples(), two.samples());
+  InstantsOf some(one), others(two);
+  while (const auto a = some.next()) {
+    const auto b = others.next();
+    ASSERT_TRUE(b);
+    ASSERT_EQ(a->time, b->time);
+    ASSERT_EQ(a->seen, b->seen);
+    for (std::size_t i = 0; i < a->samples.size(); ++i) ASSERT_EQ(a->samples[i].position, b->samples[i].position);
+  }
+}
+
+TEST(Reconstruct, ATakeIsSolvedAgainOnlyWithItsCameras) {
+  const test::TemporaryFolder folder;
+  const simulate::room::RoomScene scene({.markers = 5, .frames = 20, .bump = {}});
+  write_room(scene, folder.path());
+  Rig rig = format::rig::read_rig(folder / "rig.toml");
+  reconstruct(rig, folder / "observations.csv", folder / "walk.marey");
+  rig.cameras[1].name = "another";
+  EXPECT_THROW(reconstruct(rig, folder / "walk.marey", folder / "better.marey"), Error);
+  Recording bare;
+  bare.header.frame.kind = FrameOfReference::Kind::space;
+  bare.header.rate_hz = 100;
+  bare.header.rig = rig;
+  format::take::write_recording(folder / "bare.marey", bare);
+  EXPECT_THROW(reconstruct(rig, folder / "bare.marey", folder / "better.marey"), Error) << "nothing was seen";
+}
+
 TEST(Reconstruct, ACameraThatStopsCostsOnlyItsRays) {
   const test::TemporaryFolder folder;
   const simulate::room::RoomScene scene({.markers = 20, .frames = 240, .occlusion = false, .bump = {}});

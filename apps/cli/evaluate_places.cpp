@@ -1,4 +1,4 @@
-#include "evaluate_ground.h"
+#include "evaluate_places.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/pipeline/judge_match.h"
 
 #include "command_line.h"
@@ -27,9 +28,9 @@ void add_spread(Json& json, const char* name, const char* unit, const std::optio
   json[key("p95")] = spread ? Json(spread->p95) : Json();
 }
 
-std::optional<double> share_kept(const std::vector<evaluate::PersonFate>& people) {
+std::optional<double> share_kept(const std::vector<evaluate::TargetFate>& people) {
   if (people.empty()) return std::nullopt;
-  const auto kept = std::count_if(people.begin(), people.end(), [](const evaluate::PersonFate& person) { return person.kept(); });
+  const auto kept = std::count_if(people.begin(), people.end(), [](const evaluate::TargetFate& person) { return person.kept(); });
   return static_cast<double>(kept) / static_cast<double>(people.size());
 }
 
@@ -43,7 +44,7 @@ Json people_json(const pipeline::MatchJudgement& judgement) {
   std::map<int, pipeline::PathLengths> ways;
   for (const pipeline::PathLengths& way : judgement.ways) ways[way.id] = way;
   Json people = Json::array();
-  for (const evaluate::PersonFate& person : judgement.evaluation.people) {
+  for (const evaluate::TargetFate& person : judgement.evaluation.people) {
     Json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
                {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
                {"kept", person.kept()}};
@@ -81,15 +82,16 @@ void print_ground_row(const char* name, const std::string& value, const char* me
   fmt::print("  {:<9} {:>24}   {}\n", name, value, meaning);
 }
 
-std::string words_of(const std::optional<evaluate::ErrorSpread>& spread) {
-  return spread ? fmt::format("{:.3f} / {:.3f} / {:.3f}", spread->rms, spread->median, spread->p95) : "none";
+std::string words_of(const std::optional<evaluate::ErrorSpread>& spread, int digits = 3) {
+  return spread ? fmt::format("{0:.{3}f} / {1:.{3}f} / {2:.{3}f}", spread->rms, spread->median, spread->p95, digits) : "none";
 }
 
-void print_table(const pipeline::MatchJudgement& judgement, double distance) {
+void print_table(const pipeline::MatchJudgement& judgement, double distance, bool in_space) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
   const evaluate::ClearScores& clear = scores.clear;
-  fmt::print("{} instants; truth: {} people, {} places; tracks: {}, {} places. Someone counts as found within {} m.\n\n",
-             scores.frames, scores.objects, scores.true_boxes, scores.tracks, scores.track_boxes, distance);
+  fmt::print("{} instants; truth: {} {}, {} places; tracks: {}, {} places. {} counts as found within {} m.\n\n", scores.frames,
+             scores.objects, in_space ? "markers" : "people", scores.true_boxes, scores.tracks, scores.track_boxes,
+             in_space ? "A marker" : "Someone", distance);
   fmt::print("Finding\n");
   print_ground_row("found", percent(clear.recall), fmt::format("of the true places; {} missed", clear.misses).c_str());
   print_ground_row("false", percent(share_false(clear)),
@@ -97,16 +99,19 @@ void print_table(const pipeline::MatchJudgement& judgement, double distance) {
   print_ground_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true places");
   fmt::print("Naming\n");
   print_ground_row("kept", percent(share_kept(judgement.evaluation.people)),
-                   "of the people: one track in 80 % of their instants and no switch");
-  print_ground_row("IDSW", fmt::format("{}", clear.switches), "times a person's track became another one");
+                   in_space ? "of the markers: one track in 80 % of their instants and no switch"
+                            : "of the people: one track in 80 % of their instants and no switch");
+  print_ground_row("IDSW", fmt::format("{}", clear.switches),
+                   in_space ? "times a marker's track became another one" : "times a person's track became another one");
   print_ground_row("IDF1", percent(scores.identity.f1), "places that bear the right name throughout, of both files' places");
   print_ground_row("IDP, IDR", percent(scores.identity.precision) + ", " + percent(scores.identity.recall),
                    "the same, of the reported places and of the true ones");
   print_ground_row("HOTA", percent(scores.hota.hota), "finding and naming weighed alike");
   fmt::print("Measuring: root mean square / median / 95 % of the errors\n");
-  print_ground_row("position", words_of(judgement.evaluation.position), "m");
+  print_ground_row("position", words_of(judgement.evaluation.position, in_space ? 6 : 3), "m");
   print_ground_row("speed", judgement.has_speed ? words_of(judgement.evaluation.speed) : "none", "m/s");
   print_ground_row("velocity", judgement.has_speed ? words_of(judgement.evaluation.velocity) : "none", "m/s, its direction too");
+  if (in_space) return;
   print_ground_row("distance", percent(judgement.distance_error),
                    "by which the ways that people ran come out wrong, of their length");
 }
@@ -129,20 +134,30 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
   return sentences;
 }
 
+/// People on the ground, or markers in space, whatever the file.
+Recording places_in(const std::string& path, const format::ReadOptions& options = {}) {
+  const format::Format* format = path == "-" ? nullptr : format::format_of_content(path);
+  const bool may_be_space = format != nullptr && format->holds.has(format::Content::space);
+  if (!may_be_space || format::content_of(format::open_recording(path, *format, options)->header().frame) != format::Content::space)
+    return format::read_match(path, options).recording;
+  return format::read_whole(path, *format, options).recording;
+}
+
 }  // namespace
 
-void evaluate_ground_files(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
-  const format::match::GroundMatch tracks_match = format::read_match(tracks_name);
-  const Recording& tracks = tracks_match.recording;
+void evaluate_places(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
+  const Recording tracks = places_in(tracks_name);
   // A truth that has frames and no times has the tracks'.
-  const Recording truth = format::read_match(truth_name, {{}, {}, tracks.header.rate_hz}).recording;
+  format::ReadOptions as_tracks;
+  as_tracks.rate_hz = tracks.header.rate_hz;
+  const Recording truth = places_in(truth_name, as_tracks);
   const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   warn(warnings);
   if (json) {
     print(as_json(judgement, distance, warnings));
   } else if (!quiet) {
-    print_table(judgement, distance);
+    print_table(judgement, distance, tracks.header.frame.dimensions() == 3);
   }
 }
 

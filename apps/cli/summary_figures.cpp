@@ -1,0 +1,35 @@
+#include "summary_figures.h"
+
+#include <cstdio>
+
+#include <fmt/core.h>
+
+namespace marey::cli {
+
+double figure_of(const pipeline::Summary& summary, std::string_view name) {
+  const auto found = summary.figures.find(name);
+  return found != summary.figures.end() ? found->second : 0;
+}
+
+std::int64_t left_out_of(const pipeline::Summary& summary, std::string_view reason) {
+  const auto found = summary.left_out.find(reason);
+  return found != summary.left_out.end() ? found->second : 0;
+}
+
+double percent_of(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+Json stages_of(const pipeline::Summary& summary) {
+  Json stages;
+  for (const pipeline::Summary::StepTime& step : summary.steps)
+    stages[step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
+  return stages;
+}
+
+void print_stages(const pipeline::Summary& summary) {
+  for (const pipeline::Summary::StepTime& step : summary.steps)
+    fmt::print(stderr, "  {:<18} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "marey/pipeline/run.h"
+
+#include "json_value.h"
+
+// What the summaries of several commands tell alike.
+namespace marey::cli {
+
+/// 0 where the run did not find it out.
+double figure_of(const pipeline::Summary& summary, std::string_view name);
+/// How many were left out for this reason.
+std::int64_t left_out_of(const pipeline::Summary& summary, std::string_view reason);
+/// In per cent; 0 of nothing.
+double percent_of(std::int64_t part, std::int64_t whole);
+
+/// How long each step took: its name → count, median and 99 %, in ms; null where no step was measured.
+Json stages_of(const pipeline::Summary& summary);
+/// The same, a line each on standard error.
+void print_stages(const pipeline::Summary& summary);
+
+}  // namespace marey::cli
