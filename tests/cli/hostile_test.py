@@ -223,6 +223,26 @@ class Hostile(unittest.TestCase):
         self.accepted("simulate", "markers", "plain", "--frames", "12", "-o", "plain")
         self.refused("track", "plain/video.mp4", "-o", "out.txt", "--limit", "picture_px=1000", words=["picture_px"])
 
+    def test_texts_that_never_end(self):
+        take = self.take()
+        self.accepted("simulate", "room", "--motion", "ground", "--frames", "2", "--cameras", "3", "-o", "room")
+        for arguments in (("track", "--detections", "/dev/zero", "-o", "out.csv"), ("edit", take, "--script", "/dev/zero"),
+                          ("calibrate", "ground", "room/rig.toml", "--observations", "/dev/zero", "-o", "out.toml"),
+                          ("live", "sim://room?cameras=2", "--labels", "/dev/zero", "--for", "1"),
+                          ("batch", "plan", "/dev/zero", "-o", "out.tsv"), ("batch", "run", "/dev/zero")):
+            with self.subTest(arguments=arguments):
+                self.refused(*arguments, words=["a line has more than 16777216 bytes"])
+        with open(self.folder / "zeros.txt", "wb") as file:  # a file, too, and it ends
+            file.truncate(200_000_000)
+        self.refused("track", "--detections", "zeros.txt", "-o", "out.csv", words=["a line has more than"])
+
+    def test_a_skeleton_beyond_reason(self):
+        segment = '[[segment]]\nname = "s{0}"\nparent = "s{1}"\nat = [0, 0, 1]\njoint = "hinge"\naxes = ["y"]\ncoordinates = ["c{0}"]\n'
+        markers = "".join(f'[[marker]]\nname = "{name}"\non = "s2000"\nat = [0, {i}, {i * i}]\n' for i, name in enumerate("ab"))
+        self.write("long.toml", '[[segment]]\nname = "s0"\n' + "".join(segment.format(i, i - 1) for i in range(1, 2001)) + markers)
+        command = ("solve", self.take(), "--skeleton", "long.toml", "-o", "out.mot")
+        self.refused(*command, words=["2006 coordinates", "at most 1000"])
+
     def test_memory_that_is_not_enough_is_a_sentence(self):
         rows = "".join(f"{i},{i / 100:.2f},{m},{i},0,1\n" for i in range(200_000) for m in "ab")
         self.write("points.csv", "frame,time,label,x,y,z\n" + rows)

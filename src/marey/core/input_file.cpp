@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <streambuf>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,6 +16,9 @@
 
 namespace marey {
 namespace {
+
+/// What is no text, such as /dev/zero, is one line without end.
+constexpr std::size_t kLongestLine = std::size_t{1} << 24;  // bytes
 
 [[noreturn]] void fail_to_read(const std::string& path) {
   throw Error("{}: cannot be read ({})", path, std::generic_category().message(errno));
@@ -58,18 +62,28 @@ std::size_t InputFile::read(std::span<char> room) {
 
 class InputStream::Buffer : public std::streambuf {
  public:
-  explicit Buffer(const std::string& path) : file_(path), bytes_(std::size_t{1} << 16) {}
+  explicit Buffer(const std::string& path)
+      : file_(path), name_(path == "-" ? "standard input" : path), bytes_(std::size_t{1} << 16) {}
 
  protected:
   int_type underflow() override {
     const std::size_t got = file_.read(bytes_);
     if (got == 0) return traits_type::eof();
+    measure({bytes_.data(), got});
     setg(bytes_.data(), bytes_.data(), bytes_.data() + got);
     return traits_type::to_int_type(bytes_.front());
   }
 
  private:
+  void measure(std::string_view piece) {
+    const std::size_t last = piece.rfind('\n');
+    line_ = last == std::string_view::npos ? line_ + piece.size() : piece.size() - last - 1;
+    if (line_ > kLongestLine) throw Error("{}: a line has more than {} bytes; is this a text?", name_, kLongestLine);
+  }
+
   InputFile file_;
+  std::string name_;
+  std::size_t line_ = 0;  // bytes of it so far
   std::vector<char> bytes_;
 };
 

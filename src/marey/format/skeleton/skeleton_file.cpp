@@ -11,7 +11,12 @@ Matrix<3> z_up_from(UpAxis up) {
   return turn;
 }
 
-SkeletonFile read_skeleton(const std::string& path, const SkeletonOptions& options) {
+namespace {
+
+/// A pose costs as the cube of their number; OpenSim's largest models have some 200.
+constexpr std::size_t kMostCoordinates = 1000;
+
+SkeletonFile read_any(const std::string& path, const SkeletonOptions& options) {
   const Beginning beginning = beginning_of(path);
   if (beginning.folder) throw Error("{}: is a folder; a skeleton's file is wanted", path);
   std::string text = read_file(path);
@@ -22,6 +27,15 @@ SkeletonFile read_skeleton(const std::string& path, const SkeletonOptions& optio
   if (text.find(":bonedata") != std::string::npos) return parse_asf(text, path, options);
   if (text.find('\0') == std::string::npos && text.find("[[segment]]") != std::string::npos) return parse_toml(text, path);
   throw Error("{}: is no skeleton that Marey knows: OpenSim's .osim, .bvh, .asf, or a skeleton.toml with [[segment]] tables", path);
+}
+
+}  // namespace
+
+SkeletonFile read_skeleton(const std::string& path, const SkeletonOptions& options) {
+  SkeletonFile file = read_any(path, options);
+  if (const std::size_t count = file.skeleton.coordinates.size(); count > kMostCoordinates)
+    throw Error("{}: has {} coordinates; at most {} are solved", path, count, kMostCoordinates);
+  return file;
 }
 
 }  // namespace marey::format::skeleton

@@ -93,6 +93,8 @@ std::int32_t whole(std::string_view column, double value, double lowest, const c
   return static_cast<std::int32_t>(value);
 }
 
+constexpr std::size_t kLongestLine = std::size_t{1} << 24;  // bytes
+
 class Parser {
  public:
   Parser(const std::string& name, MotKind kind) : name_(name), kind_(kind) {}
@@ -275,6 +277,8 @@ std::optional<std::span<const LabelledBox>> MotReader::next() {
   if (!more && state.text.empty()) return std::nullopt;
   // The last line may go on in the next piece.
   state.done = more ? state.text.rfind('\n') + 1 : state.text.size();
+  if (state.text.size() - state.done > kLongestLine)
+    throw Error("{}: a line has more than {} bytes; is this a text?", state.name, kLongestLine);
   return state.parser.parse_piece(std::string_view(state.text).substr(0, state.done));
 }
 

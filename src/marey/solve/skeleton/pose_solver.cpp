@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/stop.h"
 
 namespace marey::solve::skeleton {
 namespace {
@@ -178,6 +179,7 @@ double PoseSolver::evaluate(const SkeletonState& state, Seen seen) {
 double PoseSolver::minimise(Seen seen, int most) {
   double cost = evaluate(state_, seen), damping = 1e-6, growth = 2;
   for (int round = 0; round < most; ++round, ++iterations_) {
+    stop_point();
     gather(equations_);
     add_prior(state_);
     add_limits(state_);
