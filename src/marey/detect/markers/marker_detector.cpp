@@ -21,7 +21,7 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMostSplitPixels = 40000;   // a frame: about 200 pairs
+constexpr int kMostSplitPixels = 20000;   // a frame: about 200 small pairs
 constexpr double kShapeMisfit = 0.06;     // of the contrast: what a lone round marker leaves at most
 constexpr double kOfRoundness = 0.6;      // a blob this much less round is not even split: it bounds a window by its blob's area
 constexpr double kLessSay = 0.1;          // of a disc's, about how large markers are
@@ -88,6 +88,7 @@ class MarkerDetector::Impl {
   std::vector<Lone> lone_;
   std::vector<MarkerLikeness::Witness> seen_;
   int split_pixels_left_ = 0;
+  bool moving_ = false;  // most markers of the frame are no discs
 };
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
@@ -199,6 +200,8 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
     }
   }
   likeness_.learn(seen_);
+  const auto discs = std::count_if(lone_.begin(), lone_.end(), [](const Lone& lone) { return lone.is_disc; });
+  moving_ = 2 * discs < std::ssize(lone_);
   for (Lone& lone : lone_) {
     const double radius = lone.is_disc ? lone.shape.radius : half_width_of(blobs[lone.blob]);
     lone.is_lamp = lone.has_halo && likeness_.lamp(radius);
@@ -220,7 +223,7 @@ std::vector<MarkerShape> MarkerDetector::Impl::explain(const cv::Mat& luma, std:
   if (blob.area >= 8) collect_window(luma, blob, around, neighbours_.of(blobs, lone.blob), window_);
   if (blob.area >= 8 && window_.count <= split_pixels_left_) {
     split_pixels_left_ -= window_.count;
-    MarkerSplit split = split_markers(window_, blob, around, expected_in(blob.box, expected));
+    MarkerSplit split = split_markers(window_, blob, around, expected_in(blob.box, expected), moving_);
     const bool alike =
         std::all_of(split.discs.begin(), split.discs.end(), [&](const MarkerShape& d) { return likeness_.fits(d.radius); });
     if (!split.discs.empty() && alike) {

@@ -213,7 +213,7 @@ DiscsSolution fit_moving_pair(const SplitTask& task) {
 }  // namespace
 
 MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
-                          std::size_t expected) {
+                          std::size_t expected, bool moving) {
   if (window.count < 20) return {};
   const SplitTask task = task_of(window, blob, around);
   const DiscsSolution rival = fit_discs(swept_disc(task.ellipse, window, task.blur), window, task.value, task.stiffness);
@@ -236,8 +236,8 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
   const double most = std::max(kWellTold, 3 * task.noise);
   const MarkerShape swept = shapes(rival, window, task.stiffness).front();
   const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
-  const bool large_enough = window.count >= kFewestMoving && window.count <= kMostMoving;
-  if (large_enough && (told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2)) {
+  const bool may_move = moving && window.count >= kFewestMoving && window.count <= kMostMoving;
+  if (may_move && (told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2)) {
     const DiscsSolution pair = fit_moving_pair(task);
     const double limit = (best.discs.size() > 2 ? kSimpler : kMovingClearly) * to_beat;
     if (distinct(pair.model, kMovingApart) && pair.normal.squares < limit) best.discs = shapes(pair, window, task.stiffness);

@@ -16,7 +16,8 @@ struct MarkerSplit {
 
 /// Explains a blob as several markers or as one drawn out by its motion, where one of these is as good as what a lone disc leaves
 /// of a marker. `expected`: how many markers the tracker expects in the blob; two make a split more likely. `window` is the blob's.
+/// `moving`: others in the picture are drawn out by their motion, so that two that touch may be.
 MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
-                          std::size_t expected);
+                          std::size_t expected, bool moving);
 
 }  // namespace marey::detect::markers
