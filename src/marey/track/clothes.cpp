@@ -105,6 +105,7 @@ ClothesLikelihood::ClothesLikelihood(std::span<const std::vector<Clothes>> track
     }
     before = mean;
   }
+  learned_ = !within.lightness.empty();
   within_ = {variance_of(std::move(within.lightness), kWithinLightness), variance_of(std::move(within.a), kWithinColour),
              variance_of(std::move(within.b), kWithinColour)};
   between_ = {variance_of(std::move(between.lightness), kBetweenLightness), variance_of(std::move(between.a), kBetweenColour),

@@ -51,12 +51,16 @@ class ClothesLikelihood {
   /// not known.
   double log_ratio(const Clothes& a, const Clothes& b) const;
 
+  /// Whether there was anything to learn from.
+  bool learned() const { return learned_; }
+
  private:
   struct Spread {
     double lightness = 0, a = 0, b = 0;  ///< variances
   };
   double log_ratio(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const;
 
+  bool learned_ = false;
   Spread within_, between_;  ///< of one person's colours at two times; of two people's
 };
 

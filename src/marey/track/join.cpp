@@ -1,7 +1,8 @@
 // The second pass. Tracklets that end and begin at short notice are joined first. What that gives is cut wherever identity is in
 // doubt (identity_doubt.h), and all pieces of the recording are linked anew in one assignment, by motion, size and clothes
-// together (tracklet_linker.h). What is left is judged as a whole: false alarms go, gaps are filled, paths smoothed.
-// Cost: near linear in tracklets, by the number that begin while a gap may last; the rows are passed over a few times.
+// together (tracklet_linker.h). Where no clothes were seen, motion alone decides no better than the tracker did: nothing is cut.
+// What is left is judged as a whole: false alarms go, gaps are filled, paths smoothed. Cost: near linear in tracklets, by the
+// number that begin while a gap may last; the rows are passed over a few times.
 #include "marey/track/join.h"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
   std::erase_if(tracklets, [](const Tracklet& tracklet) { return tracklet.empty(); });
   const TrackletLinker linker(tracklets, log, options);
   tracklets = linker.join(std::move(tracklets), std::min(kShortNotice, options.longest_gap));
-  tracklets = linker.decide_anew(std::move(tracklets));
+  if (linker.knows_clothes()) tracklets = linker.decide_anew(std::move(tracklets));
   tracklets = linker.join(std::move(tracklets), options.longest_gap);
   const double usual = usual_score(tracklets);
   std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), usual, options); });

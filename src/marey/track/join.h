@@ -10,7 +10,7 @@ namespace marey::track {
 
 /// Lengths in body heights where targets have boxes, else in px.
 struct JoinOptions {
-  double longest_gap = 6;       ///< s; who reappears later is somebody new
+  double longest_gap = 4;       ///< s; who reappears later is somebody new
   double longest_filled = 2.5;  ///< s; a longer gap is joined, but nothing is said of where the target was meanwhile
   double place_noise = 0.12;    ///< standard deviation of an end of a tracklet
   double speed_noise = 0.35;    ///< by how much the mean speed in a gap differs from that at its ends, 1/s

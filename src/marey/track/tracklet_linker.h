@@ -24,6 +24,9 @@ class TrackletLinker {
   /// Joins tracklets over gaps of at most so many seconds.
   std::vector<TrackletLog::Tracklet> join(std::vector<TrackletLog::Tracklet> tracklets, double longest_gap) const;
 
+  /// Whether clothes were seen for long enough, of enough people, to tell anything.
+  bool knows_clothes() const { return clothes_.learned(); }
+
   /// Cuts tracklets wherever their identity is in doubt, and links the pieces anew.
   std::vector<TrackletLog::Tracklet> decide_anew(std::vector<TrackletLog::Tracklet> tracklets) const;
 
