@@ -8,8 +8,10 @@
 //
 // - A change of light rescales the means at once (background_light.cpp).
 // - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
-//   half the time that the model has existed, do the two change places (background_second.cpp). Pixels in `held` boxes are not
-//   counted and not learned.
+//   half the time that the model knows, or twice the time that the scene was seen there (where nothing was seen ahead), do the two
+//   change places (background_second.cpp). Pixels in `held` boxes are not counted and not learned.
+// - A model that saw nothing ahead keeps pictures of its first minute and corrects by them, after 0.4 s and each time that has
+//   doubled (background_samples.h): what moves about where a scene was taken for still, and what has left since the first picture.
 // - A ghost, where something of the first frames has left, is a region whose border is an edge in the scene but not in the
 //   frame (background_regions.h); it is believed to be scene after a second.
 // - Where most of a picture does not fit the scene for seconds (the camera was moved), the model begins anew.
@@ -31,6 +33,7 @@
 #include "marey/detect/background/background_light.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/background/background_regions.h"
+#include "marey/detect/background/background_samples.h"
 #include "marey/detect/background/background_second.h"
 #include "marey/detect/background/background_shadow.h"
 #include "marey/detect/runs.h"
@@ -76,7 +79,7 @@ class AdaptiveBackground final : public Background {
       cb_.begin(cb);
       cr_.begin(cr);
     }
-    make_room(luma.front().size(), !cb.empty());
+    make_room(luma.front().size(), !cb.empty(), true);
     age_s_ = std::max(0.0, seconds(samples.back().time - samples.front().time));
   }
 
@@ -94,6 +97,7 @@ class AdaptiveBackground final : public Background {
     draw_mask(planes);
     if (start_anew_if_lost(planes)) return {mask_, covered_};
     learn(planes, held);
+    if (samples_.keep(planes, age_s_)) correct(held);
     ++frames_;
     return {mask_, covered_};
   }
@@ -117,16 +121,18 @@ class AdaptiveBackground final : public Background {
       cb_.begin(planes.cb);
       cr_.begin(planes.cr);
     }
-    make_room(planes.luma.size(), !planes.cb.empty());
+    make_room(planes.luma.size(), !planes.cb.empty(), false);
+    samples_.begin();
     age_s_ = 0;
   }
 
-  void make_room(cv::Size size, bool colour) {
+  void make_room(cv::Size size, bool colour, bool learned_ahead) {
     size_ = size;
     colour_ = colour;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
     covered_ = cv::Mat::zeros(size, CV_8UC1);
-    second_.begin(size);
+    second_.begin(size, learned_ahead);
+    samples_ = {};
     shadows_.begin(size);
     drawn_.clear();
     const std::size_t padded = static_cast<std::size_t>(size.width) + 4;
@@ -198,6 +204,7 @@ class AdaptiveBackground final : public Background {
     const std::optional<LightChange> change = meter_.measure(planes.luma, luma_, black_);
     if (!change || !change->explained) return false;
     luma_.scale(change->gains, black_);
+    samples_.forget();
     if (colour_) {
       cb_.shift(median_difference(planes.cb, cb_));
       cr_.shift(median_difference(planes.cr, cr_));
@@ -266,6 +273,36 @@ class AdaptiveBackground final : public Background {
     }
   }
 
+  /// By the samples since a model began that learned nothing ahead. People who are known, and what stands out as a thing does,
+  /// stay; what else is foreground may have been the scene's all along.
+  void correct(std::span<const Box> held) {
+    cv::Mat fixed = cv::Mat::zeros(size_, CV_8UC1), doubted = cv::Mat::zeros(size_, CV_8UC1);
+    for (std::size_t i = 0; i < regions_.runs().size(); ++i) {
+      const PixelRun& run = regions_.runs()[i];
+      cv::Mat& marked = regions_.is_thing(i) ? fixed : doubted;
+      std::fill_n(marked.ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{255});
+    }
+    for (int y = 0; y < size_.height && !held.empty(); ++y) {
+      std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
+      mark_held(held, y, y, held_row_);
+      for (int x = 0; x < size_.width; ++x) fixed.at<std::uint8_t>(y, x) |= held_row_[x];
+    }
+    luma_.correct(samples_.luma(), fixed, doubted);
+    if (colour_) {
+      const auto halved = [&](const cv::Mat& full) {
+        cv::Mat half = cv::Mat::zeros(samples_.cb().front().size(), CV_8UC1);
+        for (int y = 0; y < size_.height; ++y) {
+          for (int x = 0; x < size_.width; ++x) half.at<std::uint8_t>(y / 2, x / 2) |= full.at<std::uint8_t>(y, x);
+        }
+        return half;
+      };
+      const cv::Mat half_fixed = halved(fixed), half_doubted = halved(doubted);
+      cb_.correct(samples_.cb(), half_fixed, half_doubted);
+      cr_.correct(samples_.cr(), half_fixed, half_doubted);
+    }
+    samples_.thin();
+  }
+
   /// Marks the pixels of rows [top, bottom] that must not be learned: regions with their rims, and held boxes.
   const std::uint8_t* freeze(std::span<const Box> held, int top, int bottom, std::vector<std::uint8_t>& row) const {
     std::fill(row.begin(), row.end(), std::uint8_t{0});
@@ -315,6 +352,7 @@ class AdaptiveBackground final : public Background {
   ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};
   ScenePlane cr_{scaled(kChromaFloor), scaled(kGate)};
   SecondScene second_;
+  SceneSamples samples_;
   LightMeter meter_;
   ShadowFinder shadows_;
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 namespace marey::detect::background {
 namespace {
 
+constexpr int kSameLevel = 10;            // levels; samples this near each other show the same thing
 constexpr std::uint8_t kFirstSpread = 8;  // 1 level, until the noise is known
 
 std::int16_t clamp_level(float mean) {
@@ -26,9 +28,10 @@ void ScenePlane::begin(const cv::Mat& picture) {
   begin(std::span(&picture, 1));
 }
 
-void ScenePlane::begin(std::span<const cv::Mat> samples) {
+/// Calls `row(y, middle, spread)` with what as many of the samples as are a power of two, at most 32, have in common.
+template <typename Row>
+void ScenePlane::summarise(std::span<const cv::Mat> samples, Row&& row) const {
   const cv::Size size = samples.front().size();
-  make_room(size);
   int log2_count = 0;
   while ((std::size_t{2} << log2_count) <= samples.size()) ++log2_count;
   const int count = 1 << log2_count;
@@ -42,12 +45,39 @@ void ScenePlane::begin(std::span<const cv::Mat> samples) {
     }
     kernels_.sort(rows.data(), log2_count, stride, stride);
     kernels_.shortest_half(rows.data(), count, stride, stride, middle.data(), spread.data());
-    for (int x = 0; x < size.width; ++x) {
+    row(y, middle.data(), spread.data());
+  }
+}
+
+void ScenePlane::begin(std::span<const cv::Mat> samples) {
+  make_room(samples.front().size());
+  summarise(samples, [&](int y, const std::uint8_t* middle, const std::uint8_t* spread) {
+    for (int x = 0; x < mean_.cols; ++x) {
       believe(y, x, middle[x]);
       spread_.at<std::uint8_t>(y, x) = std::max(spread[x], kFirstSpread);
     }
-  }
-  renew_bands(0, size.height);
+  });
+  renew_bands(0, mean_.rows);
+}
+
+void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& doubted) {
+  const auto agreeing = [&](int y, int x, int wanted) {
+    return std::count_if(samples.begin(), samples.end(),
+                         [&](const cv::Mat& sample) { return std::abs(sample.at<std::uint8_t>(y, x) - wanted) <= kSameLevel; });
+  };
+  summarise(samples, [&](int y, const std::uint8_t* middle, const std::uint8_t* spread) {
+    const auto* fixed_row = fixed.ptr<std::uint8_t>(y);
+    const auto* doubted_row = doubted.ptr<std::uint8_t>(y);
+    auto* spreads = spread_.ptr<std::uint8_t>(y);
+    for (int x = 0; x < mean_.cols; ++x) {
+      if (fixed_row[x] != 0) continue;
+      spreads[x] = std::max(spreads[x], spread[x]);
+      const int now = level(y, x);
+      if (doubted_row[x] == 0 || std::abs(middle[x] - now) <= kSameLevel) continue;
+      if (agreeing(y, x, middle[x]) >= 2 * agreeing(y, x, now)) believe(y, x, middle[x]);
+    }
+  });
+  renew_bands(0, mean_.rows);
 }
 
 void ScenePlane::renew_bands(int first, int last) {

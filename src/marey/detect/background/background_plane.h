@@ -24,6 +24,11 @@ class ScenePlane {
   /// Begins with what the samples have in common: at each pixel the middle of the shortest interval that holds half of them.
   void begin(std::span<const cv::Mat> samples);
 
+  /// Corrects what was begun with too little by what samples since then have in common, at pixels that `fixed` (CV_8UC1, of this
+  /// plane's size) does not mark: no pixel's noise is taken for less than among the samples, and where at least twice as many of
+  /// them agree with one another as with the scene, they are the scene. `doubted` (likewise) marks where that may be.
+  void correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& doubted);
+
   /// Learns rows [first, last) of `picture` at the rate 2^-shift; `frozen(row)` gives the row's pixels to leave alone.
   template <typename Frozen>
   void learn(const cv::Mat& picture, int first, int last, int shift, Frozen&& frozen) {
@@ -63,6 +68,8 @@ class ScenePlane {
 
  private:
   void make_room(cv::Size size);
+  template <typename Row>
+  void summarise(std::span<const cv::Mat> samples, Row&& row) const;
   void renew_bands(int first, int last);
 
   int floor_, gate_;

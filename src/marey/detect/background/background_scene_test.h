@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "marey/core/frame.h"
 
@@ -24,15 +25,24 @@ struct SceneFrame {
   cv::Mat shadows;  ///< 255 where a shadow is seen
 };
 
-/// Films a textured ground: what is there is known to the pixel.
+/// What a moment is filmed under.
+struct Conditions {
+  double light = 1;                 ///< multiplies the ground
+  double sway = 0;                  ///< px, how far the tree at the upper right has moved
+  double shake_x = 0, shake_y = 0;  ///< px, how far the camera has
+};
+
+/// Films a textured ground, or a room with shelves: what is there is known to the pixel.
 class SmallScene {
  public:
-  explicit SmallScene(std::uint32_t seed, double noise = 2) : random_(seed), noise_(noise), ground_(kHeight, kWidth, CV_32FC1) {
+  explicit SmallScene(std::uint32_t seed, double noise = 2, bool shelves = false)
+      : random_(seed), noise_(noise), ground_(kHeight, kWidth, CV_32FC1) {
     std::normal_distribution<float> texture(0, 8);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const float coarse = 12 * std::sin(0.05F * static_cast<float>(x)) * std::cos(0.07F * static_cast<float>(y));
         ground_.at<float>(y, x) = 110 + coarse + texture(random_);
+        if (shelves && y < kShelfBottom) ground_.at<float>(y, x) += (x / 6 * 37 + y / 26 * 17) % 5 * 22.0F - 44;
       }
     }
   }
@@ -40,25 +50,42 @@ class SmallScene {
   /// The next picture, 1 / kRate later: the light multiplies the ground, `sway` px is how far the tree at the upper right has
   /// moved.
   SceneFrame film(std::span<const Figure> figures, double light = 1, double sway = 0) {
+    return film(figures, Conditions{.light = light, .sway = sway});
+  }
+  SceneFrame film(std::span<const Figure> figures, const Conditions& under) {
     SceneFrame result;
     result.people = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
     result.shadows = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
     cv::Mat levels = ground_.clone();
     cv::Mat cb(kHeight / 2, kWidth / 2, CV_8UC1, cv::Scalar(122)), cr(kHeight / 2, kWidth / 2, CV_8UC1, cv::Scalar(124));
-    draw_tree(levels, sway);
+    draw_tree(levels, under.sway);
     for (const Figure& figure : figures) draw_shadow(figure, levels, result.shadows);
     for (const Figure& figure : figures) draw_figure(figure, levels, cb, cr, result.people);
     result.shadows.setTo(0, result.people);
+    if (under.shake_x != 0 || under.shake_y != 0) {
+      for (cv::Mat* plane : {&levels, &result.people, &result.shadows}) shift(*plane, under.shake_x, under.shake_y);
+      for (cv::Mat* plane : {&cb, &cr}) shift(*plane, under.shake_x / 2, under.shake_y / 2);
+      cv::threshold(result.people, result.people, 127, 255, cv::THRESH_BINARY);
+      cv::threshold(result.shadows, result.shadows, 127, 255, cv::THRESH_BINARY);
+    }
     result.frame.index = filmed_;
     result.frame.time = timestamp_from_seconds(static_cast<double>(filmed_++) / kRate);
-    result.frame.picture = Picture(exposed(levels, light), cb, cr, Picture::Range::limited);
+    result.frame.picture = Picture(exposed(levels, under.light), cb, cr, Picture::Range::limited);
     return result;
   }
 
   static constexpr int kWidth = 320, kHeight = 200, kRate = 10;
   static constexpr int kTreeLeft = 240, kTreeBottom = 60;
+  static constexpr int kShelfBottom = 150;
 
  private:
+  static void shift(cv::Mat& plane, double x, double y) {
+    const cv::Matx23d moved(1, 0, x, 0, 1, y);
+    cv::Mat result;
+    cv::warpAffine(plane, result, moved, plane.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    plane = result;
+  }
+
   static void draw_tree(cv::Mat& levels, double sway) {
     for (int y = 0; y < kTreeBottom; ++y) {
       for (int x = kTreeLeft; x < kWidth; ++x) {

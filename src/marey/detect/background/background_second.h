@@ -17,7 +17,8 @@ class SecondScene {
  public:
   explicit SecondScene(double absorb_after_s);
 
-  void begin(cv::Size size);
+  /// `learned_ahead`: the scene was learned from pictures beforehand; else each pixel's is only as sure as it has been seen since.
+  void begin(cv::Size size, bool learned_ahead);
 
   /// Whole ticks between two ages of the model, s.
   int ticks_between(double earlier_s, double later_s) const;
@@ -35,9 +36,13 @@ class SecondScene {
              double age_s, ScenePlane& scene, std::vector<int>& taken);
 
  private:
+  int ticks_to_stay(double age_s, int seen_as_scene) const;
+
   double tick_s_;
+  bool learned_ahead_ = false;
   cv::Mat level_;  ///< CV_8UC1: the level seen at a pixel while it was foreground, or scene before
   cv::Mat seen_;   ///< CV_8UC1: for how long, in ticks
+  cv::Mat scene_;  ///< CV_8UC1: for how long the scene was seen, in ticks; empty where it was learned ahead
 };
 
 }  // namespace marey::detect::background
