@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/geometry.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::cli {
