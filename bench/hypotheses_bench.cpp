@@ -106,8 +106,10 @@ class Game {
 
 void ground_step(benchmark::State& state) {
   Game game(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  const auto gnn = track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::gnn}, ground_views(game.views()));
-  const auto mht = track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::mht}, ground_views(game.views()));
+  const auto gnn =
+      track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::gnn}, ground_views(game.views()));
+  const auto mht =
+      track::ground::make_ground_tracker({.associate = track::ground::GroundAssociation::mht}, ground_views(game.views()));
   int frame = 0;
   double of_gnn = 0;
   double of_mht = 0;

@@ -1,6 +1,6 @@
 // Cameras from labelled elements of the pitch: how many labels are explained, and how well each is predicted by the others.
 //
-//   sweep_element_camera LABELS.json [every=N] [from=N] [mirrors=0] [left_out=0] [details=1] [OPTION=VALUE ...]
+//   element_camera LABELS.json [every=N] [from=N] [mirrors=0] [left_out=0] [details=1] [OPTION=VALUE ...]
 //
 // An OPTION is a number of ElementCameraOptions, as label_sigma=0.002; place_sigma_x, _y, _z are the place's.
 // Prints JaC@5 and @10 at 960x540 as SoccerNet's evaluator counts, completeness, each element scored with the camera fitted
@@ -108,7 +108,7 @@ void print_mirrored(const std::vector<format::LabelledPicture>& pictures) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) return std::fprintf(stderr, "usage: sweep_element_camera LABELS.json [every=N] [OPTION=VALUE ...]\n"), 2;
+  if (argc < 2) return std::fprintf(stderr, "usage: element_camera LABELS.json [every=N] [OPTION=VALUE ...]\n"), 2;
   std::map<std::string, double*> known = settings();
   double every = 1, from = 0, mirrors = 1, details = 0, left_out = 1;
   known["every"] = &every, known["from"] = &from, known["mirrors"] = &mirrors, known["details"] = &details,

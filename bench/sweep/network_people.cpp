@@ -1,7 +1,7 @@
 // How many people a detection network finds, alone: recall and precision against boxes in MOT text at an intersection over union of
 // one half.
 //
-//   sweep_network_people MODEL.toml VIDEO TRUTH.txt [every=12] [first=10] [last=298] [score=S]
+//   network_people MODEL.toml VIDEO TRUTH.txt [every=12] [first=10] [last=298] [score=S]
 //
 // Frames are the truth's, from 1. The network looks all over each picture; the size of people is learned on the way.
 #include <algorithm>
@@ -63,7 +63,7 @@ struct Tally {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) return std::fprintf(stderr, "usage: sweep_network_people MODEL.toml VIDEO TRUTH.txt [every=12] [score=S]\n"), 2;
+  if (argc < 4) return std::fprintf(stderr, "usage: network_people MODEL.toml VIDEO TRUTH.txt [every=12] [score=S]\n"), 2;
   std::map<std::string, double> settings = {{"every", 12}, {"first", 10}, {"last", 298}};
   for (int i = 4; i < argc; ++i) {
     const std::string text = argv[i];

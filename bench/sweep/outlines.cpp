@@ -1,7 +1,7 @@
 // Outlines of people as a match's cameras show them (halo, smeared colour, blur, blocks), 22 to 178 px tall, alone and in part
 // behind each other: IoU with what is visible of each, beside the silhouettes of the background model alone and GrabCut begun with
 // the true box. A person without an outline counts 0; identity does not count here.
-//   sweep_outlines [FILMS A SCENE (2)] [TEXT OF A SCENE'S NAME] [FOLDER FOR PICTURES, or -] [peers]
+//   outlines [FILMS A SCENE (2)] [TEXT OF A SCENE'S NAME] [FOLDER FOR PICTURES, or -] [peers]
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -13,7 +13,7 @@ constexpr double kArrived = 0.7;     // m from a goal
 constexpr double kHesitation = 0.6;  // s in which people take up the velocity they want
 constexpr double kMostPush = 3;      // m/s²
 constexpr double kApart = 0.45;      // m between the middles of two who pass each other
-constexpr double kBeside = 0.55;      // m between those of a group
+constexpr double kBeside = 0.55;     // m between those of a group
 
 }  // namespace
 
