@@ -10,7 +10,7 @@
 namespace marey::track {
 namespace {
 
-constexpr double kRate = 10;  // Hz
+constexpr double kFrameRate = 10;  // Hz
 
 struct Shown {
   int id = 0;
@@ -41,7 +41,7 @@ TrackletLog record(int frames, ShownAt&& shown_at) {
       clothes.push_back(worn(one.wears));
       tracks.push_back(track);
     }
-    log.add(k, timestamp_from_seconds(k / kRate), tracks, clothes);
+    log.add(k, timestamp_from_seconds(k / kFrameRate), tracks, clothes);
   }
   return log;
 }

@@ -287,7 +287,9 @@ TEST(MarkerDetector, NoiseAloneAndASaturatedFrameHoldNoMarker) {
 TEST(MarkerDetector, GlareIsBoundedAndToldAndExpectedMarkersStay) {
   std::vector<Spot> spots{{1100.3, 900.2, 1}};  // the smallest
   for (int i = 0; i < 5000; ++i) spots.push_back({8.0 + i % 100 * 12, 8.0 + i / 100 * 12, 2});
-  MarkerDetector detector({.most_markers = 2000});
+  MarkerOptions options;
+  options.most_markers = 2000;
+  MarkerDetector detector(options);
   const std::vector<Expected> expected{{Box::from_centre({1100, 900}, 20, 20)}};
   const auto found = detector.detect(frame_of(scene({1280, 1024}, spots, 2, 1)), expected).detections;
   EXPECT_EQ(found.size(), 2000u);
