@@ -48,6 +48,11 @@ track::ground::GroundAssociation usual_association(bool live) {
   return live ? track::ground::GroundAssociation::gnn : track::ground::GroundAssociation::mht;
 }
 
+/// Beside decoding and looking at pictures hypotheses cost little; boxes come too fast for them.
+bool has_pictures(const Rig& rig) {
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
+}
+
 /// A rig that was calibrated over a pitch has one; any other has none unless it is told.
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
                                            const Rig& rig) {
@@ -60,6 +65,7 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
   options.tracker.associate =
       flags.associate.empty() ? usual_association(command.live) : track::ground::ground_association_named(flags.associate);
+  options.learn.association = flags.associate.empty() && !has_pictures(rig);
   const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
   if (!flags.area.empty()) {
     options.area = parse_area(flags.area);
@@ -102,7 +108,7 @@ void add_ground_options(Command& command, GroundFlags& flags) {
       .check(analyse::parse_teams);
   command
       .text("--associate", flags.associate,
-            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live)")
+            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live, and for boxes where cameras agree)")
       .needs(ground)
       .check(track::ground::ground_association_named);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);

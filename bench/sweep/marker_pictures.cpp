@@ -65,7 +65,9 @@ struct Score {
 std::vector<Vector<2>> ours(const MarkerPicture& picture) {
   Frame frame;
   frame.picture = Picture(picture.image);
-  detect::markers::MarkerDetector detector({.most_markers = 20000});
+  detect::markers::MarkerOptions options;
+  options.most_markers = 20000;
+  detect::markers::MarkerDetector detector(options);
   std::vector<Vector<2>> found;
   for (const Detection& detection : detector.detect(frame, {}).detections) found.push_back(detection.centre);
   return found;

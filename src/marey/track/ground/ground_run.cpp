@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kCalmer = 0.75;               // of the tracker's accelerations, that the smoother takes: it has pushes beside
 constexpr double kSlowest = 1, kFastest = 20;  // s in which velocities settle
+constexpr double kAgreeing = 0.1;              // m, of disagreement that is left: what gnn takes
+constexpr double kOften = 0.2;                 // s between instants, likewise
+constexpr double kCalm = 0.25;                 // of the tracker's accelerations: walkers, of whom more is learned than it knows
 constexpr double kHaste = 1.5;                 // of people's speed: of those of whom nothing is known yet
 
 /// A quick one, for what is learned from and expected meanwhile.
@@ -59,6 +62,7 @@ void GroundRun::learn() {
     kept_.push_back(std::move(instant));
   }
   if (learn_.walk) learn_motion();
+  if (learn_.association && is_plain()) options_.associate = GroundAssociation::gnn;
   learned_ = true;
   tracker_ = make_ground_tracker(options_, views_);
   std::deque<GroundInstant> seen = std::exchange(kept_, {});
@@ -66,6 +70,13 @@ void GroundRun::learn() {
     kept_.push_back(std::move(instant));
     follow(kept_.back());
   }
+}
+
+/// Hypotheses cost ten times as much, and tell more only where cameras disagree or people go far between two instants.
+bool GroundRun::is_plain() const {
+  if (kept_.size() < 2) return true;
+  const double between = seconds(kept_.back().time - kept_.front().time) / static_cast<double>(kept_.size() - 1);
+  return between <= kOften && (!agreement_.learned() || agreement_.disagreement() <= kAgreeing);
 }
 
 /// From what a quick tracker makes of what was kept.
@@ -78,8 +89,9 @@ void GroundRun::learn_motion() {
   }
   const std::vector<Timestamp> times(recorder.times().begin(), recorder.times().end());
   const std::optional<GroundWalk> walk = learn_walk(std::move(recorder).tracklets(), times);
-  if (!walk) return;
-  if (auto* kalman = std::get_if<filter::KalmanOptions>(&options_.filter)) {
+  auto* kalman = std::get_if<filter::KalmanOptions>(&options_.filter);
+  if (!walk || (kalman != nullptr && walk->acceleration > kCalm * kalman->acceleration_noise)) return;
+  if (kalman != nullptr) {
     kalman->acceleration_noise = walk->acceleration;
     kalman->initial_speed = kHaste * walk->speed;
   }

@@ -24,6 +24,9 @@ namespace marey::track::ground {
 struct GroundLearnOptions {
   bool agreement = true;                    ///< of cameras
   bool walk = true;                         ///< how people move: else the tracker's filter and the join's motion stay as they are
+  /// Whether people are told apart by gnn where that is enough: cameras agree, and instants follow each other closely. Else the
+  /// association that was asked for is taken.
+  bool association = false;
   std::size_t most_observations = 400'000;  ///< that are kept to learn from
 };
 
@@ -46,6 +49,7 @@ class GroundRun {
   bool learning() const { return !learned_; }
   void learn();
   void learn_motion();
+  bool is_plain() const;
   void follow(const GroundInstant& instant);
   void record(std::span<const GroundDecision> decisions);
   void correct(GroundInstant& instant) const;
