@@ -108,7 +108,8 @@ void add_ground_options(Command& command, GroundFlags& flags) {
       .check(analyse::parse_teams);
   command
       .text("--associate", flags.associate,
-            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live, and for boxes where cameras agree)")
+            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live, and for boxes where "
+            "cameras agree)")
       .needs(ground)
       .check(track::ground::ground_association_named);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCalmer = 0.75;               // of the tracker's accelerations, that the smoother takes: it has pushes beside
 constexpr double kSlowest = 1, kFastest = 20;  // s in which velocities settle
-constexpr double kAgreeing = 0.1;              // m, of disagreement that is left: what gnn takes
+constexpr double kAgreeing = 0.15;             // m, of disagreement that is left: what gnn takes
 constexpr double kOften = 0.2;                 // s between instants, likewise
 constexpr double kCalm = 0.25;                 // of the tracker's accelerations: walkers, of whom more is learned than it knows
 constexpr double kHaste = 1.5;                 // of people's speed: of those of whom nothing is known yet
