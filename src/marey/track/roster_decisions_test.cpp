@@ -17,7 +17,9 @@ Track<3> row(int id, bool observed, bool confirmed) {
 TEST(RosterDecisions, AnOldNameIsGivenBackFromTheReturnOn) {
   RosterDecisions<3> decisions(0.05);
   for (int frame = 0; frame < 10; ++frame) {
-    std::vector<Track<3>> tracks{row(1, frame < 3, true)};
+    std::vector<Track<3>> tracks;
+    tracks.reserve(2);
+    tracks.push_back(row(1, frame < 3, true));
     if (frame >= 5) tracks.push_back(row(2, true, false));
     decisions.add(timestamp_from_seconds(0.01 * frame), tracks);
     if (frame == 9) decisions.rename(std::vector{RenamedTrack{TrackId{2}, TrackId{1}, timestamp_from_seconds(0.05)}});
