@@ -13,7 +13,8 @@ import faults_test
 def main():
     faults = faults_test.Faults(os.path.abspath(sys.argv[1]), None, seed=1, commands=())
     differ = []
-    for name, arguments, outputs in faults_test.COMMANDS:
+    commands = [command for command in faults_test.COMMANDS if command[0] != "completion"]  # computes nothing, and takes no --threads
+    for name, arguments, outputs in commands:
         first = None
         for threads in ("1", "1", "2", "4"):
             done = faults.run(f"{arguments} --threads {threads}")
@@ -25,7 +26,7 @@ def main():
     shutil.rmtree(faults.folder)
     for line in differ:
         print("other bytes: " + line)
-    print(f"{len(faults_test.COMMANDS)} commands, {len(differ)} differ")
+    print(f"{len(commands)} commands, {len(differ)} differ")
     return 1 if differ else 0
 
 

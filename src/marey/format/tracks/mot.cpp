@@ -20,7 +20,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/format/read_file.h"
+#include "marey/core/input_file.h"
 
 namespace marey::format::tracks {
 namespace {
@@ -230,7 +230,8 @@ MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind)
 }
 
 MotTable read_mot(const std::string& path, MotKind kind) {
-  const std::string text = read_file(path);
+  InputStream file(path);  // a device may be one line without end
+  const std::string text(std::istreambuf_iterator<char>(file), {});
   return parse_mot(text, path == "-" ? "standard input" : path, kind);
 }
 

@@ -22,8 +22,8 @@
 namespace marey::track::ground {
 
 struct GroundLearnOptions {
-  bool agreement = true;                    ///< of cameras
-  bool walk = true;                         ///< how people move: else the tracker's filter and the join's motion stay as they are
+  bool agreement = true;  ///< of cameras
+  bool walk = true;       ///< how people move: else the tracker's filter and the join's motion stay as they are
   /// Whether people are told apart by gnn where that is enough: cameras agree, and instants follow each other closely. Else the
   /// association that was asked for is taken.
   bool association = false;
