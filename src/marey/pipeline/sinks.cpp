@@ -180,9 +180,12 @@ void Sinks::finish() {
     if (!lane->failed()) whole.push_back(lane->name());
   }
   for (const auto& lane : lanes_) {
-    if (lane->ended_run() && !whole.empty())
+    try {
+      lane->rethrow();
+    } catch (const Error&) {  // what a program's own sink throws reaches it as it is
+      if (!lane->ended_run() || whole.empty()) throw;
       throw Error("{}; the run ended there, and what was known until then is in {}", lane->trouble(), fmt::join(whole, ", "));
-    lane->rethrow();
+    }
   }
 }
 
