@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <numeric>
@@ -21,6 +22,7 @@
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
 #include "marey/core/input_file.h"
+#include "marey/format/read_file.h"
 
 namespace marey::format::tracks {
 namespace {
@@ -229,9 +231,18 @@ MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind)
   return Parser(name, kind).parse(text);
 }
 
+namespace {
+
+/// It may be one line without end, which a stream says.
+std::string text_of_device(const std::string& path) {
+  InputStream device(path);
+  return {std::istreambuf_iterator<char>(device), {}};
+}
+
+}  // namespace
+
 MotTable read_mot(const std::string& path, MotKind kind) {
-  InputStream file(path);  // a device may be one line without end
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string text = std::filesystem::is_character_file(path) ? text_of_device(path) : read_file(path);
   return parse_mot(text, path == "-" ? "standard input" : path, kind);
 }
 
