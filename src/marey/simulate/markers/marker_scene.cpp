@@ -268,6 +268,24 @@ bool hidden(const Vector<2>& place, const std::vector<Box>& barriers) {
   return false;
 }
 
+/// Where each marker is in each frame, whether it is seen there, and false lights.
+void put_in_frames(const std::vector<Path>& paths, int frames, Random& random, MarkerScene& scene) {
+  const cv::Rect2d image(-0.5, -0.5, scene.options.size.width, scene.options.size.height);
+  scene.frames.resize(frames);
+  scene.clutter.resize(frames);
+  for (int i = 0; i < frames; ++i) {
+    for (int marker = 0; marker < std::ssize(paths); ++marker) {
+      const Vector<2>& place = paths[marker][i];
+      const bool in_image = image.contains(cv::Point2d(place.x(), place.y()));
+      scene.frames[i].push_back({marker, place, in_image && !hidden(place, scene.barriers)});
+    }
+    for (int light = 0; light < scene.options.clutter; ++light) {
+      scene.clutter[i].emplace_back(random.uniform(0, scene.options.size.width - 1),
+                                    random.uniform(0, scene.options.size.height - 1));
+    }
+  }
+}
+
 }  // namespace
 
 std::span<const NamedSituation> marker_situations() {
@@ -323,20 +341,7 @@ MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, cons
       break;
   }
   while (std::ssize(paths) < options.markers.value_or(0)) paths.push_back(plain(frames, options.size, random));
-
-  const cv::Rect2d image(-0.5, -0.5, options.size.width, options.size.height);
-  scene.frames.resize(frames);
-  scene.clutter.resize(frames);
-  for (int i = 0; i < frames; ++i) {
-    for (int marker = 0; marker < std::ssize(paths); ++marker) {
-      const Vector<2>& place = paths[marker][i];
-      const bool in_image = image.contains(cv::Point2d(place.x(), place.y()));
-      scene.frames[i].push_back({marker, place, in_image && !hidden(place, scene.barriers)});
-    }
-    for (int light = 0; light < options.clutter; ++light) {
-      scene.clutter[i].emplace_back(random.uniform(0, options.size.width - 1), random.uniform(0, options.size.height - 1));
-    }
-  }
+  put_in_frames(paths, frames, random, scene);
   return scene;
 }
 

@@ -125,19 +125,25 @@ class Agreeing {
 
   struct Nearest {
     std::size_t index = 0;
-    double first = std::numeric_limits<double>::infinity(), second = first;  // m
+    double first = std::numeric_limits<double>::infinity(), second = first;  // m²
+
+    /// Within the gate, and no other nearly as near.
+    bool is_plain(double gate) const { return first <= gate * gate && second >= kClearly * kClearly * first; }
   };
 
-  static Nearest nearest(const Vector<2>& place, const std::vector<Vector<2>>& among) {
+  /// Who is farther than `kClearly` times the gate changes nothing.
+  static Nearest nearest(const Vector<2>& place, const std::vector<Vector<2>>& among, double gate) {
     Nearest found;
     for (std::size_t i = 0; i < among.size(); ++i) {
-      const double distance = (among[i] - place).norm();
-      if (distance < found.first) {
+      const Vector<2> apart = among[i] - place;
+      if (std::abs(apart.x()) > kClearly * gate) continue;
+      const double square = apart.squaredNorm();
+      if (square < found.first) {
         found.second = found.first;
-        found.first = distance;
+        found.first = square;
         found.index = i;
       } else {
-        found.second = std::min(found.second, distance);
+        found.second = std::min(found.second, square);
       }
     }
     return found;
@@ -146,10 +152,10 @@ class Agreeing {
   void pair_up(const Shot& shot, const std::vector<std::vector<Vector<2>>>& places, std::size_t a, std::size_t b, double gate,
                std::vector<Pair>& found) const {
     for (std::size_t i = 0; i < places[a].size(); ++i) {
-      const Nearest there = nearest(places[a][i], places[b]);
-      if (there.first > gate || there.second < kClearly * there.first) continue;
-      const Nearest back = nearest(places[b][there.index], places[a]);
-      if (back.index != i || back.second < kClearly * back.first) continue;
+      const Nearest there = nearest(places[a][i], places[b], gate);
+      if (!there.is_plain(gate)) continue;
+      const Nearest back = nearest(places[b][there.index], places[a], gate);
+      if (back.index != i || !back.is_plain(gate)) continue;
       found.push_back({static_cast<int>(a), static_cast<int>(b), &shot[a][i], &shot[b][there.index]});
     }
   }

@@ -8,16 +8,29 @@ namespace {
 
 constexpr int kMostCells = 300;  // a side
 
-/// One line of cells, `step` apart, from `first` on.
-void spread_line(std::vector<double>& values, std::size_t first, std::size_t step, int count, const std::vector<double>& weights) {
+/// Spread along the rows' order: each row becomes the weighted sum of those within reach, whole rows at a time.
+std::vector<double> spread_rows(const std::vector<double>& values, int rows, int columns, const std::vector<double>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1;
-  std::vector<double> line(static_cast<std::size_t>(count), 0);
-  for (int i = 0; i < count; ++i) {
-    for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k)
-      line[static_cast<std::size_t>(i)] +=
-          weights[static_cast<std::size_t>(std::abs(i - k))] * values[first + static_cast<std::size_t>(k) * step];
+  std::vector<double> spread(values.size(), 0);
+  for (int row = 0; row < rows; ++row) {
+    double* const to = spread.data() + static_cast<std::ptrdiff_t>(row) * columns;
+    for (int other = std::max(0, row - reach); other <= std::min(rows - 1, row + reach); ++other) {
+      const double weight = weights[static_cast<std::size_t>(std::abs(row - other))];
+      const double* const from = values.data() + static_cast<std::ptrdiff_t>(other) * columns;
+      for (int column = 0; column < columns; ++column) to[column] += weight * from[column];
+    }
   }
-  for (int i = 0; i < count; ++i) values[first + static_cast<std::size_t>(i) * step] = line[static_cast<std::size_t>(i)];
+  return spread;
+}
+
+std::vector<double> transposed(const std::vector<double>& values, int rows, int columns) {
+  std::vector<double> turned(values.size());
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      turned[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row)] =
+          values[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
+  }
+  return turned;
 }
 
 }  // namespace
@@ -42,11 +55,8 @@ std::size_t GroundGrid::index(const Vector<2>& place) const {
 std::vector<double> spread_over(const GroundGrid& grid, const std::vector<double>& sums, double sigma) {
   std::vector<double> weights;
   for (int k = 0; k * grid.cell <= 3 * sigma; ++k) weights.push_back(std::exp(-0.5 * std::pow(k * grid.cell / sigma, 2)));
-  std::vector<double> values = sums;
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  for (int row = 0; row < grid.rows; ++row) spread_line(values, static_cast<std::size_t>(row) * columns, 1, grid.columns, weights);
-  for (std::size_t column = 0; column < columns; ++column) spread_line(values, column, columns, grid.rows, weights);
-  return values;
+  const std::vector<double> across = spread_rows(transposed(sums, grid.rows, grid.columns), grid.columns, grid.rows, weights);
+  return spread_rows(transposed(across, grid.columns, grid.rows), grid.rows, grid.columns, weights);
 }
 
 Vector<2> GroundField::at(const Vector<2>& place) const {
