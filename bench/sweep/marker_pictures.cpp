@@ -21,7 +21,7 @@ namespace {
 using namespace marey;
 using simulate::markers::MarkerPicture;
 
-constexpr double kNear = 1.5;  // px; a marker further away than that was not found
+constexpr double kNear = 1.5;  // px; a marker further away than that, and than its shade, was not found
 
 struct Score {
   std::int64_t markers = 0, missed = 0, false_ones = 0;
@@ -34,12 +34,16 @@ struct Score {
       const auto nearest = std::min_element(found.begin(), found.end(), [&](const Vector<2>& a, const Vector<2>& b) {
         return (a - marker).squaredNorm() < (b - marker).squaredNorm();
       });
-      if (nearest == found.end() || (*nearest - marker).norm() > std::max(kNear, 0.3 * picture.radius)) {
+      if (nearest == found.end() || (*nearest - marker).norm() > std::max(kNear, picture.shade * picture.radius)) {
         ++lost;
       } else {
         found.erase(nearest);
       }
     }
+    std::erase_if(found, [&](const Vector<2>& place) {  // neither right nor wrong
+      return std::any_of(picture.specks.begin(), picture.specks.end(),
+                         [&](const Vector<2>& s) { return (s - place).norm() < 2 * kNear; });
+    });
     markers += std::ssize(picture.markers);
     missed += lost;
     false_ones += std::ssize(found);
@@ -141,12 +145,12 @@ int main(int argc, char** argv) {
         scores[i].add(picture, std::move(found), took);
       }
     }
-    const bool counts = setting != simulate::markers::MarkerSetting::wand && setting != simulate::markers::MarkerSetting::dots;
+    const bool counts = setting <= simulate::markers::MarkerSetting::everything;
     for (std::size_t i = 0; i < std::size(kFinders) && (i == 0 || peers); ++i) {
       scores[i].print(name, kFinders[i].first);
       if (counts) all[i].add(scores[i]);
     }
   }
   for (std::size_t i = 0; i < std::size(kFinders) && only.empty() && (i == 0 || peers); ++i)
-    all[i].print("all but last", kFinders[i].first);
+    all[i].print("to everything", kFinders[i].first);
 }

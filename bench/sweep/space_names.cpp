@@ -1,6 +1,6 @@
 // Names of markers in space: how often a marker of a body bears a wrong name, beside a plain tracker on the same points.
 //
-//   space_names [--motion walk|run|kneel] [--actors N] [--cameras N] [--markers N] [--gaps SHARE] [--seconds S] [--rate HZ]
+//   space_names [--motion walk|run|kneel] [--cameras N] [--markers N] [--gaps SHARE] [--seconds S] [--rate HZ]
 //               [--noise PX] [--seeds N] [--first-seed N] [--live] [--events]
 //
 // A track is at home on the marker that it was on the longest. `wrong` counts how often a marker bore a track that is at home on
@@ -10,13 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "marey/assign/linear_assignment.h"
 #include "marey/pipeline/markers_in_space.h"
@@ -222,68 +222,59 @@ Result judge(const simulate::room::RoomOptions& options, bool live, bool events)
   return result;
 }
 
-std::optional<simulate::room::RoomMotion> motion_called(const std::string& name) {
-  for (const auto& named : simulate::room::room_motions()) {
-    if (named.name == name) return named.motion;
-  }
-  return std::nullopt;
+struct Plan {
+  simulate::room::RoomOptions room;
+  double duration_s = 60;
+  int seeds = 5;
+  std::uint64_t first_seed = 1;
+  bool live = false, events = false;
+};
+
+void add_options(CLI::App& app, Plan& plan) {
+  plan.room.dropped = plan.room.ghosts = plan.room.gap_share = 0.05;
+  std::map<std::string, simulate::room::RoomMotion> motions;
+  for (const auto& named : simulate::room::room_motions()) motions[std::string(named.name)] = named.motion;
+  app.add_option("--motion", plan.room.motion)->transform(CLI::CheckedTransformer(motions));
+  app.add_option("--cameras", plan.room.cameras);
+  app.add_option("--markers", plan.room.markers);
+  app.add_option("--gaps", plan.room.gap_share);
+  app.add_option("--seconds", plan.duration_s);
+  app.add_option("--rate", plan.room.rate_hz);
+  app.add_option("--noise", plan.room.noise_px);
+  app.add_option("--seeds", plan.seeds);
+  app.add_option("--first-seed", plan.first_seed);
+  app.add_flag("--live", plan.live);
+  app.add_flag("--events", plan.events);
+}
+
+void print_heading(const Plan& plan) {
+  const auto& room = plan.room;
+  std::printf("%d cameras, %d markers, %g Hz, %g s, %g px, dropped %g, ghosts %g, gaps %g up to %g s%s\n", room.cameras,
+              room.markers, room.rate_hz, plan.duration_s, room.noise_px, room.dropped, room.ghosts, room.gap_share, room.gap_s,
+              plan.live ? ", live" : "");
+  std::printf("%6s %7s %7s %7s %7s %7s %8s %22s   peer: %7s %7s %7s\n", "seed", "wrong", "early", "swapped", "renamed", "told %",
+              "nowhere", "mixed of 2, 3, 4 rays", "wrong", "swapped", "renamed");
+}
+
+void print(std::uint64_t seed, const Result& result) {
+  std::printf("%6llu %7d %7d %7d %7d %7.2f %8.3f %8.2f %6.2f %6.2f         %7d %7d %7d\n", static_cast<unsigned long long>(seed),
+              result.ours.wrong, result.ours.early, result.ours.swapped, result.ours.renamed, result.told, result.nowhere,
+              result.impure[0], result.impure[1], result.impure[2], result.peer.wrong, result.peer.swapped, result.peer.renamed);
+  std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  simulate::room::RoomOptions options;
-  options.dropped = 0.05, options.ghosts = 0.05, options.gap_share = 0.05;
-  double duration = 60;
-  int seeds = 5;
-  std::uint64_t first = 1;
-  bool live = false, events = false;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    if (word == "--live" || word == "--events") {
-      (word == "--live" ? live : events) = true;
-      continue;
-    }
-    if (i + 1 == count) return std::fprintf(stderr, "%s needs a value\n", words[i]), 2;
-    const std::string value = words[++i];
-    const double number = std::atof(value.c_str());
-    if (word == "--motion") {
-      const auto motion = motion_called(value);
-      if (!motion) return std::fprintf(stderr, "no motion %s\n", value.c_str()), 2;
-      options.motion = *motion;
-    } else if (word == "--cameras") {
-      options.cameras = static_cast<int>(number);
-    } else if (word == "--markers") {
-      options.markers = static_cast<int>(number);
-    } else if (word == "--gaps") {
-      options.gap_share = number;
-    } else if (word == "--seconds") {
-      duration = number;
-    } else if (word == "--rate") {
-      options.rate_hz = number;
-    } else if (word == "--noise") {
-      options.noise_px = number;
-    } else if (word == "--seeds") {
-      seeds = static_cast<int>(number);
-    } else if (word == "--first-seed") {
-      first = static_cast<std::uint64_t>(number);
-    } else {
-      return std::fprintf(stderr, "no option %s\n", words[i - 1]), 2;
-    }
-  }
-  options.frames = static_cast<std::int64_t>(duration * options.rate_hz);
-  std::printf("%d cameras, %d markers, %g Hz, %g s, %g px, dropped %g, ghosts %g, gaps %g up to %g s%s\n", options.cameras,
-              options.markers, options.rate_hz, duration, options.noise_px, options.dropped, options.ghosts, options.gap_share,
-              options.gap_s, live ? ", live" : "");
-  std::printf("%6s %7s %7s %7s %7s %7s %8s %22s   peer: %7s %7s %7s\n", "seed", "wrong", "early", "swapped", "renamed", "told %",
-              "nowhere", "mixed of 2, 3, 4 rays", "wrong", "swapped", "renamed");
-  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(seeds); ++seed) {
-    options.seed = seed;
-    const Result result = judge(options, live, events);
-    std::printf("%6llu %7d %7d %7d %7d %7.2f %8.3f %8.2f %6.2f %6.2f         %7d %7d %7d\n", static_cast<unsigned long long>(seed),
-                result.ours.wrong, result.ours.early, result.ours.swapped, result.ours.renamed, result.told, result.nowhere,
-                result.impure[0], result.impure[1], result.impure[2], result.peer.wrong, result.peer.swapped, result.peer.renamed);
-    std::fflush(stdout);
+  CLI::App app("How often a marker of a body bears a wrong name, beside a plain tracker");
+  Plan plan;
+  add_options(app, plan);
+  CLI11_PARSE(app, count, words);
+  plan.room.frames = static_cast<std::int64_t>(plan.duration_s * plan.room.rate_hz);
+  print_heading(plan);
+  for (std::uint64_t seed = plan.first_seed; seed < plan.first_seed + static_cast<std::uint64_t>(plan.seeds); ++seed) {
+    plan.room.seed = seed;
+    print(seed, judge(plan.room, plan.live, plan.events));
   }
   return 0;
 }

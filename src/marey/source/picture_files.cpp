@@ -76,7 +76,7 @@ class PictureFiles final : public Source {
     info_.frame_count = static_cast<std::int64_t>(files_.size());
     if (files_.empty())
       throw Error("{}: no pictures found; give a video file, a folder of pictures or a pattern such as 'shot_%04d.png'", name);
-    if (!rate_hz) {
+    if (!rate_hz && files_.size() > 1) {
       warnings_.push_back(fmt::format("{}: pictures do not tell their rate: {} a second were assumed; say otherwise with --rate",
                                       name, kUsualRate));
     }

@@ -194,9 +194,10 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
     if (lone.has_halo) continue;
     const double say = say_of(lone.shape.contrast, static_cast<double>(blobs[index].area));
     if (lone.is_disc) {
-      seen_.push_back({lone.shape.radius, lone.shape.blur, say});
+      seen_.push_back({lone.shape.radius, lone.shape.blur, say, lone.shape.contrast, true});
     } else {  // what moves, or touches another, says by its width how large it is
-      seen_.push_back({half_width_of(blobs[index]), std::nullopt, kLessSay * say});
+      const bool round = roundness_of(blobs[index]) > kOfRoundness;
+      seen_.push_back({half_width_of(blobs[index]), std::nullopt, kLessSay * say, lone.shape.contrast, round});
     }
   }
   likeness_.learn(seen_);

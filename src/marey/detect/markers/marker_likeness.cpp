@@ -11,6 +11,10 @@ constexpr double kManyMarkers = 8;                     // areas of one: four tha
 constexpr double kOddMarker = 2.5;                     // areas
 constexpr double kMostUnlikeRadius = 2.2;              // times or a fraction
 constexpr double kLeastSharp = 3;                      // blurs
+constexpr double kLarger = 1.6;                        // radii of the small kind
+constexpr std::size_t kFewestOfAKind = 4;              // by chance three things are as large as each other
+constexpr double kKindContrast = 0.7;                      // of what the others stand out by
+constexpr double kMostSpread = 1.5;                    // the third quartile of a kind's radii over the first
 constexpr double kLeastWidest = 21, kMostWidest = 81;  // px
 
 std::optional<double> faded(const std::optional<double>& known, const std::optional<double>& seen) {
@@ -28,17 +32,36 @@ void MarkerLikeness::learn(std::span<const Witness> seen) {
     if (one.blur) blurs_.push_back({*one.blur, one.say});
   }
   radius_ = faded(radius_, weighted_median(radii_));
+  large_ = faded(large_, large_kind(seen));
   blur_ = faded(blur_, weighted_median(blurs_));
+}
+
+/// Things that are no discs as the small ones are, but round, as bright, and as large as each other: spheres lit from aside among
+/// dust.
+std::optional<double> MarkerLikeness::large_kind(std::span<const Witness> seen) {
+  std::vector<double> radii;
+  if (!radius_) return std::nullopt;
+  contrasts_.clear();
+  for (const Witness& one : seen) contrasts_.push_back({one.contrast, 1});
+  const double bright = kKindContrast * weighted_median(contrasts_).value_or(0), small = kLarger * (*radius_ + 0.5);
+  for (const Witness& one : seen) {
+    if (one.round && one.contrast > bright && one.radius > small) radii.push_back(one.radius);
+  }
+  if (radii.size() < kFewestOfAKind) return std::nullopt;
+  std::sort(radii.begin(), radii.end());
+  const double first = radii[radii.size() / 4], third = radii[3 * radii.size() / 4];
+  if (third > kMostSpread * first) return std::nullopt;
+  return third;
 }
 
 std::optional<double> MarkerLikeness::widest() const {
   if (!radius_) return std::nullopt;
-  return std::clamp(kMostUnlikeRadius * 2 * *radius_ + 6 * blur_.value_or(0.65), kLeastWidest, kMostWidest);
+  return std::clamp(kMostUnlikeRadius * 2 * largest() + 6 * blur_.value_or(0.65), kLeastWidest, kMostWidest);
 }
 
 /// Of so many markers as large as they may be, px².
 double MarkerLikeness::area(double markers) const {
-  const double radius = std::max(*radius_ + 0.5, said_radius_);
+  const double radius = std::max(largest() + 0.5, said_radius_);
   return markers * std::numbers::pi * radius * radius;
 }
 
@@ -51,7 +74,7 @@ bool MarkerLikeness::odd(double area) const {
 }
 
 bool MarkerLikeness::fits(double radius) const {
-  return !radius_ || (radius < kMostUnlikeRadius * *radius_ && *radius_ < kMostUnlikeRadius * radius + 0.5);
+  return !radius_ || (radius < kMostUnlikeRadius * largest() && *radius_ < kMostUnlikeRadius * radius + 0.5);
 }
 
 bool MarkerLikeness::sharp(double blur) const {

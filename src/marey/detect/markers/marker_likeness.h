@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,7 +11,8 @@
 namespace marey::detect::markers {
 
 /// What the markers of a recording are like, learned most from those that are plainly discs: markers of one recording are of one
-/// kind. Nothing is known, and nothing unlike, before the first of them.
+/// kind, or of a small and a large one (dust beside spheres, a face beside a body). Nothing is known, and nothing unlike, before
+/// the first of them.
 class MarkerLikeness {
  public:
   /// `widest`: px, of what the user says of markers; 0 where that is nothing.
@@ -21,6 +23,8 @@ class MarkerLikeness {
     double radius = 0;           ///< px
     std::optional<double> blur;  ///< px
     double say = 0;              ///< how much it counts
+    double contrast = 0;         ///< grey levels
+    bool round = false;          ///< whether it may bear witness of a large kind
   };
 
   /// Takes in what is seen in a frame.
@@ -36,18 +40,21 @@ class MarkerLikeness {
   /// A disc of this radius, or a streak so wide, may be one of them.
   bool fits(double radius) const;
   /// Light that falls off slowly round a core of this radius is a lamp's, not a marker's out of focus.
-  bool lamp(double radius) const { return radius_ && radius > kLampRadius * *radius_; }
+  bool lamp(double radius) const { return radius_ && radius > kLampRadius * largest(); }
   /// Its edge is as sharp as theirs, or nearly.
   bool sharp(double blur) const;
 
  private:
   static constexpr double kLampRadius = 1.5;  // times a marker's
 
+  std::optional<double> large_kind(std::span<const Witness> seen);
   double area(double markers) const;
+  double largest() const { return std::max(*radius_, large_.value_or(0)); }
 
   double said_radius_;
   std::optional<double> radius_, blur_;
-  std::vector<Weighted> radii_, blurs_;
+  std::optional<double> large_;  ///< px, the radius of the large kind where there are two
+  std::vector<Weighted> radii_, blurs_, contrasts_;
 };
 
 }  // namespace marey::detect::markers

@@ -9,17 +9,14 @@
 #include <numbers>
 #include <optional>
 
-#include <opencv2/imgproc.hpp>
-
 #include "marey/simulate/markers/discs.h"
+#include "marey/simulate/markers/marker_ground.h"
 #include "marey/simulate/people/camera_look.h"
-#include "marey/simulate/random.h"
-#include "marey/simulate/value_noise.h"
 
 namespace marey::simulate::markers {
 namespace {
 
-constexpr std::array<NamedMarkerSetting, 11> kSettings{{{"levels", MarkerSetting::levels},
+constexpr std::array<NamedMarkerSetting, 12> kSettings{{{"levels", MarkerSetting::levels},
                                                         {"bar", MarkerSetting::bar},
                                                         {"texture", MarkerSetting::texture},
                                                         {"gradient", MarkerSetting::gradient},
@@ -29,167 +26,15 @@ constexpr std::array<NamedMarkerSetting, 11> kSettings{{{"levels", MarkerSetting
                                                         {"compressed", MarkerSetting::compressed},
                                                         {"everything", MarkerSetting::everything},
                                                         {"wand", MarkerSetting::wand},
-                                                        {"dots", MarkerSetting::dots}}};
+                                                        {"dots", MarkerSetting::dots},
+                                                        {"shaded", MarkerSetting::shaded}}};
 
-/// A picture while it is made.
-struct Stage {
-  Random random;
-  std::uint64_t seed;
-  cv::Mat ground;        // CV_32FC1
-  double base = 18;      // level of the empty ground
-  double quantizer = 0;  // of compression; 0: none
-  std::vector<Vector<2>> markers;
-};
-
-Vector<2> place_in(Stage& stage, double margin) {
-  return {stage.random.uniform(margin, stage.ground.cols - 1 - margin),
-          stage.random.uniform(margin, stage.ground.rows - 1 - margin)};
-}
-
-/// Fills a polygon, with an edge as soft as a lens makes it.
-void fill(cv::Mat& ground, const std::vector<cv::Point2f>& corners, double level, double softness = 0.7) {
-  cv::Mat mask = cv::Mat::zeros(ground.size(), CV_8U);
-  std::vector<cv::Point> fine;
-  for (const cv::Point2f& corner : corners) fine.emplace_back(cvRound(corner.x * 16), cvRound(corner.y * 16));
-  cv::fillPoly(mask, std::vector<std::vector<cv::Point>>{fine}, cv::Scalar(255), cv::LINE_AA, 4);
-  cv::Mat share;
-  mask.convertTo(share, CV_32F, 1 / 255.0);
-  cv::GaussianBlur(share, share, {}, softness);
-  ground = ground.mul(1 - share) + level * share;
-}
-
-/// A bar through the picture's middle part, so wide, at any angle.
-void lay_bar(Stage& stage, double width, double level) {
-  const double angle = stage.random.uniform(0, std::numbers::pi);
-  const Vector<2> along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
-  const Vector<2> middle = place_in(stage, 0.25 * stage.ground.rows);
-  std::vector<cv::Point2f> corners;
-  for (const auto& [u, v] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
-    const Vector<2> corner = middle + along * (2000.0 * u) + across * (width / 2 * v);
-    corners.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
-  }
-  fill(stage.ground, corners, level);
-}
-
-void lay_levels(Stage& stage, int areas) {
-  for (int i = 0; i < areas; ++i) {
-    const Vector<2> middle = place_in(stage, 0);
-    const double reach = stage.ground.cols * stage.random.uniform(0.06, 0.3);
-    const int corner_count = stage.random.integer(3, 7);
-    const double turn = stage.random.uniform(0, 2 * std::numbers::pi);
-    std::vector<cv::Point2f> corners;
-    for (int k = 0; k < corner_count; ++k) {
-      const double angle = turn + 2 * std::numbers::pi * k / corner_count, far = reach * stage.random.uniform(0.6, 1.2);
-      corners.emplace_back(static_cast<float>(middle.x() + far * std::cos(angle)),
-                           static_cast<float>(middle.y() + far * std::sin(angle)));
-    }
-    fill(stage.ground, corners, stage.random.uniform(stage.base + 10, 120));
-  }
-}
-
-void lay_texture(Stage& stage) {
-  const Vector<2> lit = place_in(stage, 0.2 * stage.ground.rows);
-  const double reach = stage.ground.cols * stage.random.uniform(0.15, 0.4), height = stage.random.uniform(8, 30);
-  const double grain = stage.random.uniform(2.5, 9);  // px
-  for (int y = 0; y < stage.ground.rows; ++y) {
-    auto* row = stage.ground.ptr<float>(y);
-    for (int x = 0; x < stage.ground.cols; ++x) {
-      const Vector<2> at(x, y);
-      const double light = std::exp(-(at - lit).squaredNorm() / (2 * reach * reach));
-      if (light < 0.02) continue;
-      const double bumps = 0.6 * value_noise(at / grain, stage.seed) + 0.4 * value_noise(at / (3 * grain), stage.seed + 1);
-      row[x] += static_cast<float>(light * height * (0.8 + std::max(-0.5, bumps)));
-    }
-  }
-}
-
-/// Spots of 2 to 4 px, of few grey levels.
-void strew_specks(Stage& stage, int count) {
-  std::vector<Disc> specks;
-  for (int i = 0; i < count; ++i) {
-    const Vector<2> at = place_in(stage, 3);
-    const float under = stage.ground.at<float>(static_cast<int>(at.y()), static_cast<int>(at.x()));
-    specks.push_back({at, stage.random.uniform(0.6, 1.2), under + stage.random.uniform(7, 40), 0.6});
-  }
-  draw_discs(stage.ground, specks, 2);
-}
-
-void lay_gradient(Stage& stage, double rise) {
-  const double angle = stage.random.uniform(0, 2 * std::numbers::pi);
-  const double reach = std::hypot(stage.ground.cols, stage.ground.rows) / 2;
-  for (int y = 0; y < stage.ground.rows; ++y) {
-    auto* row = stage.ground.ptr<float>(y);
-    for (int x = 0; x < stage.ground.cols; ++x) {
-      const double along =
-          ((x - stage.ground.cols / 2.0) * std::cos(angle) + (y - stage.ground.rows / 2.0) * std::sin(angle)) / reach;
-      row[x] += static_cast<float>(rise * (along + 1) / 2);
-    }
-  }
-}
-
-void lay_vignette(Stage& stage) {
-  const double lit = stage.random.uniform(30, 100), fall = stage.random.uniform(0.4, 0.8);
-  const double reach = std::hypot(stage.ground.cols, stage.ground.rows) / 2;
-  for (int y = 0; y < stage.ground.rows; ++y) {
-    auto* row = stage.ground.ptr<float>(y);
-    for (int x = 0; x < stage.ground.cols; ++x) {
-      const double out = std::hypot(x - stage.ground.cols / 2.0, y - stage.ground.rows / 2.0) / reach;
-      row[x] += static_cast<float>(lit * (1 - fall * out * out));
-    }
-  }
-}
-
-/// A lamp and the light that the lens spreads round it: a saturated core and a halo that falls off by e in a few tens of pixels.
-void lay_lamp(Stage& stage, const Vector<2>& at, double radius) {
-  const double halo = stage.random.uniform(60, 160), length = stage.random.uniform(0.8, 2.5) * radius + 6;
-  for (int y = 0; y < stage.ground.rows; ++y) {
-    auto* row = stage.ground.ptr<float>(y);
-    for (int x = 0; x < stage.ground.cols; ++x) {
-      const double away = std::hypot(x - at.x(), y - at.y()) - radius;
-      row[x] += static_cast<float>(away > 0 ? halo * std::exp(-away / length) : 600);
-    }
-  }
-}
-
-void lay_glow(Stage& stage) {
-  const int lamps = stage.random.integer(1, 2);
-  for (int i = 0; i < lamps; ++i) {
-    const double radius = stage.random.uniform(8, 45), out = stage.random.uniform(-0.4, 1.2) * radius;
-    const double along = stage.random.uniform();
-    const double w = stage.ground.cols - 1, h = stage.ground.rows - 1;
-    const std::array<Vector<2>, 4> edges{Vector<2>(along * w, -out), Vector<2>(along * w, h + out), Vector<2>(-out, along * h),
-                                         Vector<2>(w + out, along * h)};
-    lay_lamp(stage, edges[static_cast<std::size_t>(stage.random.integer(0, 3))], radius);
-  }
-}
-
-/// A chain of ellipses of all sizes: light on metal.
-void lay_reflection(Stage& stage) {
-  Vector<2> at = place_in(stage, 60);
-  double angle = stage.random.uniform(0, 2 * std::numbers::pi);
-  cv::Mat mask = cv::Mat::zeros(stage.ground.size(), CV_8U);
-  const int parts = stage.random.integer(3, 6);
-  for (int i = 0; i < parts; ++i) {
-    const cv::Size2f axes(static_cast<float>(stage.random.uniform(14, 50)), static_cast<float>(stage.random.uniform(5, 22)));
-    cv::ellipse(mask,
-                cv::RotatedRect({static_cast<float>(at.x()), static_cast<float>(at.y())}, axes,
-                                static_cast<float>(stage.random.uniform(0, 180))),
-                cv::Scalar(255), cv::FILLED);
-    angle += stage.random.uniform(-0.8, 0.8);
-    at += Vector<2>(std::cos(angle), std::sin(angle)) * stage.random.uniform(8, 24);
-  }
-  cv::Mat share;
-  mask.convertTo(share, CV_32F, 1 / 255.0);
-  cv::GaussianBlur(share, share, {}, stage.random.uniform(0.7, 1.5));
-  stage.ground += stage.random.uniform(300, 700) * share;
-}
-
-void compress(Stage& stage) {
+void compress(MarkerStage& stage) {
   lay_levels(stage, 2);
   stage.quantizer = stage.random.uniform(8, 28);
 }
 
-void lay(Stage& stage, MarkerSetting setting) {
+void lay(MarkerStage& stage, MarkerSetting setting) {
   switch (setting) {
     case MarkerSetting::levels:
       return lay_levels(stage, stage.random.integer(3, 5));
@@ -215,10 +60,14 @@ void lay(Stage& stage, MarkerSetting setting) {
     case MarkerSetting::wand:
       lay_texture(stage);
       strew_specks(stage, stage.random.integer(60, 150));
-      for (int i = stage.random.integer(1, 3); i > 0; --i) lay_lamp(stage, place_in(stage, 20), stage.random.uniform(12, 30));
+      for (int i = stage.random.integer(1, 3); i > 0; --i) lay_lamp(stage, stage.place(20), stage.random.uniform(12, 30));
       return;
     case MarkerSetting::dots:
       return lay_gradient(stage, stage.random.uniform(60, 110));
+    case MarkerSetting::shaded:
+      for (int i = stage.random.integer(1, 4); i > 0; --i)
+        lay_bar(stage, stage.random.uniform(2, 5), stage.random.uniform(60, 250));
+      return strew_specks(stage, stage.random.integer(100, 2000), 7, 240);
   }
 }
 
@@ -242,13 +91,13 @@ struct Kind {
 };
 
 /// So many markers, each clear of the others and on a ground that it outshines.
-void strew_markers(Stage& stage, MarkerPicture& picture, int count, const Kind& kind) {
+void strew_markers(MarkerStage& stage, MarkerPicture& picture, int count, const Kind& kind) {
   const double radius = stage.random.uniform(kind.low_radius, kind.high_radius), blur = stage.random.uniform(0.5, 1.0);
   const double level = stage.random.uniform(kind.low_level, kind.high_level);
   std::vector<Disc> discs;
   picture.contrast = 255;
   for (int attempt = 0; attempt < 200 * count && std::ssize(discs) < count; ++attempt) {
-    const Disc disc{place_in(stage, radius + 5), radius * stage.random.uniform(0.8, 1.25), level * stage.random.uniform(0.75, 1.0),
+    const Disc disc{stage.place(radius + 5), radius * stage.random.uniform(0.8, 1.25), level * stage.random.uniform(0.75, 1.0),
                     blur};
     const double apart = 3 * radius + 8;
     if (std::any_of(discs.begin(), discs.end(), [&](const Disc& other) { return (other.centre - disc.centre).norm() < apart; }))
@@ -283,7 +132,7 @@ void draw_swept(cv::Mat& ground, const Disc& disc, const Vector<2>& path) {
 }
 
 /// Three on a line; a companion that touches one of them in every second picture.
-void draw_wand(Stage& stage, MarkerPicture& picture) {
+void draw_wand(MarkerStage& stage, MarkerPicture& picture) {
   Random& random = stage.random;
   const double radius = random.uniform(3, 7), span = random.uniform(90, 260), blur = random.uniform(0.6, 1.2);
   const double level = random.chance(0.6) ? random.uniform(300, 1200) : random.uniform(160, 250);
@@ -291,7 +140,7 @@ void draw_wand(Stage& stage, MarkerPicture& picture) {
   for (int attempt = 0; attempt < 2000; ++attempt) {
     const double angle = random.uniform(0, 2 * std::numbers::pi), way = random.uniform(0, 2 * std::numbers::pi);
     const Vector<2> along(std::cos(angle), std::sin(angle)), path = streak * Vector<2>(std::cos(way), std::sin(way));
-    const Vector<2> middle = place_in(stage, 20);
+    const Vector<2> middle = stage.place(20);
     std::vector<Vector<2>> places{middle - 0.5 * span * along, middle + 0.2 * span * along, middle + 0.5 * span * along};
     if (random.chance(0.5)) {
       const double turn = random.uniform(0, 2 * std::numbers::pi), apart = random.uniform(1.5, 2.4) * radius;
@@ -310,10 +159,10 @@ void draw_wand(Stage& stage, MarkerPicture& picture) {
   }
 }
 
-void draw_dots(Stage& stage, MarkerPicture& picture) {
+void draw_dots(MarkerStage& stage, MarkerPicture& picture) {
   std::vector<Disc> dots;
   for (int i = 0; i < 2000; ++i) {
-    const Vector<2> at = place_in(stage, 6);
+    const Vector<2> at = stage.place(6);
     const double ground = under(stage.ground, at, 2).mean;
     dots.push_back({at, stage.random.uniform(1.2, 2.2), ground + stage.random.uniform(60, 130), 0.7});
     picture.markers.push_back(at);
@@ -323,7 +172,46 @@ void draw_dots(Stage& stage, MarkerPicture& picture) {
   draw_discs(stage.ground, dots, 3);
 }
 
-cv::Mat exposed(const Stage& stage, MarkerPicture& picture) {
+/// One sphere: lit from aside, with a gleam, on a ground that shines through its soft edge.
+void draw_sphere(cv::Mat& ground, const Vector<2>& at, double radius, double level, const Vector<2>& light) {
+  const int r = static_cast<int>(radius + 4);
+  const cv::Rect box =
+      cv::Rect(static_cast<int>(at.x()) - r, static_cast<int>(at.y()) - r, 2 * r + 1, 2 * r + 1) & cv::Rect({}, ground.size());
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      const Vector<2> off = (Vector<2>(x, y) - at) / radius;
+      const double share = 0.5 * std::erfc((off.norm() - 1) * radius / (std::numbers::sqrt2 * 0.7));
+      const double up = std::sqrt(std::max(0.0, 1 - off.squaredNorm()));
+      const double lit = std::max(0.0, off.dot(light) + up * std::sqrt(1 - light.squaredNorm()));
+      const double gleam = 2 * std::exp(-(off - 0.6 * light).squaredNorm() / 0.06);
+      float& pixel = ground.at<float>(y, x);
+      pixel += static_cast<float>(share * (level * (0.35 + 0.65 * lit + gleam) - pixel));
+    }
+  }
+}
+
+/// Rows of spheres, as on a plate that a camera is calibrated by.
+void draw_plate(MarkerStage& stage, MarkerPicture& picture) {
+  Random& random = stage.random;
+  const int rows = random.integer(2, 5), columns = random.integer(4, 15);
+  const double radius = random.uniform(2.5, 7), level = random.uniform(120, 220), turn = random.uniform(0, 2 * std::numbers::pi);
+  const Vector<2> light = random.uniform(0.3, 0.8) * Vector<2>(std::cos(turn), std::sin(turn));
+  const double tilt = random.uniform(-0.1, 0.1);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Vector<2> at(stage.ground.cols * (column + 1.0) / (columns + 1), stage.ground.rows * (row + 1.0) / (rows + 1));
+      const Vector<2> place = at + Vector<2>(random.uniform(-3, 3), tilt * at.x() + random.uniform(-3, 3));
+      if (place.y() < 20 || place.y() > stage.ground.rows - 20) continue;
+      draw_sphere(stage.ground, place, radius * random.uniform(0.9, 1.1), level * random.uniform(0.85, 1.0), light);
+      picture.markers.push_back(place);
+    }
+  }
+  picture.radius = radius;
+  picture.shade = 0.6;  // the gleam stands off the middle
+  picture.contrast = 0.35 * level;
+}
+
+cv::Mat exposed(const MarkerStage& stage, MarkerPicture& picture) {
   const double scale = picture.bits == 8 ? 1 : picture.bits == 12 ? 4095 / 255.0 : 65535 / 255.0;
   cv::Mat held = cv::min(stage.ground, 255.0) * scale;  // the sensor is full before it is read
   cv::Mat image = expose(held, picture.noise * scale, stage.seed, picture.bits == 8 ? CV_8U : CV_16U);
@@ -349,11 +237,13 @@ std::span<const NamedMarkerSetting> marker_settings() {
 }
 
 MarkerPicture simulate_marker_picture(MarkerSetting setting, std::uint64_t seed) {
-  Stage stage{.random = Random(seed * 1000003 + static_cast<std::uint64_t>(setting)), .seed = seed, .ground = {}, .markers = {}};
+  MarkerStage stage{
+      .random = Random(seed * 1000003 + static_cast<std::uint64_t>(setting)), .seed = seed, .ground = {}, .specks = {}};
   MarkerPicture picture;
   stage.base = stage.random.uniform(8, 35);
   stage.ground = cv::Mat(size_of(setting, stage.random), CV_32FC1, cv::Scalar(stage.base));
-  const bool own_depth = setting != MarkerSetting::compressed && setting != MarkerSetting::wand && setting != MarkerSetting::dots;
+  const bool own_depth = setting != MarkerSetting::compressed && setting != MarkerSetting::wand && setting != MarkerSetting::dots &&
+                         setting != MarkerSetting::shaded;
   if (own_depth && stage.random.chance(0.4)) picture.bits = stage.random.chance(0.5) ? 12 : 16;
   picture.noise = stage.random.uniform(1, setting == MarkerSetting::compressed ? 3 : 5);
   lay(stage, setting);
@@ -361,6 +251,9 @@ MarkerPicture simulate_marker_picture(MarkerSetting setting, std::uint64_t seed)
     draw_wand(stage, picture);
   } else if (setting == MarkerSetting::dots) {
     draw_dots(stage, picture);
+  } else if (setting == MarkerSetting::shaded) {
+    draw_plate(stage, picture);
+    picture.specks = stage.specks;
   } else {
     strew_markers(stage, picture, stage.random.integer(3, 12), {});
   }

@@ -24,6 +24,7 @@ enum class MarkerSetting {
   everything,   ///< three of the others together
   wand,         ///< infrared, 1024 × 704: three markers on a moving wand, some pairs that touch; blur, saturation, lamps, specks
   dots,         ///< 1280 × 1024: dense particles on a grey gradient
+  shaded,  ///< rows of spheres lit from aside, 2.5 to 7 px in radius, among bright lines and up to 2,000 specks, some as bright
 };
 
 /// All with the names that programs print.
@@ -38,9 +39,12 @@ struct MarkerPicture {
   cv::Mat image;                   ///< CV_8UC1, or CV_16UC1 with `bits` of them used
   int bits = 8;                    ///< 8, 12 or 16
   std::vector<Vector<2>> markers;  ///< px, their centres; of one in motion the middle of its path
-  double radius = 0;               ///< px, the mean over the markers
-  double noise = 0;                ///< standard deviation of a pixel, as a share of white times 255
-  double contrast = 0;             ///< of the faintest marker over what is around it, likewise
+  std::vector<Vector<2>>
+      specks;           ///< px: what is as bright as markers and smaller, where it is not for a picture to tell which it is
+  double radius = 0;    ///< px, the mean over the markers
+  double shade = 0.3;   ///< radii by which what is seen of a marker may lie off its centre
+  double noise = 0;     ///< standard deviation of a pixel, as a share of white times 255
+  double contrast = 0;  ///< of the faintest marker over what is around it, likewise
 };
 
 /// Draws one picture from `seed`: the same one on every machine. Radii, levels, noise, blur and depth are drawn with it; every

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/simulate/looking_at.h"
 #include "marey/simulate/random.h"
 
 namespace marey::simulate::match {
@@ -13,17 +14,6 @@ namespace {
 
 constexpr int kMostCameras = 64;
 constexpr double kBehind = 14;  // m from the lines to the cameras
-
-/// camera_from_world of a camera at `centre` that looks at `target`, its picture's rows level but for `roll`, rad.
-Rigid3 looking(const Vector<3>& centre, const Vector<3>& target, double roll) {
-  Rigid3 pose;
-  const Vector<3> ahead = (target - centre).normalized();
-  const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
-  pose.rotation << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
-  pose.rotation = geometry::rotation_from({0, 0, roll}) * pose.rotation;
-  pose.translation = -(pose.rotation * centre);
-  return pose;
-}
 
 class Builder {
  public:
@@ -60,7 +50,8 @@ class Builder {
     const double bend = random_.uniform(-0.16, -0.10);
     if (options_.distorted) lens.distortion = {bend, 0.16 * -bend, random_.uniform(-5e-4, 5e-4), random_.uniform(-5e-4, 5e-4)};
     camera.lens = lens;
-    camera.camera_from_world = looking(centre, target, options_.stand == MatchStand::football ? random_.uniform(-0.015, 0.015) : 0);
+    camera.camera_from_world =
+        looking_at(centre, target, options_.stand == MatchStand::football ? random_.uniform(-0.015, 0.015) : 0);
     const double offset = random_.uniform(-options_.offset_s, options_.offset_s);
     camera.offset_s = rig_.cameras.empty() ? 0 : offset;
     rig_.cameras.push_back(std::move(camera));

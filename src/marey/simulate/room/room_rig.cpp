@@ -5,20 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "marey/simulate/looking_at.h"
 #include "marey/simulate/random.h"
 
 namespace marey::simulate::room {
 namespace {
-
-/// camera_from_world of a camera at `centre` that looks at `target`, its picture's rows level.
-Rigid3 looking(const Vector<3>& centre, const Vector<3>& target) {
-  Rigid3 pose;
-  const Vector<3> ahead = (target - centre).normalized();
-  const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
-  pose.rotation << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
-  pose.translation = -(pose.rotation * centre);
-  return pose;
-}
 
 Vector<3> some_direction(Random& random) {
   const double up = random.uniform(-1, 1), round = random.uniform(0, 2 * std::numbers::pi);
@@ -56,7 +47,7 @@ Rig room_rig(const RoomOptions& options) {
     camera.rate_hz = options.rate_hz;
     camera.size = options.picture;
     camera.lens = some_lens(options, random);
-    camera.camera_from_world = looking(centre, aim);
+    camera.camera_from_world = looking_at(centre, aim);
     const double offset = random.uniform(-options.offset_s, options.offset_s);
     camera.offset_s = i == 0 ? 0 : offset;
     rig.cameras.push_back(std::move(camera));

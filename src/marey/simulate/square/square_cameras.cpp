@@ -6,21 +6,13 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/simulate/looking_at.h"
 #include "marey/simulate/random.h"
 
 namespace marey::simulate::square {
 namespace {
 
 constexpr int kMost = 64;
-
-Rigid3 looking_at(const Vector<3>& centre, const Vector<3>& target) {
-  Rigid3 pose;
-  const Vector<3> ahead = (target - centre).normalized();
-  const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
-  pose.rotation << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
-  pose.translation = -(pose.rotation * centre);
-  return pose;
-}
 
 }  // namespace
 

@@ -277,38 +277,45 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
   EXPECT_EQ(joined.person_of(TrackId{2}, 0), joined.person_of(TrackId{1}, 149));
 }
 
-/// Twenty people who run about as people do, seen by two cameras with a tenth of looks missed: truth is known.
-TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
-  std::mt19937_64 engine(11);
+/// People who run about as people do, five metres apart at first.
+struct Runner {
+  Vector<2> place, velocity, push;
+  double length = 0;  ///< m, of the path
+
+  void go_on(std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    push = 0.9 * push + 0.6 * Vector<2>(normal(engine), normal(engine));
+    velocity = 0.99 * velocity + 0.04 * push;
+    place += 0.04 * velocity;
+    length += 0.04 * velocity.norm();
+  }
+};
+
+/// What two cameras see of a runner: a tenth of the looks is missed.
+void look(const Runner& runner, int track, std::mt19937_64& engine, std::vector<Sighting>& seen) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit(0, 1);
-  struct Person {
-    Vector<2> place, velocity, push;
-    double length = 0;
-  };
-  std::vector<Person> people;
-  for (int k = 0; k < 20; ++k) people.push_back({{5.0 * k, 40 * unit(engine)}, {0, 0}, {0, 0}});
-  std::vector<std::vector<Person>> truth;
+  for (int camera = 0; camera < 2; ++camera) {
+    const Vector<2> at = runner.place + 0.2 * Vector<2>(normal(engine), normal(engine));
+    seen.push_back(
+        {.track = track, .x = at.x(), .y = at.y(), .observed = unit(engine) > 0.1, .camera = CameraId{camera}, .sigma = 0.2});
+  }
+}
+
+TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Runner> runners;
+  for (int k = 0; k < 20; ++k) runners.push_back({{5.0 * k, 40 * unit(engine)}, {0, 0}, {0, 0}});
+  std::vector<std::vector<Runner>> truth;
   Story story;
   for (int frame = 0; frame < 1500; ++frame) {
     std::vector<Sighting> seen;
-    for (std::size_t k = 0; k < people.size(); ++k) {
-      Person& person = people[k];
-      person.push = 0.9 * person.push + 0.6 * Vector<2>(normal(engine), normal(engine));
-      person.velocity = 0.99 * person.velocity + 0.04 * person.push;
-      person.place += 0.04 * person.velocity;
-      person.length += 0.04 * person.velocity.norm();
-      for (int camera = 0; camera < 2; ++camera) {
-        const Vector<2> noise = 0.2 * Vector<2>(normal(engine), normal(engine));
-        seen.push_back({.track = static_cast<int>(k) + 1,
-                        .x = person.place.x() + noise.x(),
-                        .y = person.place.y() + noise.y(),
-                        .observed = unit(engine) > 0.1,
-                        .camera = CameraId{camera},
-                        .sigma = 0.2});
-      }
+    for (std::size_t k = 0; k < runners.size(); ++k) {
+      runners[k].go_on(engine);
+      look(runners[k], static_cast<int>(k) + 1, engine, seen);
     }
-    truth.push_back(people);
+    truth.push_back(runners);
     story.instant(seen);
   }
   const auto joined = story.join();
@@ -317,9 +324,9 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::map<int, double> length;
   std::map<int, Vector<2>> last;
   for (const Row& row : rows_of(joined.recording)) {
-    const Person& person = truth[row.frame][number(*joined.person_of(row.sample.track, row.frame)) - 1];
-    place += (row.place() - person.place).squaredNorm();
-    speed += std::pow(row.sample.velocity->norm() - person.velocity.norm(), 2);
+    const Runner& runner = truth[row.frame][number(*joined.person_of(row.sample.track, row.frame)) - 1];
+    place += (row.place() - runner.place).squaredNorm();
+    speed += std::pow(row.sample.velocity->norm() - runner.velocity.norm(), 2);
     const int who = static_cast<int>(row.person());
     if (last.contains(who)) length[who] += (row.place() - last[who]).norm();
     last[who] = row.place();
