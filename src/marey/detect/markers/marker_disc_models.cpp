@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMostSplitSteps = 20;
 constexpr double kSplitSettled = 5e-3;  // px; the next step would be a hundredth of it
+constexpr double kSplitGain = 3e-3;     // of the squares left: a smaller step changes no decision
 constexpr double kFlat = 4.5;           // blurs from the edge beyond which it is not felt
 
 /// The normal distribution from −kFlat to kFlat: what lies above, and the density.
@@ -183,10 +184,11 @@ DiscsSolution fit_discs(DiscsModel model, const MarkerWindow& window, const std:
     model.p = best.model.p + change;
     if (sensible_discs(model, window.reach)) {
       DiscsNormal there = linearised(model, window, value);
-      if (cost(model, there) < cost(best.model, best.normal)) {
+      const double before = cost(best.model, best.normal), after = cost(model, there);
+      if (after < before) {
         best = {model, std::move(there)};
         damping *= 0.2;
-        if (change.cwiseAbs().maxCoeff() < kSplitSettled) break;
+        if (change.cwiseAbs().maxCoeff() < kSplitSettled || before - after < kSplitGain * after) break;
         continue;
       }
     }
