@@ -59,7 +59,7 @@ def try_in(root: pathlib.Path, package: pathlib.Path, film: pathlib.Path | None)
     environment = os.environ | {"DEBIAN_FRONTEND": "noninteractive", "LC_ALL": "C"}
     update, _ = timed(["apt-get", "update", "-qq"], root, environment)
     download, _ = timed(["apt-get", "install", "-qq", "-y", "--no-install-recommends", "--download-only", "/marey.deb"], root, environment)
-    install, _ = timed(["apt-get", "install", "-qq", "-y", "--no-install-recommends", "--no-download", "/marey.deb"], root, environment)
+    install, _ = timed(["apt-get", "install", "-qq", "-y", "--no-install-recommends", "/marey.deb"], root, environment)
     if film:
         shutil.copy(film, root / "film.mp4")
     else:
