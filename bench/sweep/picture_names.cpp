@@ -1,14 +1,16 @@
 // Names of markers behind bars, over scenes of every kind: exact points of two markers from opposite sides, hidden at once.
 //
-//   picture_names [--videos N] [--first-seed N] [--detect]
+//   picture_names [--videos N] [--first-seed N] [--detect] [--kind NAME] [--which]
 //
 // Each row is a kind of scene; its figures are videos in which a marker loses its name, beside those that a plain tracker (constant
 // velocity that never stops coasting, the Hungarian method) loses on the same points. With --detect both see rendered pictures,
-// each through its own detector.
+// each through its own detector. --which names the seeds that ours lost.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "marey/detect/markers/marker_detector.h"
 #include "marey/evaluate/label_loss.h"
@@ -123,24 +125,25 @@ void run(const Kind& kind, std::uint64_t seed, bool detect, Lost& lost) {
 int main(int count, char** words) {
   int videos = 200;
   std::uint64_t first = 1;
-  bool detect = false;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    if (word == "--detect") {
-      detect = true;
-    } else if (word == "--videos" && i + 1 < count) {
-      videos = std::atoi(words[++i]);
-    } else if (word == "--first-seed" && i + 1 < count) {
-      first = static_cast<std::uint64_t>(std::atoll(words[++i]));
-    } else {
-      return std::fprintf(stderr, "no option %s\n", words[i]), 2;
-    }
-  }
+  bool detect = false, which = false;
+  std::string only;
+  CLI::App app("Names of markers behind bars, beside a plain tracker");
+  app.add_option("--videos", videos);
+  app.add_option("--first-seed", first);
+  app.add_option("--kind", only);
+  app.add_flag("--detect", detect);
+  app.add_flag("--which", which);
+  CLI11_PARSE(app, count, words);
   std::printf("videos of %d in which a marker loses its name, %s\n%-24s %6s %6s\n", videos,
               detect ? "from pictures" : "exact points", "", "ours", "peer");
   for (const Kind& kind : kinds()) {
+    if (!only.empty() && only != kind.name) continue;
     Lost lost;
-    for (int video = 0; video < videos; ++video) run(kind, first + static_cast<std::uint64_t>(video), detect, lost);
+    for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(videos); ++seed) {
+      const int before = lost.ours;
+      run(kind, seed, detect, lost);
+      if (which && lost.ours > before) std::printf("  lost: %llu\n", static_cast<unsigned long long>(seed));
+    }
     std::printf("%-24s %6d %6d\n", kind.name, lost.ours, lost.peer);
     std::fflush(stdout);
   }

@@ -27,6 +27,7 @@ struct RosterTarget {
   std::string label;
   filter::AnyFilter<D> filter;
   double width;                         ///< of its marker
+  double usual_variance;                ///< of its observations
   Vector<D> last_place;                 ///< where it was last seen
   double unseen = 0;                    ///< s, since then
   double seen = 0;                      ///< s, in which it was
@@ -58,8 +59,9 @@ struct RosterTarget {
   };
   std::vector<Doubt> doubt = {};  ///< one or none
 
-  static constexpr std::size_t kKept = 14;
-  std::vector<Measured> measured = {};  ///< at most 2 · kKept; its end counts
+  static constexpr std::size_t kKept = 14, kMostKept = 240;
+  std::vector<Measured> measured =
+      {};  ///< at most kMostKept, for a slow marker is long in vanishing; of those whole the last kKept count
 
   bool on_roster() const { return standing != Standing::newcomer; }
   bool missed() const { return !observation && !covered_by; }
@@ -102,8 +104,13 @@ class RosterLikelihood {
     return R;
   }
 
-  /// Whether the point is as large as the target, but for what the pixels' raster makes of it.
+  /// Of a point as it is seen.
+  static double variance_of(const Observation<D>& observation) { return observation.covariance.trace() / D; }
+
+  /// Whether the point is as large as the target, but for what the pixels' raster makes of it, and told as well as it usually is: a
+  /// disc that something begins to cover is a bad disc before it is a small one.
   bool shows_whole(const RosterTarget<D>& target, const Observation<D>& observation) const {
+    if (D == 2 && variance_of(observation) > kPartVariance * target.usual_variance) return false;
     return target.width - width_of(observation) < kPartWidth * target.width + kPartPixels;
   }
 
@@ -143,6 +150,7 @@ class RosterLikelihood {
   static constexpr double kWidthNoise = 0.2;   // of the width: what the pixels' raster makes of it
   static constexpr double kPartWidth = 0.08;   // of the width, and
   static constexpr double kPartPixels = 0.35;  // px less than it: it shows in part
+  static constexpr double kPartVariance = 6;   // times the usual variance: likewise
   static constexpr double kPartNoise = 3;      // times what it has lost of its width: a marker's place that shows in part
 
  private:

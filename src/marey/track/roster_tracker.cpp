@@ -206,9 +206,8 @@ class RosterTracker final : public Tracker<D> {
 
   static void remember(Target& target, const Vector<D>& place, const Matrix<D>& R, bool whole) {
     auto& measured = target.measured;
-    if (measured.size() >= 2 * Target::kKept) {
-      measured.erase(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(measured.size() - Target::kKept));
-    }
+    if (measured.size() >= Target::kMostKept)
+      measured.erase(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(measured.size() - Target::kMostKept / 2));
     if (target.unseen > kLongGap) measured.clear();
     measured.push_back({place, R, target.unseen, whole});
   }
@@ -237,6 +236,7 @@ class RosterTracker final : public Tracker<D> {
                         .label = {},
                         .filter = {options_.filter, observation.value, likelihood_.noise_of(observation)},
                         .width = likelihood_.width_of(observation),
+                        .usual_variance = likelihood_.variance_of(observation),
                         .last_place = observation.value,
                         .observation = index,
                         .since = *now_,
@@ -256,7 +256,10 @@ class RosterTracker final : public Tracker<D> {
       target.filter.correct(point.value, R);
       remember(target, point.value, R, likelihood_.shows_whole(target, point));
       if (target.unseen > 1.5 * dt_) target.since = *now_;
-      if (!target.crowded) target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
+      if (!target.crowded) {
+        target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
+        target.usual_variance += kVarianceMemory * (likelihood_.variance_of(point) - target.usual_variance);
+      }
       target.last_place = point.value;
       target.unseen = 0;
       target.seen += dt_;
@@ -332,20 +335,21 @@ class RosterTracker final : public Tracker<D> {
 
   static double square(double value) { return value * value; }
 
-  static constexpr double kCoast = 0.5;          // s that a lost target drifts on in space
-  static constexpr double kLongCoast = 3;        // s that it does in an image of unknown size
-  static constexpr double kLongGap = 0.2;        // s, before which nothing is remembered
-  static constexpr double kDoubted = 4;          // the same below which what was before is kept
-  static constexpr double kBelieved = 8;         // and of all points since, from which it is no more
-  static constexpr int kUnnoticed = 2;           // frames in which less is missing than can be told
-  static constexpr std::size_t kFewestKept = 3;  // observations
-  static constexpr double kProof = 0.5;          // s: a target seen for less and gone was never there
-  static constexpr double kForgotten = 30;       // s after which one that came later and was hardly seen is waited for no more,
-  static constexpr double kWorth = 10;           // and so much longer for each second that it was seen
-  static constexpr double kNewcomerGap = 0.1;    // s that a newcomer in space may be missed for
-  static constexpr double kCrowdNoise = 0.25;    // marker widths by which they do
-  static constexpr double kMissPenalty = 3;      // log of 1 over the chance that a marker is missed
-  static constexpr double kWidthMemory = 0.1;    // a frame
+  static constexpr double kCoast = 0.5;            // s that a lost target drifts on in space
+  static constexpr double kLongCoast = 3;          // s that it does in an image of unknown size
+  static constexpr double kLongGap = 0.2;          // s, before which nothing is remembered
+  static constexpr double kDoubted = 4;            // the same below which what was before is kept
+  static constexpr double kBelieved = 8;           // and of all points since, from which it is no more
+  static constexpr int kUnnoticed = 2;             // frames in which less is missing than can be told
+  static constexpr std::size_t kFewestKept = 3;    // observations
+  static constexpr double kProof = 0.5;            // s: a target seen for less and gone was never there
+  static constexpr double kForgotten = 30;         // s after which one that came later and was hardly seen is waited for no more,
+  static constexpr double kWorth = 10;             // and so much longer for each second that it was seen
+  static constexpr double kNewcomerGap = 0.1;      // s that a newcomer in space may be missed for
+  static constexpr double kCrowdNoise = 0.25;      // marker widths by which they do
+  static constexpr double kMissPenalty = 3;        // log of 1 over the chance that a marker is missed
+  static constexpr double kWidthMemory = 0.1;      // a frame
+  static constexpr double kVarianceMemory = 0.02;  // a frame
   static constexpr int kMostTargets = 20'000;
 
   RosterTrackerOptions options_;

@@ -1,5 +1,8 @@
 #include "marey/track/roster_tracker.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
@@ -65,6 +68,23 @@ TEST(RosterTracker, AMarkerThatComesBackAfterTwoSecondsHasItsName) {
   for (int i = 90; i < 96; ++i) tracks = tracker->step(time_at_30_hz(i), at({{400, 300}, {250 - 2.0 * (i - 90), 180}}));
   EXPECT_NEAR((place_of(tracks, "hip") - Vector<2>(240, 180)).norm(), 0, 1);
   EXPECT_NEAR((place_of(tracks, "knee") - Vector<2>(400, 300)).norm(), 0, 1);
+}
+
+TEST(RosterTracker, AMarkerThatVanishesSlowlyBehindAnEdgeGoesOnAsItWent) {
+  const auto tracker = make_roster_tracker<2>(with_labels({"wrist"}));
+  constexpr double kSpeed = 0.35, kWidth = 10.5;  // px, a frame
+  std::span<const Track<2>> tracks;
+  double x = 100;
+  for (int i = 0; i < 330; ++i, x += kSpeed) {
+    const double covered = std::clamp(x + kWidth / 2 - 160, 0.0, kWidth);  // of its width, by an edge at 160
+    auto seen = at({{x - covered / 2, 100}});
+    // A disc that is cut is a bad disc before it is a small one.
+    seen[0].covariance = Matrix<2>::Identity() * std::pow(0.003 + 0.01 * covered, 2);
+    seen[0].box = Box::from_centre(seen[0].value, kWidth - covered, kWidth);
+    if (covered > 0.9 * kWidth) seen.clear();
+    tracks = tracker->step(timestamp_from_seconds(i / 200.0), seen);
+  }
+  EXPECT_NEAR(place_of(tracks, "wrist").x(), x - kSpeed, 3);
 }
 
 TEST(RosterTracker, TwoThatPassThroughEachOtherKeepTheirCourses) {

@@ -225,8 +225,9 @@ std::vector<MarkerShape> MarkerDetector::Impl::explain(const cv::Mat& luma, std:
   if (blob.area >= 8 && window_.count <= split_pixels_left_) {
     split_pixels_left_ -= window_.count;
     MarkerSplit split = split_markers(window_, blob, around, expected_in(blob.box, expected), moving_);
+    const std::size_t count = split.discs.size();
     const bool alike =
-        std::all_of(split.discs.begin(), split.discs.end(), [&](const MarkerShape& d) { return likeness_.fits(d.radius); });
+        std::all_of(split.discs.begin(), split.discs.end(), [&](const MarkerShape& d) { return likeness_.fits(d.radius, count); });
     if (!split.discs.empty() && alike) {
       ++counts_.split;
       return std::move(split.discs);

@@ -10,10 +10,11 @@ constexpr double kFade = 1.0 / 8;                      // of what is known gives
 constexpr double kManyMarkers = 8;                     // areas of one: four that touch, or one that moves by four diameters
 constexpr double kOddMarker = 2.5;                     // areas
 constexpr double kMostUnlikeRadius = 2.2;              // times or a fraction
+constexpr double kMostUnlikeOfMany = 1.4;              // a fraction, of three and more in a blob
 constexpr double kLeastSharp = 3;                      // blurs
 constexpr double kLarger = 1.6;                        // radii of the small kind
 constexpr std::size_t kFewestOfAKind = 4;              // by chance three things are as large as each other
-constexpr double kKindContrast = 0.7;                      // of what the others stand out by
+constexpr double kKindContrast = 0.7;                  // of what the others stand out by
 constexpr double kMostSpread = 1.5;                    // the third quartile of a kind's radii over the first
 constexpr double kLeastWidest = 21, kMostWidest = 81;  // px
 
@@ -73,8 +74,9 @@ bool MarkerLikeness::odd(double area) const {
   return radius_ && area > this->area(kOddMarker);
 }
 
-bool MarkerLikeness::fits(double radius) const {
-  return !radius_ || (radius < kMostUnlikeRadius * largest() && *radius_ < kMostUnlikeRadius * radius + 0.5);
+bool MarkerLikeness::fits(double radius, std::size_t together) const {
+  const double least = together > 2 ? kMostUnlikeOfMany : kMostUnlikeRadius;
+  return !radius_ || (radius < kMostUnlikeRadius * largest() && *radius_ < least * radius + 0.5);
 }
 
 bool MarkerLikeness::sharp(double blur) const {

@@ -37,8 +37,9 @@ class MarkerLikeness {
   bool too_large(double area) const;
   /// A marker that is no disc (half hidden, shaded, of a shape that nothing explains) covers no more than this many px².
   bool odd(double area) const;
-  /// A disc of this radius, or a streak so wide, may be one of them.
-  bool fits(double radius) const;
+  /// A disc of this radius, or a streak so wide, may be one of them; or one of three and more in a blob, which a half hidden marker
+  /// looks like too where they may be small.
+  bool fits(double radius, std::size_t together = 1) const;
   /// Light that falls off slowly round a core of this radius is a lamp's, not a marker's out of focus.
   bool lamp(double radius) const { return radius_ && radius > kLampRadius * largest(); }
   /// Its edge is as sharp as theirs, or nearly.

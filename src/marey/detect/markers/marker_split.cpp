@@ -33,6 +33,7 @@ constexpr double kSimpler = 1.3;          // of the squares that three or four d
 constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
 constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
 constexpr int kFewestMoving = 120, kMostMoving = 4000;  // px, of a window in which two in motion are looked for
+constexpr double kLeastWithin = 0.7;                    // of a disc
 constexpr double kWellTold = 0.08;                      // of the contrast: what an explanation leaves at most
 
 /// The level of a disc, where pixels are brighter than that: an overlap of discs that add up. Else nothing.
@@ -165,6 +166,19 @@ SplitTask task_of(const MarkerWindow& window, const MarkerBlob& blob, const Mark
   return task;
 }
 
+/// Whether the discs lie where the blob does: beside the edge of something dimmer, which reaches further than that, a fit takes the
+/// dimmer level for that of discs, one disc for where they add up, and lays others half out of the window.
+bool within_window(const DiscsModel& model, const MarkerWindow& window) {
+  for (int i = 0; i < model.discs; ++i) {
+    const auto disc = model.p.segment<3>(kFirstDisc + 3 * i);
+    int inside = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(window.count); ++k)
+      inside += std::hypot(window.x[k] - disc[0], window.y[k] - disc[1]) < disc[2] ? 1 : 0;
+    if (inside < kLeastWithin * std::numbers::pi * disc[2] * disc[2]) return false;
+  }
+  return true;
+}
+
 DiscsSolution fit_several(const SplitTask& task, int count) {
   DiscsModel discs = several_discs(count, task.window, task.around, task.blur);
   const double radius = std::max(0.4, std::sqrt(task.window.half_area / (count * std::numbers::pi)));
@@ -225,7 +239,7 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
     const DiscsSolution solution = fit_several(task, k);
     const double left = solution.normal.squares;
     const bool clear = left < share * to_beat || (left < task.floor && to_beat - left > surely);
-    if (!distinct(solution.model) || !clear) {
+    if (!distinct(solution.model) || !clear || !within_window(solution.model, window)) {
       if (k == 2) continue;  // three in a corner may fit where two do not
       break;
     }
