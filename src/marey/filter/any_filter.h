@@ -8,6 +8,7 @@
 // Cost: an indirect call for each predict, correct, gate_distance and innovation_covariance. Size: that of the largest model.
 
 #include <cstddef>
+#include <utility>
 
 #include "marey/core/geometry.h"
 #include "marey/filter/filters.h"
@@ -23,7 +24,9 @@ class AnyFilter {
   /// The filter that `options` choose begins at a first measurement z (px or m) with covariance R, at rest.
   AnyFilter(const FilterOptions& options, const Vector<D>& z, const Matrix<D>& R);
   AnyFilter(const AnyFilter& other) : calls_(other.calls_), estimate_(other.estimate_) { calls_->copy(model_, other.model_); }
-  AnyFilter(AnyFilter&& other) noexcept : calls_(other.calls_), estimate_(other.estimate_) { calls_->move(model_, other.model_); }
+  AnyFilter(AnyFilter&& other) noexcept : calls_(other.calls_), estimate_(std::move(other.estimate_)) {
+    calls_->move(model_, other.model_);
+  }
   AnyFilter& operator=(const AnyFilter& other) {
     if (this != &other) *this = AnyFilter(other);
     return *this;

@@ -68,6 +68,7 @@ void Loop::rest(int descriptor, bool resting) {
 
 void Loop::start() {
   const SignalsBlocked quiet;
+  const std::scoped_lock lock(mutex_);  // a handler asks whose thread it is on: not before that is written
   thread_ = std::thread([this] { run(); });
 }
 

@@ -38,6 +38,7 @@ class Loop {
   /// Called ten times a second, under the lock.
   void on_tick(std::function<void()> tick) { tick_ = std::move(tick); }
 
+  /// Not under the lock.
   void start();
   /// Waits for the thread's end. No handler is called after it.
   void stop();

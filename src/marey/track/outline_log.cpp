@@ -33,6 +33,14 @@ struct OutlineHead {
 
 constexpr std::size_t kMotion = 12, kPoint = 4, kLine = 8;  // numbers each
 
+[[noreturn]] void throw_no_room(const std::string& beside) {
+  throw Error("{}: no room beside it to keep outlines until they are written ({})", beside, std::generic_category().message(errno));
+}
+
+[[noreturn]] void throw_unreadable(const std::string& beside) {
+  throw Error("{}: the outlines kept beside it cannot be read again ({})", beside, std::generic_category().message(errno));
+}
+
 std::FILE* make_unnamed_file(const fs::path& folder) {
   std::string name = (folder / "marey-outlines-XXXXXX").string();
   const int descriptor = mkstemp(name.data());
@@ -123,14 +131,11 @@ OutlineLog::OutlineLog(const std::string& beside, bool with_lines) : beside_(bes
 OutlineLog::~OutlineLog() = default;
 
 void OutlineLog::append(const void* data, std::size_t size) {
-  if (std::fwrite(data, 1, size, file_.get()) == size) return;
-  throw Error("{}: no room beside it to keep outlines until they are written ({})", beside_,
-              std::generic_category().message(errno));
+  if (std::fwrite(data, 1, size, file_.get()) != size) throw_no_room(beside_);
 }
 
 void OutlineLog::take(void* data, std::size_t size) {
-  if (std::fread(data, 1, size, file_.get()) == size) return;
-  throw Error("{}: the outlines kept beside it cannot be read again ({})", beside_, std::generic_category().message(errno));
+  if (std::fread(data, 1, size, file_.get()) != size) throw_unreadable(beside_);
 }
 
 void OutlineLog::add(std::int64_t frame, std::span<const Track<2>> tracks) {
@@ -159,8 +164,8 @@ void OutlineLog::add(std::int64_t frame, std::span<const Track<2>> tracks) {
 const OutlineLog::Frame& OutlineLog::at(std::int64_t frame) {
   static const Frame none;
   if (!reading_ || (last_asked_ && frame < *last_asked_)) {
-    if (std::fflush(file_.get()) != 0) append(nullptr, 1);
-    std::rewind(file_.get());
+    if (std::fflush(file_.get()) != 0) throw_no_room(beside_);
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) throw_unreadable(beside_);
     reading_ = true;
     read_.reset();
   }

@@ -1,8 +1,10 @@
 #include "marey/track/outline_log.h"
 
+#include <csignal>
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "marey/core/error.h"
 
@@ -94,6 +96,27 @@ TEST(OutlineLog, LeavesNothingInTheFolderAndTakesADeviceForNone) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   }
   EXPECT_NO_THROW(OutlineLog("/dev/stdout", false));
+}
+
+/// What the file's buffer still held when the disk was full.
+TEST(OutlineLog, ADiskThatIsFullIsSaidWhenReadingBegins) {
+  const test::TemporaryFolder folder;
+  OutlineLog recording(folder / "tracks.jsonl", false);
+  recording.add(0, std::vector{track_with_outline(1, 1)});
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit none{0, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &none);
+  std::string said;
+  try {
+    recording.at(0);
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, before);
+  EXPECT_NE(said.find("no room beside it"), std::string::npos) << said;
 }
 
 }  // namespace

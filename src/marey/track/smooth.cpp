@@ -63,7 +63,7 @@ void around(const Tracklet& rows, const std::vector<double>& times, std::size_t 
     visit(rows[i], t, std::exp(-t * t / (2 * sigma * sigma)) * (rows[i].observed() ? 1 : predicted_weight));
     return true;
   };
-  for (std::size_t i = k + 1; i-- > 0 && take(i);) {
+  for (std::size_t i = k; take(i) && i > 0; --i) {
   }
   for (std::size_t i = k + 1; i < rows.size() && take(i); ++i) {
   }
