@@ -23,6 +23,7 @@ struct SimulateMatch {
   std::string folder;
   std::array<int, 2> size{};
   std::string pitch = "105x68";
+  bool filmed = false;
   bool json = false;
   bool quiet = false;
 };
@@ -31,6 +32,7 @@ void run(const SimulateMatch& command) {
   pipeline::MatchFilesOptions options = command.files;
   options.cameras.pitch = parse_pitch_size(command.pitch);
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
+  if (command.filmed) options.film.look = simulate::people::CameraLook::filmed();
   make_folder(command.folder);
   with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_match(options, command.folder, hooks); });
   if (command.json)
@@ -61,9 +63,12 @@ void add_cameras(Command& match, SimulateMatch& options) {
   match.flag("--pinhole", cameras.distorted, "lenses without distortion", false);
 }
 
-void add_films(Command& match, pipeline::MatchFilesOptions& files) {
+void add_films(Command& match, SimulateMatch& options) {
+  pipeline::MatchFilesOptions& files = options.files;
   match.flag("--render", files.films, "film the match with every camera; rig.toml names the films instead of the boxes");
   match.flag("--no-shadows", files.film.shadows, "films: no person casts a shadow", false);
+  match.flag("--filmed", options.filmed, "films as a broadcast chain shows them: blur, halo, colour that runs, blocks of a codec");
+  match.number("--contact", files.film.contact, "share", closed(0, 1), "films: of the light, that shoes keep from the ground");
   match.number("--noise", files.film.noise, "grey levels", closed(0, 50), "films: standard deviation of the pixels");
   match.number("--light", files.film.light_change, "share", closed(0, 0.9), "films: by which the light swings");
   match.whole("--wrong-clicks", files.wrong_clicks, "N", 0, 100, "films: how many of each camera's clicks are wrong");
@@ -90,7 +95,7 @@ void add_simulate_match(Command& simulate) {
   command.flag("--no-boxes", options->files.boxes, "leave them out", false);
   add_cameras(command, *options);
   add_detector(command, options->files.detector);
-  add_films(command, options->files);
+  add_films(command, *options);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

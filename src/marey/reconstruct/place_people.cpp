@@ -26,18 +26,19 @@ struct Cut {
 
 class Placer {
  public:
-  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options)
-      : detections_(detections), view_(view), options_(options) {}
+  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options,
+         std::span<const std::optional<PersonRows>> rows)
+      : detections_(detections), view_(view), options_(options), rows_(rows) {}
 
   std::optional<Placement> place(std::size_t index) const {
     const Detection& one = detections_[index];
     if (one.box.empty()) return std::nullopt;
     const Cut cut = cut_of(one.box);
-    auto foot = by_foot(one, cut);
+    auto foot = by_foot(index, cut);
     const Camera* camera = view_.camera();
     if (camera == nullptr || cut.top || one.group) return foot;
     if (cut.bottom) {
-      const auto head = by_head(*camera, one, cut);
+      const auto head = by_head(*camera, index, cut);
       return head ? head : foot;
     }
     if (!foot) return std::nullopt;
@@ -51,8 +52,17 @@ class Placer {
             .top = box.top<at_border - 0.5, .bottom = box.bottom()> size.height + 0.5 - at_border};
   }
 
-  double edge_variance(const Box& box) const {
-    return options_.pixel_noise * options_.pixel_noise + std::pow(options_.edge_noise * box.height, 2);
+  /// The rows of who is seen alone and whole, where they are known.
+  const PersonRows* rows_of(std::size_t index) const {
+    return index < rows_.size() && rows_[index] && !detections_[index].group ? &*rows_[index] : nullptr;
+  }
+
+  double edge_variance(double height, double noise) const {
+    return options_.pixel_noise * options_.pixel_noise + std::pow(noise * height, 2);
+  }
+  double edge_variance(const Box& box) const { return edge_variance(box.height, options_.edge_noise); }
+  double row_variance(std::size_t index) const {
+    return edge_variance(detections_[index].box.height, rows_of(index) != nullptr ? options_.row_noise : options_.edge_noise);
   }
 
   /// Of a box's middle: two edges give it, unless the border or other people hide one.
@@ -62,10 +72,12 @@ class Placer {
     return cut.side ? edge + std::pow(one.box.width / 2, 2) : edge / 2;
   }
 
-  std::optional<Placement> by_foot(const Detection& one, const Cut& cut) const {
-    const auto place = view_.place(one.box.foot());
+  std::optional<Placement> by_foot(std::size_t index, const Cut& cut) const {
+    const Detection& one = detections_[index];
+    const PersonRows* rows = rows_of(index);
+    const auto place = view_.place({one.box.foot().x(), rows != nullptr ? rows->stand : one.box.foot().y()});
     if (!place) return std::nullopt;
-    double along = edge_variance(one.box);
+    double along = row_variance(index);
     if (one.group) along += std::pow(group_along * one.box.height, 2);
     if (cut.bottom) along += std::pow(one.box.height / 2, 2);
     const Vector<2> away = -place->by_pixel.col(1).normalized();
@@ -77,13 +89,17 @@ class Placer {
            options_.stride * options_.stride * Matrix<2>::Identity();
   }
 
-  static Vector<2> head_of(const Box& box) { return {box.left + (box.width - 1) / 2, box.top - 0.5}; }
+  Vector<2> head_of(std::size_t index) const {
+    const Box& box = detections_[index].box;
+    const PersonRows* rows = rows_of(index);
+    return {box.left + (box.width - 1) / 2, rows != nullptr ? rows->head : box.top - 0.5};
+  }
 
   /// A camera below the ground is one whose world has z down (GroundView).
   static double up(const Camera& camera) { return camera.centre().z() < 0 ? -1 : 1; }
 
-  std::optional<Placement> by_head(const Camera& camera, const Detection& one, const Cut& cut) const {
-    const auto ray = camera.ray(head_of(one.box));
+  std::optional<Placement> by_head(const Camera& camera, std::size_t index, const Cut& cut) const {
+    const auto ray = camera.ray(head_of(index));
     if (!ray) return std::nullopt;
     const double crown = up(camera) * options_.height;
     const double length = (crown - ray->origin.z()) / ray->direction.z();
@@ -95,25 +111,25 @@ class Placer {
     if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
     const Vector<2> by_height = ray->direction.head<2>() / std::abs(ray->direction.z()) * options_.height_spread;
     const Matrix<2> by_pixel = by_ground.inverse();
-    return Placement{place,
-                     on_ground(by_pixel, across_variance(one, cut), edge_variance(one.box)) + by_height * by_height.transpose()};
+    return Placement{place, on_ground(by_pixel, across_variance(detections_[index], cut), row_variance(index)) +
+                                by_height * by_height.transpose()};
   }
 
   /// The foot's place corrected by the row in which the head is seen.
   std::optional<Placement> joined(const Camera& camera, const Placement& foot, std::size_t index, const Cut& cut) const {
-    const Box& box = detections_[index].box;
-    const double row = head_of(box).y();
+    const double row = head_of(index).y();
     Placement both = foot;
     for (int i = 0; i < 2; ++i) {
       const auto head = camera.project_with_jacobian({both.place.x(), both.place.y(), up(camera) * options_.height});
       if (!head) return foot;
       const Vector<2> slope = head->by_world.row(1).head<2>();
-      const double spread = head->by_world(1, 2) * options_.height_spread;
+      const double spread =
+          head->by_world(1, 2) * (rows_of(index) != nullptr ? options_.row_height_spread : options_.height_spread);
       const double residual = row - head->pixel.y() - slope.dot(foot.place - both.place);
-      const double S = slope.dot(foot.covariance * slope) + edge_variance(box) + spread * spread;
+      const double S = slope.dot(foot.covariance * slope) + row_variance(index) + spread * spread;
       if (residual * residual > inconsistent * S) {
         if (residual < 0 || !legs_hidden(index)) return foot;
-        return by_head(camera, detections_[index], cut);
+        return by_head(camera, index, cut);
       }
       const Vector<2> K = foot.covariance * slope / S;
       both.place = foot.place + K * residual;
@@ -135,13 +151,14 @@ class Placer {
   std::span<const Detection> detections_;
   const GroundView& view_;
   const PlacePeopleOptions& options_;
+  std::span<const std::optional<PersonRows>> rows_;
 };
 
 }  // namespace
 
 PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
-                          const PlacePeopleOptions& options) {
-  const Placer placer(detections, view, options);
+                          const PlacePeopleOptions& options, std::span<const std::optional<PersonRows>> rows) {
+  const Placer placer(detections, view, options, rows);
   PlacedPeople placed;
   placed.seen.reserve(detections.size());
   placed.detection.reserve(detections.size());

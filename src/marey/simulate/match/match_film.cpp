@@ -39,6 +39,8 @@ people::PeopleRenderer renderer_of(const Camera& camera, const Matrix<3>& world_
   render.sun = {0.45, 0.3, 1.0};
   render.shadow_level = options.shadow_level;
   render.noise = options.noise;
+  render.contact = options.contact;
+  render.look = options.look;
   const Picture ground = draw_match_ground(camera, world_from_pitch.inverse(), pitch, seed);
   // Far outside the picture nothing needs to be drawn, however large a lens would make it.
   const auto in_reach = [camera](const Vector<3>& point) -> std::optional<people::Sighting> {

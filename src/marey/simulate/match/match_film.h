@@ -9,14 +9,17 @@
 #include "marey/geometry/camera.h"
 #include "marey/geometry/pitch.h"
 #include "marey/simulate/match/match_view.h"
+#include "marey/simulate/people/camera_look.h"
 
 namespace marey::simulate::match {
 
 struct MatchFilmOptions {
-  bool shadows = true;         ///< that people and goal posts cast
-  double shadow_level = 0.7;   ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
-  double noise = 1.2;          ///< standard deviation of luma, grey levels
-  double light_change = 0.08;  ///< the light swings by this share of itself, over half a minute and more
+  bool shadows = true;           ///< that people and goal posts cast
+  double shadow_level = 0.7;     ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
+  double noise = 1.2;            ///< standard deviation of luma, grey levels
+  double light_change = 0.08;    ///< the light swings by this share of itself, over half a minute and more
+  double contact = 0;            ///< share of the light that shoes keep from the ground right under them
+  people::CameraLook look = {};  ///< what lens, sharpening and codec make of the picture
 };
 
 /// A match as one camera films it. Its empty scene is drawn once.

@@ -14,6 +14,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/simulate/people/contact_shadow.h"
+
 namespace marey::simulate::people {
 namespace {
 
@@ -371,6 +373,11 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     truth.visible_share = truth.visible.area() / truth.whole.area();
   }
   darken(planes, shadows);
+  for (const PosedFigure& person : people) {
+    if (options_.contact > 0)
+      darken_contact(pose(*person.figure, person.stance), projection_, options_.contact, conditions.shift, planes.luma, planes.cb,
+                     planes.cr);
+  }
   std::stable_sort(sprites.begin(), sprites.end(), [](const Sprite& a, const Sprite& b) { return a.depth > b.depth; });
   for (const Sprite& sprite : sprites) sprite.lay(planes);
   if (conditions.light != 1) {

@@ -43,6 +43,7 @@ struct RenderOptions {
   bool shadows = true;                        ///
   Vector<3> sun = Vector<3>(0.5, 0.35, 1.0);  ///< towards the sun; z above 0
   double shadow_level = 0.55;                 ///< what a shadow leaves of the ground's brightness
+  double contact = 0;                         ///< share of the light that shoes keep from the ground right under them
   double noise = 2;                           ///< standard deviation of luma, grey levels; chroma has half of it
   CameraLook look;                            ///< lens, sharpening and codec
 };

@@ -1,0 +1,292 @@
+// Where people stand, on film as a match's cameras show it: blur, halo, smeared chroma, blocks, a shadow under and between the
+// shoes. Two of the football stand's cameras, 7.4 m up: 3072 × 1728, and 1280 × 720 for people of 20 to 40 px. The truth is the
+// point on the ground between the soles. Judged is everybody who stands alone and whole in the picture: how many rows too low the
+// place lies (mean, median), by height, and how far off it is on the ground, by distance. Beside it: the lowest pixel's ray, as one
+// places people in an afternoon.
+//   feet [FRAMES (24)] [SEEDS (1)] [sweep]
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "marey/detect/detectors.h"
+#include "marey/detect/people/body_rows.h"
+#include "marey/detect/people/person_size_map.h"
+#include "marey/reconstruct/person_view.h"
+#include "marey/reconstruct/place_people.h"
+#include "marey/simulate/match/match_camera.h"
+
+namespace marey {
+namespace {
+
+using simulate::match::kMatchPeople;
+
+constexpr double kContact = 0.5, kShadow = 0.8, kNoise = 1.2;  // of the scene
+constexpr int kBefore = 7;                                     // pictures that the scene is learned from
+constexpr double kApart_s = 1.7;                               // between pictures that are judged
+constexpr double kToe = 0.1;                                   // m, the detector's
+constexpr double kAlone = 0.999;                               // visible share
+
+/// The truth of one person in one picture, and where it is placed.
+struct Standing {
+  Vector<2> truth_ground, truth_pixel;
+  double height = 0;    // px, of the whole figure
+  double distance = 0;  // m from the camera, on the ground
+};
+
+struct Method {
+  std::string name;
+  std::vector<std::array<double, 4>> off;  // rows too low, height, m off, distance
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Vector<2> between_soles(const simulate::people::Figure& figure, const simulate::people::Stance& stance) {
+  Vector<2> sum = Vector<2>::Zero();
+  int ends = 0;
+  for (const simulate::people::Limb& limb : simulate::people::pose(figure, stance)) {
+    if (limb.part != simulate::people::FigurePart::shoes) continue;
+    sum += limb.from.head<2>() + limb.to.head<2>();
+    ends += 2;
+  }
+  return sum / ends;
+}
+
+struct Scene {
+  simulate::people::CameraLook look;
+  cv::Size size;
+  double least = 0, most = 0;  // px: whose heights are judged
+};
+
+simulate::match::MatchCamerasOptions stand(cv::Size size) {
+  simulate::match::MatchCamerasOptions options;
+  options.stand = simulate::match::MatchStand::football;
+  options.size = size;
+  return options;
+}
+
+/// One camera's film, picture by picture, and what is made of it.
+class Film {
+ public:
+  Film(const Scene& scene, std::uint64_t seed)
+      : scene_(scene),
+        match_(stand(scene.size), seed),
+        camera_(*match_.rig.cameras.front().camera()),
+        view_(camera_),
+        motion_(seed, match_.options.pitch),
+        film_(camera_, match_.world_from_pitch, match_.options.pitch, film_options(scene.look), seed) {
+    detect::people::PeopleDetectorOptions options;
+    options.people.sizes = std::make_shared<detect::people::PersonSizeMap>(scene.size, [this](double x, double y) {
+      std::optional<detect::people::PersonSize> size;
+      const auto place = view_.place({x, y});
+      if (!place || (place->ground - camera_.centre().head<2>()).norm() > 120) return size;
+      const auto box = reconstruct::person_box(camera_, place->ground);
+      if (box && box->height >= 8) size = detect::people::PersonSize{box->height, box->width};
+      return size;
+    });
+    detector_ = detect::make_detector(options);
+    std::vector<Frame> samples;
+    for (int i = 0; i < kBefore; ++i) samples.push_back(next());
+    detector_->prime(samples);
+  }
+
+  static simulate::match::MatchFilmOptions film_options(const simulate::people::CameraLook& look) {
+    simulate::match::MatchFilmOptions options;
+    options.noise = kNoise;
+    options.shadow_level = kShadow;
+    options.contact = kContact;
+    options.look = look;
+    return options;
+  }
+
+  /// The next picture, who is in it, and what is detected there.
+  void step() {
+    frame_ = next();
+    people_.clear();
+    std::vector<Expected> expected;
+    const auto stances = match_.stances(motion_.people());
+    for (const auto& seen : simulate::match::people_in_view(camera_, match_.figures, stances)) {
+      expected.push_back({seen.shown});
+      const bool whole = seen.shown.height == seen.whole.height && seen.shown.width == seen.whole.width;
+      if (!whole || seen.visible_share < kAlone) continue;
+      Standing one;
+      const auto person = static_cast<std::size_t>(seen.person);
+      one.truth_ground = between_soles(match_.figures[person], stances[person]);
+      one.truth_pixel = *view_.pixel(one.truth_ground);
+      one.height = seen.whole.height;
+      one.distance = (one.truth_ground - camera_.centre().head<2>()).norm();
+      if (one.height >= scene_.least && one.height < scene_.most) people_.push_back(one);
+    }
+    found_ = detector_->detect(frame_, expected);
+  }
+
+  std::vector<std::optional<reconstruct::PersonRows>> rows(const detect::people::BodyRowsOptions& options) const {
+    std::vector<std::optional<reconstruct::PersonRows>> all;
+    for (const Detection& one : found_.detections) {
+      auto& row = all.emplace_back();
+      const auto place = view_.place(one.box.foot());
+      if (one.group || !place) continue;
+      const double steepness =
+          camera_.centre().z() / (camera_.centre() - Vector<3>(place->ground.x(), place->ground.y(), 0)).norm();
+      const auto found = detect::people::find_body_rows(frame_.picture, found_.foreground.mask, one.box, steepness, options);
+      if (found) row = {found->head, found->stand};
+    }
+    return all;
+  }
+
+  void judge_lowest(Method& method) const {
+    for (const Detection& one : found_.detections) {
+      if (const auto place = view_.place(one.box.foot()); place && !one.group) judge(one.box, place->ground, method);
+    }
+  }
+
+  void judge(const reconstruct::PlacePeopleOptions& options, std::span<const std::optional<reconstruct::PersonRows>> rows,
+             Method& method) const {
+    const auto placed = reconstruct::place_people(found_.detections, view_, CameraId{0}, options, rows);
+    for (std::size_t i = 0; i < placed.seen.size(); ++i) {
+      if (!placed.seen[i].shared) judge(*placed.seen[i].box, placed.seen[i].value, method);
+    }
+  }
+
+ private:
+  Frame next() {
+    time_ += kApart_s;
+    motion_.advance(time_);
+    Frame frame;
+    frame.index = index_++;
+    frame.time = timestamp_from_seconds(time_);
+    frame.picture = film_.render(match_.figures, match_.stances(motion_.people()), time_, frame.index);
+    return frame;
+  }
+
+  /// A detection is the person's whose feet are nearest to its foot.
+  void judge(const Box& box, const Vector<2>& ground, Method& method) const {
+    const Standing* nearest = nullptr;
+    double least = 0;
+    for (const Standing& one : people_) {
+      const Vector<2> apart = (one.truth_pixel - box.foot()) / one.height;
+      if (std::abs(apart.x()) > 0.25 || std::abs(apart.y()) > 0.4) continue;
+      if (nearest != nullptr && apart.norm() >= least) continue;
+      nearest = &one, least = apart.norm();
+    }
+    const auto pixel = view_.pixel(ground);
+    if (nearest == nullptr || !pixel) return;
+    method.off.push_back(
+        {pixel->y() - nearest->truth_pixel.y(), nearest->height, (ground - nearest->truth_ground).norm(), nearest->distance});
+  }
+
+  Scene scene_;
+  simulate::match::MatchScene match_;
+  Camera camera_;
+  GroundView view_;
+  simulate::match::MatchMotion motion_;
+  simulate::match::MatchFilm film_;
+  std::unique_ptr<detect::Detector> detector_;
+  double time_ = 0;
+  std::int64_t index_ = 0;
+  Frame frame_;
+  detect::Detections found_;
+  std::vector<Standing> people_;
+};
+
+void print(const Method& method) {
+  std::string line = fmt::format("{:<24}", method.name);
+  constexpr std::array kHeights{20.0, 40.0, 80.0, 120.0, 200.0};
+  for (std::size_t i = 0; i + 1 < kHeights.size(); ++i) {
+    std::vector<double> rows;
+    double sum = 0;
+    for (const auto& off : method.off) {
+      if (off[1] < kHeights[i] || off[1] >= kHeights[i + 1]) continue;
+      rows.push_back(off[0]);
+      sum += off[0];
+    }
+    line +=
+        fmt::format(" |{:4} {:6.2f} {:6.2f}", rows.size(), rows.empty() ? 0 : sum / static_cast<double>(rows.size()), median(rows));
+  }
+  for (const double distance : {20.0, 40.0, 65.0}) {
+    std::vector<double> metres;
+    for (const auto& off : method.off) {
+      if (off[3] > distance - 5 && off[3] < distance + 5 && off[1] >= 30) metres.push_back(off[2]);
+    }
+    line += fmt::format(" |{:4} {:5.2f}", metres.size(), median(metres));
+  }
+  fmt::print("{}\n", line);
+}
+
+/// What is compared: how rows are found and counted.
+struct Variant {
+  std::string name;
+  detect::people::BodyRowsOptions rows = {};
+  reconstruct::PlacePeopleOptions placing = {};
+};
+
+std::vector<Variant> variants(bool sweep) {
+  std::vector<Variant> all{{"rows of the body"}};
+  if (!sweep) return all;
+  const auto add = [&](const std::string& name, double value, auto&& set) {
+    Variant one{fmt::format("{} {:g}", name, value)};
+    set(one, value);
+    all.push_back(one);
+  };
+  for (const double v : {0.3, 0.35, 0.45, 0.5, 0.55}) add("edge", v, [](Variant& one, double x) { one.rows.edge = x; });
+  for (const double v : {0.0, 0.5, 1.0}) add("chroma", v, [](Variant& one, double x) { one.rows.chroma = x; });
+  for (const double v : {8.0, 25.0}) add("least contrast", v, [](Variant& one, double x) { one.rows.least_contrast = x; });
+  for (const double v : {0.0, 0.3, 0.6, 0.8}) add("stride", v, [](Variant& one, double x) { one.rows.stride = x; });
+  for (const double v : {0.01, 0.03, 0.04}) add("row noise", v, [](Variant& one, double x) { one.placing.row_noise = x; });
+  for (const double v : {0.1, 0.15, 5.0})
+    add("height spread", v, [](Variant& one, double x) { one.placing.row_height_spread = x; });
+  for (const double v : {0.08, 0.12, 0.15}) add("toe", v, [](Variant& one, double x) { one.placing.toe = x; });
+  return all;
+}
+
+void run(const simulate::people::CameraLook& look, int frames, int seeds, bool sweep) {
+  Method lowest{"lowest pixel", {}}, box{"box, toe and head", {}};
+  std::vector<Variant> all = variants(sweep);
+  std::vector<Method> methods;
+  for (Variant& one : all) {
+    if (one.placing.toe == 0) one.placing.toe = kToe;
+    methods.push_back({one.name, {}});
+  }
+  const std::array kScenes{Scene{look, {3072, 1728}, 40, 200}, Scene{look, {1280, 720}, 20, 40}};
+  for (const Scene& scene : kScenes) {
+    for (int seed = 1; seed <= seeds; ++seed) {
+      Film film(scene, static_cast<std::uint64_t>(seed));
+      for (int i = 0; i < frames; ++i) {
+        film.step();
+        film.judge_lowest(lowest);
+        film.judge({.toe = kToe}, {}, box);
+        for (std::size_t k = 0; k < all.size(); ++k) film.judge(all[k].placing, film.rows(all[k].rows), methods[k]);
+      }
+    }
+  }
+  fmt::print("{} frames, {} seeds; blur {} px, halo {} over {} px, chroma {} px late by {}, quantizer {}, contact {}, noise {}\n",
+             frames, seeds, look.blur, look.halo, look.halo_px, look.chroma_bleed, look.chroma_shift, look.quantizer, kContact,
+             kNoise);
+  fmt::print("{:<24} |  20-40 px: n, mean, median of rows too low | 40-80 | 80-120 | 120-200 | at 20 m: n, m | 40 m | 65 m\n", "");
+  print(lowest);
+  print(box);
+  for (const Method& method : methods) print(method);
+}
+
+}  // namespace
+}  // namespace marey
+
+int main(int count, char** words) {
+  const int frames = count > 1 ? std::atoi(words[1]) : 24, seeds = count > 2 ? std::atoi(words[2]) : 1;
+  const bool sweep = count > 3 && std::strcmp(words[3], "sweep") == 0;
+  const marey::simulate::people::CameraLook smeared{1.2, 0.8, 3, 6, 4, 8};
+  for (const auto& look : {marey::simulate::people::CameraLook::filmed(), smeared}) marey::run(look, frames, seeds, sweep);
+  return 0;
+}
