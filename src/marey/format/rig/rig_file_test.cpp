@@ -66,7 +66,7 @@ TEST(RigFile, AGroundThatIsNoneIsRefused) {
   const auto told = [](const std::string& from, const std::string& to) {
     return problems_of(replaced(kExample, "[[camera]]", replaced(kCrowned, from, to) + "[[camera]]"));
   };
-  EXPECT_NE(told("across = 0.15", "across = 50").find("rig.toml:7: ground: across is 50 m; a pitch is raised by at most 2 m"),
+  EXPECT_NE(told("across = 0.15", "across = 50").find("rig.toml:6: ground: across is 50 m; a pitch is raised by at most 2 m"),
             std::string::npos);
   for (const char* value : {"nan", "inf", "-inf", "1e300", "\"much\"", "[1]"})
     EXPECT_NE(told("along = 0.2", fmt::format("along = {}", value)).find("along must be a finite number"), std::string::npos)
