@@ -132,7 +132,7 @@ struct PointError {
 
   template <typename T>
   bool operator()(const T* p, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = projected(p, point.ground, T(0));
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, point.ground, T(0));
     error[0] = (pixel.x() - point.pixel.x()) / sigma;
     error[1] = (pixel.y() - point.pixel.y()) / sigma;
     return true;
@@ -145,7 +145,7 @@ struct LineError {
 
   template <typename T>
   bool operator()(const T* p, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = projected(p, seen.ground, T(0));
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, seen.ground, T(0));
     error[0] = ((pixel.x() - seen.pixel.x()) * seen.normal.x() + (pixel.y() - seen.pixel.y()) * seen.normal.y()) / sigma;
     return true;
   }

@@ -24,7 +24,7 @@ std::optional<Matrix<2>> place_covariance(const PitchFit& fit, std::size_t index
     const auto at = static_cast<std::size_t>(i);
     p[at] = Jet(i < kCameraNumbers ? numbers.p[at] : fit.ground.terms()[at - kCameraNumbers], i);
   }
-  const auto seen = projected(p.data(), ground, GroundSurface::height_at(fit.ground.relative(ground), &p[kCameraNumbers]));
+  const auto seen = project_ground(p.data(), ground, GroundSurface::height_at(fit.ground.relative(ground), &p[kCameraNumbers]));
   Eigen::Matrix<double, 2, kAll> by_numbers;
   by_numbers << seen.x().v.transpose(), seen.y().v.transpose();
   const auto own = static_cast<Eigen::Index>(index) * kCameraNumbers, shared = fit.covariance.rows() - kGroundTerms;

@@ -80,7 +80,7 @@ struct PlaceError {
 
   template <typename T>
   bool operator()(const T* p, const T* ground, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = projected(p, seen.ground, GroundSurface::height_at(seen.relative, ground));
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, seen.ground, GroundSurface::height_at(seen.relative, ground));
     const T x = pixel.x() - seen.pixel.x(), y = pixel.y() - seen.pixel.y();
     for (int i = 0; i < kErrors; ++i) error[i] = (seen.whiten(i, 0) * x + seen.whiten(i, 1) * y) / scale;
     return true;
@@ -256,7 +256,7 @@ double median_of(std::vector<double> values) {
 Vector<2> error_of(const SeenPlace& place, const PitchState& state, std::size_t camera) {
   const auto& p = state.cameras[camera].p;
   return place.whiten *
-         (projected(p.data(), place.ground, GroundSurface::height_at(place.relative, state.ground.data())) - place.pixel);
+         (project_ground(p.data(), place.ground, GroundSurface::height_at(place.relative, state.ground.data())) - place.pixel);
 }
 
 /// The share of the pieces that is news: one over what the sum of a line's errors varies by, in what independent ones would.

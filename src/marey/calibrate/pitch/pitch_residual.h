@@ -31,7 +31,7 @@ inline Vector<2> middle_of(cv::Size size) {
 /// The pixel of a place of the ground, `height` m above z = 0. What would come to lie behind the camera is held before it, so that
 /// every step of the solver has a cost.
 template <typename T>
-Eigen::Matrix<T, 2, 1> projected(const T* p, const Vector<2>& ground, const T& height) {
+Eigen::Matrix<T, 2, 1> project_ground(const T* p, const Vector<2>& ground, const T& height) {
   constexpr double kNearest = 0.5;  // m before the camera
   const T place[3] = {T(ground.x()), T(ground.y()), height};
   Eigen::Matrix<T, 3, 1> at;
