@@ -49,8 +49,9 @@ struct Match {
       auto& boxes = instants.emplace_back();
       for (const Camera& camera : cameras) {
         auto& seen = boxes.emplace_back();
-        for (const LabelledBox& one : simulate::match::detect_match(simulate::match::people_in_view(camera, figures, stances),
-                                                                    camera, Matrix<3>::Identity(), {}, frame, {}, random)) {
+        for (const LabelledBox& one :
+             simulate::match::detect_match(simulate::match::people_in_view(GroundView(camera), figures, stances),
+                                           GroundView(camera), Matrix<3>::Identity(), {}, frame, {}, random)) {
           seen.emplace_back();
           seen.back().box = one.box;
           seen.back().score = one.score;

@@ -1,5 +1,7 @@
 #include "marey/pipeline/calibrate_pitch.h"
 
+#include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,6 +29,7 @@ struct CalibratePitch {
   std::vector<std::string> points;
   PitchElements elements;
   std::string size = "105x68";
+  calibrate::pitch::GroundKnown ground = calibrate::pitch::GroundKnown::nothing;
   bool synced = false;
   bool json = false;
   bool quiet = false;
@@ -53,37 +56,68 @@ std::map<std::string, std::string> parse_points(const std::vector<std::string>& 
   return result;
 }
 
+double deviation(const calibrate::pitch::PitchFit& fit, Eigen::Index number) {
+  return std::sqrt(std::max(0.0, fit.covariance(number, number)));
+}
+
+double focal_deviation(const calibrate::pitch::PitchFit& fit, std::size_t camera) {
+  using calibrate::pitch::CameraNumbers;
+  return deviation(fit, static_cast<Eigen::Index>(camera) * CameraNumbers::count + CameraNumbers::focal);
+}
+
+Json ground_json(const calibrate::pitch::PitchFit& fit) {
+  using geometry::GroundSurface;
+  Json json{{"highest_m", fit.ground.height(fit.ground.middle)}};
+  constexpr std::array<const char*, GroundSurface::kTerms> kNames{"across", "along", "dome", "ridge"};
+  for (int i = 0; i < GroundSurface::kTerms; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    json[kNames[at]] = fit.ground.terms()[at];
+    json[fmt::format("{}_deviation", kNames[at])] = deviation(fit, fit.covariance.rows() - GroundSurface::kTerms + i);
+  }
+  return json;
+}
+
+/// What the clicks that are used are off by.
+struct ClickErrors {
+  double sum = 0, square = 0;
+  int good = 0, all = 0;
+
+  void add(double error) { sum += error, square += error * error, ++good; }
+  double mean() const { return sum / std::max(1, good); }
+  double rms() const { return std::sqrt(square / std::max(1, good)); }
+};
+
+Json camera_json(const pipeline::PitchRun& run, std::size_t camera, ClickErrors& of_all) {
+  const calibrate::pitch::PitchViewResult& found = run.calibration.views[camera];
+  ClickErrors own;
+  Json points = Json::array();
+  for (std::size_t k = 0; k < found.inlier.size(); ++k) {
+    Json point = {{"name", run.views[camera].points[k].name}, {"error_px", found.error_px[k]}, {"used", found.inlier[k] != 0}};
+    if (found.error_m[k]) point["error_m"] = *found.error_m[k];
+    if (found.better_name[k]) point["fits"] = {found.better_name[k]->x(), found.better_name[k]->y()};
+    points.push_back(std::move(point));
+    ++own.all, ++of_all.all;
+    if (found.inlier[k]) own.add(found.error_px[k]), of_all.add(found.error_px[k]);
+  }
+  return {{"focal_px", geometry::focal_of(found.camera.lens()).x()},
+          {"focal_deviation_px", focal_deviation(run.calibration.fit, camera)},
+          {"mean_px", own.mean()},
+          {"rms_px", own.rms()},
+          {"inliers", own.good},
+          {"observations", own.all},
+          {"lines",
+           {{"sightings", found.lines.size()},
+            {"median_px", found.line_median_px},
+            {"p95_px", found.line_95_px},
+            {"median_m", found.line_median_m},
+            {"p95_m", found.line_95_m}}},
+          {"points", points}};
+}
+
 Json as_json(const pipeline::PitchRun& run) {
   Json cameras;
-  double sum = 0, square = 0;
-  int inliers = 0, observations = 0;
-  for (std::size_t i = 0; i < run.views.size(); ++i) {
-    const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
-    double camera_sum = 0, camera_square = 0;
-    int good = 0;
-    Json points = Json::array();
-    for (std::size_t k = 0; k < found.inlier.size(); ++k) {
-      Json point = {{"name", run.views[i].points[k].name}, {"error_px", found.error_px[k]}, {"used", found.inlier[k] != 0}};
-      if (found.error_m[k]) point["error_m"] = *found.error_m[k];
-      if (found.better_name[k]) point["fits"] = {found.better_name[k]->x(), found.better_name[k]->y()};
-      points.push_back(std::move(point));
-      if (!found.inlier[k]) continue;
-      camera_sum += found.error_px[k], camera_square += found.error_px[k] * found.error_px[k], ++good;
-    }
-    const int all = static_cast<int>(found.inlier.size());
-    cameras[run.cameras[i]] = {{"mean_px", camera_sum / std::max(1, good)},
-                               {"rms_px", std::sqrt(camera_square / std::max(1, good))},
-                               {"inliers", good},
-                               {"observations", all},
-                               {"lines",
-                                {{"sightings", found.lines.size()},
-                                 {"median_px", found.line_median_px},
-                                 {"p95_px", found.line_95_px},
-                                 {"median_m", found.line_median_m},
-                                 {"p95_m", found.line_95_m}}},
-                               {"points", points}};
-    sum += camera_sum, square += camera_square, inliers += good, observations += all;
-  }
+  ClickErrors all;
+  for (std::size_t i = 0; i < run.views.size(); ++i) cameras[run.cameras[i]] = camera_json(run, i, all);
   Json offsets = Json::object();
   for (const pipeline::RigOffsets::Camera& camera : run.offsets.cameras) {
     Json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
@@ -92,14 +126,24 @@ Json as_json(const pipeline::PitchRun& run) {
     entry["found_s"] = camera.found.offset_s;
     entry["deviation_s"] = camera.found.deviation_s;
   }
-  return {{"all",
-           {{"mean_px", sum / std::max(1, inliers)},
-            {"rms_px", std::sqrt(square / std::max(1, inliers))},
-            {"inliers", inliers},
-            {"observations", observations}}},
+  return {{"all", {{"mean_px", all.mean()}, {"rms_px", all.rms()}, {"inliers", all.good}, {"observations", all.all}}},
           {"cameras", cameras},
+          {"ground", ground_json(run.calibration.fit)},
+          {"lens_terms", run.calibration.fit.lens_terms},
           {"offsets", offsets},
           {"warnings", run.warnings}};
+}
+
+void print_ground(const calibrate::pitch::PitchFit& fit) {
+  const geometry::GroundSurface& ground = fit.ground;
+  const double middle = ground.height(ground.middle);
+  if (ground.flat()) return fmt::print("the pitch is level, as far as clicks and lines tell\n");
+  const double touchline = ground.height(ground.middle + Vector<2>(0, ground.half.y()));
+  const double goal_line = ground.height(ground.middle + Vector<2>(ground.half.x(), 0));
+  fmt::print(
+      "the pitch is {:.2f} m above its corners in the middle, {:.2f} m halfway along the touchlines, {:.2f} m halfway along the "
+      "goal lines\n",
+      middle, touchline, goal_line);
 }
 
 void print_report(const pipeline::PitchRun& run) {
@@ -110,6 +154,8 @@ void print_report(const pipeline::PitchRun& run) {
     const Vector<2> place = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
     fmt::print("{}: {} of {} clicks used; the camera stands at ({:.1f}, {:.1f}), {:.1f} m up\n", run.cameras[i], used,
                found.inlier.size(), place.x(), place.y(), centre.z());
+    fmt::print("  focal length  {:.1f} px (± {:.1f}), {} terms of distortion\n", geometry::focal_of(found.camera.lens()).x(),
+               focal_deviation(run.calibration.fit, i), run.calibration.fit.lens_terms);
     if (!found.lines.empty())
       fmt::print("  white lines   {} places; {:.2f} px and {:.3f} m off in the middle, {:.2f} px and {:.3f} m for 95 %\n",
                  found.lines.size(), found.line_median_px, found.line_median_m, found.line_95_px, found.line_95_m);
@@ -121,6 +167,7 @@ void print_report(const pipeline::PitchRun& run) {
       fmt::print("\n");
     }
   }
+  print_ground(run.calibration.fit);
   for (const std::string& sentence : run.offsets.notes) fmt::print("{}\n", sentence);
   if (run.calibration.ground_from_world(1, 1) < 0)
     fmt::print("the clicks' y grows to the right of x: the rig keeps a right-handed world, and turns results back\n");
@@ -133,6 +180,7 @@ void run(const CalibratePitch& command) {
   const Rig rig = rig_of(command.inputs);
   pipeline::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
+  options.pitch.known = command.ground;
   options.pictures = command.pictures;
   options.synced = command.synced;
   const pipeline::PitchRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
@@ -166,6 +214,11 @@ void add_calibrate_pitch(Command& calibrate) {
       .check(check_resolution);
   command.output_folder("--cameras", options->elements.cameras, "folder for SoccerNet's camera_NAME.json of each labelled picture");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
+  using calibrate::pitch::GroundKnown;
+  constexpr std::array<std::pair<const char*, GroundKnown>, 3> kGrounds{
+      {{"found", GroundKnown::nothing}, {"level", GroundKnown::level}, {"kept", GroundKnown::wholly}}};
+  command.choice("--ground", options->ground, kGrounds,
+                 "how high the pitch is in the middle: found, as far as clicks and lines tell; level; or as the rig file says");
   command.output_file("-o,--output", options->out, "rig file to write").ends_in({".toml"}).may_replace(rig);
   command.output_folder("--pictures", options->pictures,
                         "folder for the pitch drawn over each camera's picture, and maps of the accuracy");

@@ -176,7 +176,7 @@ Json info_json(const Rig& rig) {
   for (const RigCamera& camera : rig.cameras) {
     Json entry{{"name", camera.name}, {"source", camera.source}, {"calibrated", camera.camera().has_value()}};
     if (!camera.detections.empty()) entry["detections"] = camera.detections;
-    entry["ground"] = camera.ground_view().has_value();
+    entry["ground"] = camera.ground_view(rig.ground).has_value();
     if (camera.offset_s) entry["offset_s"] = *camera.offset_s;
     if (camera.size) entry["size"] = {camera.size->width, camera.size->height};
     if (camera.rms_px) entry["rms_px"] = *camera.rms_px;

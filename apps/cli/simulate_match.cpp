@@ -24,13 +24,24 @@ struct SimulateMatch {
   std::array<int, 2> size{};
   std::string pitch = "105x68";
   bool filmed = false;
+  std::string crown = "0x0";
   bool json = false;
   bool quiet = false;
 };
 
+geometry::GroundSurface parse_crown(const std::string& text) {
+  constexpr double kMost = 0.5;  // m
+  const std::vector<double> raised = numbers_in(text, 'x', closed(0, kMost), "heights ACROSSxALONG in m, as 0.15x0.2");
+  if (raised.size() != 2) throw WrongUsage("\"{}\" is no crown; write heights ACROSSxALONG in m, as 0.15x0.2", text);
+  geometry::GroundSurface ground;
+  ground.across = raised[0], ground.along = raised[1];
+  return ground;
+}
+
 void run(const SimulateMatch& command) {
   pipeline::MatchFilesOptions options = command.files;
   options.cameras.pitch = parse_pitch_size(command.pitch);
+  options.cameras.ground = parse_crown(command.crown);
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
   if (command.filmed) options.film.look = simulate::people::CameraLook::filmed();
   make_folder(command.folder);
@@ -49,15 +60,21 @@ void run(const SimulateMatch& command) {
 void add_cameras(Command& match, SimulateMatch& options) {
   simulate::match::MatchCamerasOptions& cameras = options.files.cameras;
   using simulate::match::MatchStand;
-  constexpr std::array<std::pair<const char*, MatchStand>, 3> kStands{
-      {{"round", MatchStand::round}, {"football", MatchStand::football}, {"corners", MatchStand::corners}}};
+  constexpr std::array<std::pair<const char*, MatchStand>, 4> kStands{{{"round", MatchStand::round},
+                                                                       {"football", MatchStand::football},
+                                                                       {"corners", MatchStand::corners},
+                                                                       {"apart", MatchStand::apart}}};
   match.choice("--stand", cameras.stand, kStands,
-               "where the cameras are: evenly round the pitch; two on one low stand beside it; two high behind opposite corners");
+               "where the cameras are: evenly round the pitch; two on one low stand beside it; two high behind opposite corners; "
+               "two low beside "
+               "one touchline, apart");
   match.whole("--cameras", cameras.cameras, "N", 1, 64, "how many round the pitch");
   match.wholes("--size", options.size, "px", 64, 8192,
                "of the pictures: width and height (default: 1920 1080 round the pitch, else 3072 1728)");
   match.number("--rate", cameras.rate_hz, "Hz", closed(0.1, 1000), "frames a second");
   match.text("--pitch", options.pitch, "length and width of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
+  match.text("--crown", options.crown, "how far the pitch is raised in the middle across it and along it, ACROSSxALONG in m")
+      .check(parse_crown);
   match.number("--offset", cameras.offset_s, "s", closed(0, 60), "cameras were started up to this much before or after the first");
   match.flag("--hide-offsets", options.files.hide_offsets, "rig.toml does not hold them; true_rig.toml does");
   match.flag("--pinhole", cameras.distorted, "lenses without distortion", false);

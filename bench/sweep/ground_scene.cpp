@@ -134,7 +134,7 @@ GroundScores run_naive(const std::string& folder, double farthest) {
       if (!frames->cameras[i] || !frames->cameras[i]->detections) continue;
       reconstruct::PlacePeopleOptions feet;
       feet.height_spread = 1e6;  // feet alone
-      const auto placed = reconstruct::place_people(*frames->cameras[i]->detections, rig.cameras[i].ground_view().value(),
+      const auto placed = reconstruct::place_people(*frames->cameras[i]->detections, rig.cameras[i].ground_view(rig.ground).value(),
                                                     CameraId{static_cast<int>(i)}, feet);
       all.insert(all.end(), placed.seen.begin(), placed.seen.end());
     }

@@ -257,6 +257,7 @@ GroundFound ground_under_board(std::span<const Rigid3> world_from_board) {
 
 Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale) {
   Rig moved = rig;
+  moved.ground = {};  // of another world
   for (RigCamera& camera : moved.cameras) {
     if (!camera.camera_from_world) continue;
     const Vector<3> centre = scale * (ground_from_world * camera.camera_from_world->inverse().translation);

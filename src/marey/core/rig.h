@@ -8,6 +8,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
+#include "marey/geometry/ground_surface.h"
 #include "marey/geometry/ground_view.h"
 
 namespace marey {
@@ -32,9 +33,9 @@ struct RigCamera {
     return Camera(*lens, *camera_from_world, *size);
   }
 
-  /// How it sees the ground: by its camera, else by its homography, else not at all.
-  std::optional<GroundView> ground_view() const {
-    if (const auto whole = camera()) return GroundView(*whole);
+  /// How it sees the ground, `surface` being its rig's: by its camera, else by its homography, else not at all.
+  std::optional<GroundView> ground_view(const geometry::GroundSurface& surface) const {
+    if (const auto whole = camera()) return GroundView(*whole, surface);
     if (!ground_from_image || !size) return std::nullopt;
     return GroundView(*ground_from_image, *size);
   }
@@ -53,6 +54,7 @@ struct Rig {
 
   /// Ground coordinates as the user has them from the world's (x, y, 1): a reflection where the user's frame is left-handed.
   std::optional<Matrix<3>> ground_from_world;
+  geometry::GroundSurface ground = {};  ///< in the world; level where nobody knows better
   std::optional<Calibration> calibration;
   std::vector<RigCamera> cameras;
 };

@@ -19,6 +19,10 @@ cv::Point2f point(const Vector<2>& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y())};
 }
 
+bool in_picture(const Vector<2>& pixel, cv::Size size) {
+  return cv::Rect2d({-0.5, -0.5}, cv::Size2d(size)).contains({pixel.x(), pixel.y()});
+}
+
 /// What a cell of the map is worth, from good to bad.
 struct Shade {
   double metres;
@@ -33,7 +37,7 @@ const char* shade_of(double metres) {
 
 }  // namespace
 
-Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
+Picture draw_pitch(const Picture& picture, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks) {
   Canvas canvas(picture);
   const double unit = std::max(1.0, picture.size().width / 1500.0);
@@ -41,8 +45,8 @@ Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vect
   for (const geometry::PitchLine& line : lines) {
     std::optional<Vector<2>> last;
     for (const Vector<2>& place : line.points) {
-      auto here = camera.project({place.x(), place.y(), 0});
-      if (here && !camera.in_picture(*here)) here.reset();
+      auto here = view.pixel(place);
+      if (here && !in_picture(*here, view.size())) here.reset();
       if (last && here) strokes.push_back({point(*last), point(*here)});
       last = here;
     }

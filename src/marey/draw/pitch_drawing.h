@@ -19,9 +19,9 @@ struct DrawnClick {
   std::string name;
 };
 
-/// The pitch's lines (`lines` in the world, m) as the camera sees them laid over its picture, the paint that was found, and the
+/// The pitch's lines (`lines` in the world, m) as the view shows them laid over its picture, the paint that was found, and the
 /// clicks: those that do not fit with their names. To check by eye whether a calibration is right.
-Picture draw_pitch(const Picture& picture, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
+Picture draw_pitch(const Picture& picture, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks);
 
 /// A map of the pitch, SVG, coloured by `metres(x, y)`: how far a pixel's error reaches on the ground. Nothing is drawn where it

@@ -7,12 +7,31 @@
 namespace marey::geometry {
 namespace {
 
-std::optional<Vector<2>> ground_seen(const Camera& camera, const Vector<2>& pixel) {
-  const auto ray = camera.ray(pixel);
-  if (!ray) return std::nullopt;
-  const double down = -ray->direction.z() * (ray->origin.z() < 0 ? -1 : 1);  // towards the ground, from whichever side
+std::optional<Vector<2>> plane_met(const Ray& ray) {
+  const double down = -ray.direction.z() * (ray.origin.z() < 0 ? -1 : 1);  // towards the ground, from whichever side
   if (down <= 1e-9) return std::nullopt;
-  return ray->origin.head<2>() + ray->direction.head<2>() * (std::abs(ray->origin.z()) / down);
+  return ray.origin.head<2>() + ray.direction.head<2>() * (std::abs(ray.origin.z()) / down);
+}
+
+// Newton's method from where the ray meets the plane: the ground's slopes are far less than the ray's, so that each step leaves a
+// small share of the error. A ray that grazes the ground meets it nowhere that could be told.
+std::optional<Vector<2>> surface_met(const Ray& ray, const GroundSurface& surface) {
+  constexpr int kSteps = 30;
+  constexpr double kClose = 1e-9;  // m
+  auto place = plane_met(ray);
+  if (!place) return std::nullopt;
+  const Vector<2> across = ray.direction.head<2>() / -ray.direction.z();  // m over the ground for each m that the ray sinks
+  double height = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const double gap = surface.height(*place) - height;
+    if (std::abs(gap) < kClose) return place;
+    const double closing = 1 + surface.slope(*place).dot(across);
+    if (!(closing > 0.05)) return std::nullopt;
+    const double rise = gap / closing;
+    height += rise;
+    *place -= rise * across;
+  }
+  return std::nullopt;
 }
 
 // A homography has no sign. The foot of the picture shows the ground before the camera: its weight is made positive.
@@ -23,6 +42,10 @@ Matrix<3> before_the_camera(const Matrix<3>& ground_from_image, cv::Size size) {
 
 }  // namespace
 
+std::optional<Vector<2>> ground_met(const Ray& ray, const GroundSurface& surface) {
+  return surface.flat() ? plane_met(ray) : surface_met(ray, surface);
+}
+
 GroundView::GroundView(const Matrix<3>& ground_from_image, cv::Size size)
     : view_(Homography{before_the_camera(ground_from_image, size), before_the_camera(ground_from_image, size).inverse(), size}) {}
 
@@ -31,13 +54,21 @@ cv::Size GroundView::size() const {
   return std::get<Homography>(view_).size;
 }
 
+const GroundSurface& GroundView::surface() const {
+  static const GroundSurface level;
+  const Whole* whole = std::get_if<Whole>(&view_);
+  return whole ? whole->surface : level;
+}
+
 std::optional<GroundView::Place> GroundView::place(const Vector<2>& pixel) const {
-  if (const Camera* whole = camera()) {
-    const auto ground = ground_seen(*whole, pixel);
+  if (const Whole* whole = std::get_if<Whole>(&view_)) {
+    const auto ray = whole->camera.ray(pixel);
+    const auto ground = ray ? ground_met(*ray, whole->surface) : std::nullopt;
     if (!ground) return std::nullopt;
-    const auto seen = whole->project_with_jacobian({ground->x(), ground->y(), 0});
+    const auto seen = whole->camera.project_with_jacobian({ground->x(), ground->y(), whole->surface.height(*ground)});
     if (!seen) return std::nullopt;
-    const Matrix<2> by_ground = seen->by_world.leftCols<2>();
+    Matrix<2> by_ground = seen->by_world.leftCols<2>();
+    if (!whole->surface.flat()) by_ground += seen->by_world.col(2) * whole->surface.slope(*ground).transpose();
     if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
     return Place{*ground, by_ground.inverse()};
   }
@@ -49,7 +80,8 @@ std::optional<GroundView::Place> GroundView::place(const Vector<2>& pixel) const
 }
 
 std::optional<Vector<2>> GroundView::pixel(const Vector<2>& ground) const {
-  if (const Camera* whole = camera()) return whole->project({ground.x(), ground.y(), 0});
+  if (const Whole* whole = std::get_if<Whole>(&view_))
+    return whole->camera.project({ground.x(), ground.y(), whole->surface.height(ground)});
   const Homography& view = std::get<Homography>(view_);
   const Vector<3> at = view.image_from_ground * ground.homogeneous();
   // inverse(H) maps back to (pixel, 1) / weight: a positive last entry means a positive weight, thus before the camera.

@@ -4,13 +4,18 @@
 #include <variant>
 
 #include "marey/geometry/camera.h"
+#include "marey/geometry/ground_surface.h"
 
 namespace marey::geometry {
 
-/// How a view meets the ground, the plane z = 0 of the world: a whole camera, or a bare homography where nothing more is known.
+/// Where a ray meets the ground, from whichever side; nothing where it rises from it, or grazes it.
+std::optional<Vector<2>> ground_met(const Ray& ray, const GroundSurface& surface);
+
+/// How a view meets the ground, the plane z = 0 of the world or a surface near it: a whole camera, or a bare homography where
+/// nothing more is known, which holds for whatever surface it was found on.
 class GroundView {
  public:
-  explicit GroundView(const Camera& camera) : view_(camera) {}
+  explicit GroundView(const Camera& camera, const GroundSurface& surface = {}) : view_(Whole{camera, surface}) {}
 
   /// `ground_from_image`: (x, y, 1) in px to homogeneous ground coordinates in m; invertible, of any scale. `size` in px.
   GroundView(const Matrix<3>& ground_from_image, cv::Size size);
@@ -27,15 +32,24 @@ class GroundView {
   std::optional<Vector<2>> pixel(const Vector<2>& ground) const;
 
   /// The whole camera, where it is known.
-  const Camera* camera() const { return std::get_if<Camera>(&view_); }
+  const Camera* camera() const {
+    const Whole* whole = std::get_if<Whole>(&view_);
+    return whole ? &whole->camera : nullptr;
+  }
+  /// The ground that the camera looks at; level for a homography, which knows no heights.
+  const GroundSurface& surface() const;
   cv::Size size() const;
 
  private:
+  struct Whole {
+    Camera camera;
+    GroundSurface surface;
+  };
   struct Homography {
     Matrix<3> ground_from_image, image_from_ground;  // scaled so that what is before the camera has positive weight
     cv::Size size;
   };
-  std::variant<Camera, Homography> view_;
+  std::variant<Whole, Homography> view_;
 };
 
 }  // namespace marey::geometry

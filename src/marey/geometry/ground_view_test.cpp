@@ -48,6 +48,35 @@ TEST(GroundView, CameraAndHomographyLeadThereAndBack) {
   }
 }
 
+TEST(GroundView, ACrownedGroundLeadsThereAndBack) {
+  const Camera camera = over_the_pitch(kLens);
+  for (const double ridge : {0.0, 0.7}) {
+    const GroundSurface crowned{.middle = {0, 34}, .half = {52.5, 34}, .across = 0.3, .along = 0.2, .dome = 0.1, .ridge = ridge};
+    const GroundView view(camera, crowned);
+    expect_round_trip(view);
+    EXPECT_NEAR(view.surface().height({0, 34}), 0.6, 1e-12);
+    const auto pixel = view.pixel({0, 34});
+    ASSERT_TRUE(pixel);
+    EXPECT_LT((*pixel - *camera.project({0, 34, 0.6})).norm(), 1e-9);
+    EXPECT_GT((GroundView(camera).place(*pixel)->ground - Vector<2>(0, 34)).norm(), 3) << "or a plane would do";
+  }
+}
+
+TEST(GroundView, ALevelSurfaceIsThePlaneToTheLastBit) {
+  const Camera camera = over_the_pitch(kLens);
+  GroundSurface level;
+  level.middle = {3, 7}, level.half = {40, 20}, level.ridge = 0.5;
+  for (double x = 0; x < 1920; x += 190) {
+    for (double y = 0; y < 1080; y += 107) {
+      const auto plane = GroundView(camera).place({x, y}), surface = GroundView(camera, level).place({x, y});
+      ASSERT_EQ(plane.has_value(), surface.has_value());
+      if (!plane) continue;
+      EXPECT_EQ(plane->ground, surface->ground);
+      EXPECT_EQ(plane->by_pixel, surface->by_pixel);
+    }
+  }
+}
+
 TEST(GroundView, NothingStandsInTheSkyOrBehindTheCamera) {
   const Camera camera = over_the_pitch(kLens);
   EXPECT_FALSE(GroundView(camera).place({960, 0}));

@@ -126,6 +126,7 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const calibrate::pitch::PitchView& view = run.views[i];
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
+    const GroundView ground(found.camera, run.calibration.fit.ground);
     if (!view.empty_ground.empty()) {
       std::vector<Vector<2>> paint;
       for (const calibrate::pitch::LineSighting& seen : found.lines) paint.push_back(seen.pixel);
@@ -133,9 +134,8 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
       for (std::size_t k = 0; k < view.points.size(); ++k)
         clicks.push_back({view.points[k].pixel, found.inlier[k] != 0, view.points[k].name});
       draw::write_picture(joined(options.pictures, view.name + ".jpg"),
-                          draw::draw_pitch(Picture(view.empty_ground), found.camera, lines, paint, clicks));
+                          draw::draw_pitch(Picture(view.empty_ground), ground, lines, paint, clicks));
     }
-    const GroundView ground(found.camera);
     WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
     map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
                                   [&](const Vector<2>& pitch) -> std::optional<double> {
@@ -169,9 +169,16 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options, const Hooks& hoo
   run.warnings.insert(run.warnings.end(), run.offsets.warnings.begin(), run.offsets.warnings.end());
 }
 
+/// Whether cameras that are not clicked in were calibrated before: their ground stays as it is.
+bool others_stand_on_it(const Rig& rig, const std::map<std::string, std::string>& clicks) {
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                     [&](const RigCamera& camera) { return !clicks.contains(camera.name) && camera.camera(); });
+}
+
 /// What was found, in the rig.
 void enter(PitchRun& run) {
   run.rig.ground_from_world = run.calibration.ground_from_world;
+  run.rig.ground = run.calibration.fit.ground;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
@@ -212,7 +219,11 @@ PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string
     run.views.push_back(view_of(camera, given->second, run.warnings));
     run.cameras.push_back(camera.name);
   }
-  run.calibration = calibrate::pitch::calibrate_pitch(run.views, options.pitch);
+  calibrate::pitch::PitchCalibrationOptions pitch = options.pitch;
+  if (pitch.known == calibrate::pitch::GroundKnown::nothing && others_stand_on_it(run.rig, clicks))
+    pitch.known = calibrate::pitch::GroundKnown::wholly;
+  pitch.ground = run.rig.ground;
+  run.calibration = calibrate::pitch::calibrate_pitch(run.views, pitch);
   enter(run);
   if (!options.pictures.empty()) draw(run, options);
   put_in_step(run, options, hooks);

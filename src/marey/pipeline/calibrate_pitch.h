@@ -20,12 +20,13 @@ struct PitchRun {
 };
 
 struct PitchRunOptions {
-  calibrate::pitch::PitchCalibrationOptions pitch;
-  bool synced = false;   ///< the cameras run on one clock: those without an offset have 0
-  std::string pictures;  ///< a folder for overlays and the accuracy maps; empty for none
+  calibrate::pitch::PitchCalibrationOptions pitch;  ///< a ground known wholly is the rig's
+  bool synced = false;                              ///< the cameras run on one clock: those without an offset have 0
+  std::string pictures;                             ///< a folder for overlays and the accuracy maps; empty for none
 };
 
-/// Calibrates the rig's cameras over a pitch: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
+/// Calibrates the rig's cameras over a pitch, all over one ground, which is the rig's where others of its cameras were calibrated
+/// over that already: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
 /// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Where the rig
 /// does not say when cameras were started, that is found from how people move (`find_rig_offsets`). Throws Error
 /// where a file cannot be read, a camera is not in the rig, or the clicks do not decide; Stopped.

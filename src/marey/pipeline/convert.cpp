@@ -50,7 +50,10 @@ ConvertSummary convert_rig(const std::string& from, const std::string& to, const
   refuse_axes(from, options, "is a calibration, whose z is up always");
   const Rig rig = format.read_rig(from);
   other.write_rig(rig, to);
-  return {.format = "a calibration", .counted = "cameras", .count = std::ssize(rig.cameras), .warnings = {}};
+  ConvertSummary summary{.format = "a calibration", .counted = "cameras", .count = std::ssize(rig.cameras), .warnings = {}};
+  if (!rig.ground.flat() && other.name != "marey")
+    summary.warnings.push_back(fmt::format("{}: that the ground is not level is not told: this format cannot", to));
+  return summary;
 }
 
 /// Of people on the ground users count the places, of others the frames.

@@ -16,32 +16,35 @@ namespace {
 constexpr double kSmallest = 12;   // px; a smaller body has no shape
 constexpr double kBeyondArea = 5;  // m; who stands so far outside is followed until it is plain whether they come in
 
+/// Somebody who stands there, in the view of a whole camera.
+std::optional<Box> person_at(const GroundView& view, const Vector<2>& place) {
+  return reconstruct::person_box(*view.camera(), {place.x(), place.y(), view.surface().height(place)});
+}
+
 /// The size of people at each place of a calibrated camera's picture, where they count or nearly so.
-detect::people::PersonSizeMap sizes_over(const Camera& camera, const reconstruct::GroundArea& area, const cv::Rect& part) {
-  const GroundView view(camera);
+detect::people::PersonSizeMap sizes_over(const GroundView& view, const reconstruct::GroundArea& area, const cv::Rect& part) {
   return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
             const auto place = view.place({x + part.x, y + part.y});
             if (!place || !area.holds(place->ground, kBeyondArea)) return std::nullopt;
-            const auto box = reconstruct::person_box(camera, place->ground);
+            const auto box = person_at(view, place->ground);
             if (!box || box->height < kSmallest) return std::nullopt;
             return detect::people::PersonSize{box->height, box->width};
           }};
 }
 
 /// The part of the picture, even-sided, in which somebody who counts may be seen.
-cv::Rect part_with_people(const Camera& camera, const reconstruct::GroundArea& area) {
-  const cv::Size size = camera.size();
+cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea& area) {
+  const cv::Size size = view.size();
   const cv::Rect whole({}, size);
   if (!area.bounded()) return whole;
   constexpr int step = 32;
-  const GroundView view(camera);
   std::optional<Box> all;
   // Feet may be below the picture while the head is in it.
   for (int y = 0; y < 3 * size.height / 2; y += step) {
     for (int x = -step; x <= size.width + step; x += step) {
       const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
       if (!place || !area.holds(place->ground, kBeyondArea)) continue;
-      const auto box = reconstruct::person_box(camera, place->ground);
+      const auto box = person_at(view, place->ground);
       if (!box || box->height < kSmallest) continue;
       all = all ? geometry::hull(*all, *box) : *box;
     }
@@ -78,28 +81,29 @@ std::vector<std::optional<reconstruct::PersonRows>> rows_of(const detect::Detect
 
 }  // namespace
 
-GroundView ground_view_of(const RigCamera& camera) {
+GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface& ground) {
   if (!camera.camera_from_world && !camera.ground_from_image)
     throw Error("camera \"{}\": how it sees the ground is not known; run marey calibrate pitch, or give its ground_from_image",
                 camera.name);
   if (camera.source.empty() && !camera.size)
     throw Error("camera \"{}\" brings detections: the size of its pictures must be told; add size = [width, height] to the rig",
                 camera.name);
-  if (const auto view = camera.ground_view()) return *view;
+  if (const auto view = camera.ground_view(ground)) return *view;
   throw Error("camera \"{}\": its lens or the size of its pictures is not known; calibrate it", camera.name);
 }
 
 GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
                            const GroundCameraOptions& options)
     : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)) {
-  const Camera* whole = view_at(Timestamp{}).camera();
+  const GroundView& view = view_at(Timestamp{});
+  const Camera* whole = view.camera();
   if (feed.has_pictures()) {
     detect::DetectorOptions detector = options.detector;
     if (whole != nullptr) {
-      const cv::Rect part = part_with_people(*whole, area);
+      const cv::Rect part = part_with_people(view, area);
       if (part.size() != whole->size()) part_ = part;
       if (detect::people::PeopleOptions* people = detect::people_options_of(detector))
-        people->sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(*whole, area, part));
+        people->sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(view, area, part));
     }
     detector_ = detect::make_detector(detector);
   }
@@ -116,7 +120,7 @@ GroundCamera::GroundCamera(GroundCamera&&) noexcept = default;
 
 std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time) const {
   const GroundView& view = view_at(time);
-  if (const Camera* camera = view.camera()) return reconstruct::person_box(*camera, ground);
+  if (view.camera() != nullptr) return person_at(view, ground);
   const auto foot = view.pixel(ground);
   if (!foot) return std::nullopt;
   if (!learned_) return detector_->body_at(*foot);

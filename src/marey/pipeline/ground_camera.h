@@ -23,7 +23,7 @@ struct GroundCameraOptions {
 };
 
 /// How a camera sees the ground at the beginning. Throws Error, with the camera's name, where that is not known.
-GroundView ground_view_of(const RigCamera& camera);
+GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface& ground);
 
 class GroundCamera {
  public:

@@ -21,9 +21,10 @@ bool looks_at_ground(const RigCamera& camera) {
 /// Follows people in one camera alone, by its own clock.
 class SingleCamera {
  public:
-  SingleCamera(const RigCamera& camera, const reconstruct::GroundArea& area, const RigOffsetsOptions& options)
+  SingleCamera(const RigCamera& camera, const geometry::GroundSurface& ground, const reconstruct::GroundArea& area,
+               const RigOffsetsOptions& options)
       : feed_(without_offset(camera), CameraId{}, {.rate_hz = options.rate_hz}),
-        views_(ground_views({ground_view_of(feed_.camera())})),
+        views_(ground_views({ground_view_of(feed_.camera(), ground)})),
         camera_(feed_, views_, area, {.detector = options.detector}),
         tracker_(track::ground::make_ground_tracker(options.tracker, views_)),
         seconds_(options.seconds) {}
@@ -63,11 +64,12 @@ class SingleCamera {
 
 /// The paths that each of these cameras sees, followed side by side. `hooks` are called on this thread.
 std::vector<std::vector<calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
+                                                                    const geometry::GroundSurface& ground,
                                                                     const reconstruct::GroundArea& area,
                                                                     const RigOffsetsOptions& options, const Hooks& hooks) {
   std::vector<std::unique_ptr<SingleCamera>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
-                    [&](std::size_t i) { runs[i] = std::make_unique<SingleCamera>(*cameras[i], area, options); });
+                    [&](std::size_t i) { runs[i] = std::make_unique<SingleCamera>(*cameras[i], ground, area, options); });
   std::vector<char> goes_on(cameras.size(), 1);
   const auto total = runs.front()->frames();
   for (std::int64_t done = 1; std::find(goes_on.begin(), goes_on.end(), 1) != goes_on.end(); ++done) {
@@ -142,7 +144,7 @@ RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area,
     assumed.push_back(camera.offset_s.value_or(0));
   }
   if (cameras.size() < 2) return result;
-  const auto paths = follow_alone(cameras, area, options, hooks);
+  const auto paths = follow_alone(cameras, rig.ground, area, options, hooks);
   const auto found = calibrate::pitch::find_ground_offsets(paths, assumed, options.search);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const RigCamera& camera = *cameras[i];

@@ -160,7 +160,7 @@ class GroundStage final : public PeopleOnGround {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
     std::vector<GroundView> views;
-    for (const RigCamera& camera : rig_.cameras) views.push_back(ground_view_of(camera));
+    for (const RigCamera& camera : rig_.cameras) views.push_back(ground_view_of(camera, rig_.ground));
     views_ = ground_views(std::move(views));
     const GroundCameraOptions how{.detector = options_.detector, .prime = !options_.live};
     std::vector<std::optional<GroundCamera>> opened(feeds.size());

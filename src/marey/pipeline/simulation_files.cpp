@@ -230,6 +230,7 @@ void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs
   if (!options.films) return;
   Rig boxes = known, start = known;
   start.ground_from_world.reset();
+  start.ground = {};
   start.calibration.reset();
   for (RigCamera& camera : boxes.cameras) {
     camera.source.clear();

@@ -216,7 +216,7 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
     for (const Sample& sample : instant->samples)
       places[{static_cast<int>(instant->index), number(sample.track)}] = sample.position.head<2>();
   }
-  const GroundView view = *rig.cameras[1].ground_view();
+  const GroundView view = *rig.cameras[1].ground_view(rig.ground);
   const format::tracks::MotTable boxes = format::tracks::read_mot(folder / "cam2_out.txt", format::tracks::MotKind::tracks);
   EXPECT_GT(boxes.boxes.size(), 1500U);
   std::size_t near = 0;

@@ -5,12 +5,11 @@
 
 namespace marey::reconstruct {
 
-std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, const PersonShape& shape) {
-  const Vector<2> away = ground - camera.centre().head<2>();
+std::optional<Box> person_box(const Camera& camera, const Vector<3>& foot, const PersonShape& shape) {
+  const Vector<2> away = foot.head<2>() - camera.centre().head<2>();
   const double distance = away.norm();
   if (!(distance > 1e-6)) return std::nullopt;  // right under the camera no person has a width or a height
   const Vector<2> aside = 0.5 * shape.width / distance * Vector<2>(-away.y(), away.x());
-  const Vector<3> foot(ground.x(), ground.y(), 0);
   const auto feet = camera.project(foot);
   const auto head = camera.project(foot + Vector<3>(0, 0, shape.height));
   const Vector<3> middle = foot + Vector<3>(0, 0, 0.5 * shape.height);

@@ -13,8 +13,8 @@ struct PersonShape {
   double width = 0.55;  ///< of the silhouette of a person who walks, from whichever side
 };
 
-/// The box of a person who stands at `ground` (m, on z = 0), as the camera sees it, px: also where it lies outside the picture.
-/// Nothing where the person is behind the camera or beyond what the lens shows.
-std::optional<Box> person_box(const Camera& camera, const Vector<2>& ground, const PersonShape& shape = {});
+/// The box of a person whose feet are at `foot` (m, in the world), as the camera sees it, px: also where it lies outside the
+/// picture. Nothing where the person is behind the camera or beyond what the lens shows.
+std::optional<Box> person_box(const Camera& camera, const Vector<3>& foot, const PersonShape& shape = {});
 
 }  // namespace marey::reconstruct

@@ -20,7 +20,7 @@ TEST(PersonView, TheBoxGoesFromTheFeetToTheCrown) {
   const Camera camera = camera_on_a_mast();
   const PersonShape shape;
   for (const Vector<2>& place : {Vector<2>(0, 25), Vector<2>(5, 40), Vector<2>(-15, 60)}) {
-    const auto box = person_box(camera, place, shape);
+    const auto box = person_box(camera, {place.x(), place.y(), 0}, shape);
     ASSERT_TRUE(box);
     const auto feet = camera.project({place.x(), place.y(), 0});
     const auto crown = camera.project({place.x(), place.y(), shape.height});
@@ -32,7 +32,7 @@ TEST(PersonView, TheBoxGoesFromTheFeetToTheCrown) {
 }
 
 TEST(PersonView, NobodyIsSeenBehindTheCamera) {
-  EXPECT_FALSE(person_box(camera_on_a_mast(), {0, -30}));
+  EXPECT_FALSE(person_box(camera_on_a_mast(), {0, -30, 0}));
 }
 
 }  // namespace

@@ -65,6 +65,30 @@ TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
   }
 }
 
+TEST(PlacePeople, OnACrownedPitchPeopleStandOnTheCrown) {
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, beside_the_pitch().camera_from_world(), {1920, 1080});
+  const geometry::GroundSurface crowned{.middle = {0, 34}, .half = {52.5, 34}, .across = 0.3, .along = 0.2};
+  for (double y = 6; y <= 62; y += 8) {
+    const Vector<2> place(y / 4, y);
+    const double floor = crowned.height(place);
+    const Vector<2> foot = camera.project({place.x(), place.y(), floor}).value();
+    const Vector<2> head = camera.project({place.x(), place.y(), floor + 1.75}).value();
+    const double tall = foot.y() - head.y(), wide = 0.35 * tall;
+    const Box box{foot.x() - (wide - 1) / 2, head.y() + 0.5, wide, tall};
+    const auto on_crown = placed(box, GroundView(camera, crowned)), on_plane = placed(box, GroundView(camera));
+    ASSERT_TRUE(on_crown && on_plane);
+    EXPECT_LT((on_crown->value - place).norm(), 0.02) << y;
+    EXPECT_GT((on_plane->value - place).norm(), 0.2) << y << ": or the crown would not matter";
+    // Feet cut off by the picture's border: the head alone says where, and stands on the crown too.
+    const Camera cut(camera.lens(), camera.camera_from_world(), {1920, static_cast<int>(foot.y() - 0.3 * tall)});
+    const Box shown{box.left, box.top, box.width, cut.size().height - box.top};
+    const auto by_head = placed(shown, GroundView(cut, crowned)), by_head_on_plane = placed(shown, GroundView(cut));
+    ASSERT_TRUE(by_head && by_head_on_plane);
+    EXPECT_LT((by_head->value - place).norm(), 0.1) << y;  // heads lean aside in a picture
+    EXPECT_GT((by_head_on_plane->value - place).norm(), 0.2) << y;
+  }
+}
+
 TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
   const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, beside_the_pitch().camera_from_world(), {1920, 1080});
   for (double y = 6; y <= 70; y += 8) {

@@ -15,6 +15,7 @@ namespace {
 
 // The search narrows as the camera gets better (units of `find_lines`, for a picture of 3,072 px; more or less for others).
 constexpr double kReaches[] = {14, 12, 10, 10, 8};
+constexpr double kLastReaches[] = {8, 6};  // when lens and ground are known together
 constexpr double kReferenceWidth = 3072;
 constexpr double kSampleStep = 0.25;   // m
 constexpr double kFarthestClick = 50;  // px: what is clicked further off its line is no click on it
@@ -49,8 +50,8 @@ std::vector<geometry::PitchLine> lines_in_world(const geometry::PitchSize& size,
   return lines;
 }
 
-void measure_lines(PitchViewResult& result) {
-  const GroundView view(result.camera);
+void measure_lines(const geometry::GroundSurface& ground, PitchViewResult& result) {
+  const GroundView view(result.camera, ground);
   std::vector<double> pixels, metres;
   for (const LineSighting& seen : result.lines) {
     const auto expected = view.pixel(seen.ground);
@@ -66,8 +67,8 @@ void measure_lines(PitchViewResult& result) {
 }
 
 /// Clicks against the camera; an outlier is given the other name on the pitch that would suit it.
-void measure_points(const std::vector<PitchPoint>& points, const Matrix<3>& ground_from_world, PitchViewResult& result) {
-  const GroundView view(result.camera);
+void measure_points(const std::vector<PitchPoint>& points, const GroundView& view, const Matrix<3>& ground_from_world,
+                    PitchViewResult& result) {
   result.error_px.clear();
   for (const PitchPoint& point : points) {
     const auto pixel = view.pixel(point.ground);
@@ -97,10 +98,9 @@ constexpr double kClickSigma = 3;  // px
 
 /// Clicks along a line, each against the piece of the line that it is nearest to.
 std::vector<LineSighting> sightings_of(const std::vector<PitchClickedLine>& clicked, const Matrix<3>& world_from_ground,
-                                       const Camera& camera) {
+                                       const GroundView& view) {
   constexpr int pieces = 400;
   std::vector<LineSighting> result;
-  const GroundView view(camera);
   for (const PitchClickedLine& line : clicked) {
     const Vector<2> from = (world_from_ground * line.from.homogeneous()).hnormalized();
     const Vector<2> to = (world_from_ground * line.to.homogeneous()).hnormalized();
@@ -109,7 +109,7 @@ std::vector<LineSighting> sightings_of(const std::vector<PitchClickedLine>& clic
       std::optional<LineSighting> best;
       for (int i = 0; i <= pieces; ++i) {
         const Vector<2> place = from + (to - from) * i / pieces;
-        const auto here = camera.project_with_jacobian({place.x(), place.y(), 0});
+        const auto here = view.camera()->project_with_jacobian({place.x(), place.y(), view.surface().height(place)});
         if (!here || (here->pixel - pixel).norm() >= nearest) continue;
         nearest = (here->pixel - pixel).norm();
         const Vector<2> along = here->by_world.leftCols<2>() * (to - from).normalized();
@@ -128,19 +128,69 @@ PitchViewResult calibrate_view(const PitchView& view, const std::vector<PitchPoi
   const PitchCamera start = camera_from_points(view.name, points, view.size);
   PitchViewResult result{start.camera, start.inlier, start.error_px, {}, {}, {}, 0, 0, 0, 0};
   const auto refine_on = [&](const std::vector<LineSighting>& painted) {
-    std::vector<LineSighting> all = sightings_of(view.lines, world_from_ground, result.camera);
+    std::vector<LineSighting> all = sightings_of(view.lines, world_from_ground, GroundView(result.camera));
     all.insert(all.end(), painted.begin(), painted.end());
     if (!all.empty()) result.camera = refine(result.camera, points, result.inlier, all, !painted.empty());
   };
   refine_on({});
   if (view.empty_ground.empty()) return result;
   for (const double reach : kReaches) {
-    result.lines = find_lines(view.empty_ground, result.camera, lines, reach * view.size.width / kReferenceWidth);
+    result.lines = find_lines(view.empty_ground, GroundView(result.camera), lines, reach * view.size.width / kReferenceWidth);
     if (result.lines.empty()) return result;
     refine_on(result.lines);
   }
-  result.inlier = points_near(result.camera, points);
   return result;
+}
+
+/// The points of a view, in the world.
+std::vector<PitchPoint> points_in_world(const PitchView& view, const Matrix<3>& world_from_ground) {
+  std::vector<PitchPoint> points = view.points;
+  for (PitchPoint& point : points) point.ground = (world_from_ground * point.ground.homogeneous()).hnormalized();
+  return points;
+}
+
+constexpr double kClickOutlier = 4;       // of a click's error
+constexpr double kLeastClickOutlier = 6;  // px: no user clicks better than this always
+
+std::vector<char> clicks_that_fit(const std::vector<PitchPoint>& points, const GroundView& view, double scale) {
+  std::vector<char> fits;
+  for (const PitchPoint& point : points) {
+    const auto pixel = view.pixel(point.ground);
+    fits.push_back(click_error(view, point) < kClickOutlier * std::max(1.0, scale) ||
+                   (pixel && (*pixel - point.pixel).norm() < kLeastClickOutlier));
+  }
+  return fits;
+}
+
+/// All views over one ground; the paint is sought again where they then expect it.
+void fit_together(const std::vector<PitchView>& views, const PitchCalibrationOptions& options, const Matrix<3>& world_from_ground,
+                  const std::vector<geometry::PitchLine>& lines, PitchCalibration& result) {
+  geometry::GroundSurface ground;
+  ground.half = Vector<2>(options.size.length, options.size.width) / 2;
+  ground.middle = (world_from_ground * (result.corner + ground.half).homogeneous()).hnormalized();
+  if (options.known == GroundKnown::wholly && !options.ground.flat()) ground = options.ground;
+  const auto round = [&] {
+    std::vector<PitchEvidence> evidence;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const PitchViewResult& nearly = result.views[i];
+      evidence.push_back({nearly.camera, points_in_world(views[i], world_from_ground), nearly.lines,
+                          sightings_of(views[i].lines, world_from_ground, GroundView(nearly.camera, ground))});
+    }
+    result.fit = fit_pitch(evidence, ground, options.known);
+    ground = result.fit.ground;
+    for (std::size_t i = 0; i < views.size(); ++i) result.views[i].camera = result.fit.cameras[i];
+  };
+  round();
+  for (const double reach : kLastReaches) {
+    bool any = false;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].empty_ground.empty() || result.views[i].lines.empty()) continue;
+      result.views[i].lines = find_lines(views[i].empty_ground, GroundView(result.views[i].camera, ground), lines,
+                                         reach * views[i].size.width / kReferenceWidth);
+      any = true;
+    }
+    if (any) round();
+  }
 }
 
 }  // namespace
@@ -162,11 +212,16 @@ PitchCalibration calibrate_pitch(const std::vector<PitchView>& views, const Pitc
   const Matrix<3> world_from_ground = result.ground_from_world.inverse();
   const auto lines = lines_in_world(options.size, result.corner, world_from_ground);
   for (const PitchView& view : views) {
-    std::vector<PitchPoint> points = view.points;
-    for (PitchPoint& point : points) point.ground = (world_from_ground * point.ground.homogeneous()).hnormalized();
-    PitchViewResult& one = result.views.emplace_back(calibrate_view(view, points, world_from_ground, lines));
-    measure_lines(one);
-    measure_points(points, result.ground_from_world, one);
+    result.views.push_back(calibrate_view(view, points_in_world(view, world_from_ground), world_from_ground, lines));
+  }
+  fit_together(views, options, world_from_ground, lines, result);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    PitchViewResult& one = result.views[i];
+    const GroundView view(one.camera, result.fit.ground);
+    const std::vector<PitchPoint> points = points_in_world(views[i], world_from_ground);
+    one.inlier = clicks_that_fit(points, view, result.fit.click_scale);
+    measure_lines(result.fit.ground, one);
+    measure_points(points, view, result.ground_from_world, one);
   }
   return result;
 }

@@ -7,7 +7,9 @@
 #include <opencv2/core.hpp>
 
 #include "marey/calibrate/pitch/pitch_camera.h"
+#include "marey/calibrate/pitch/pitch_fit.h"
 #include "marey/core/geometry.h"
+#include "marey/geometry/ground_surface.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::calibrate::pitch {
@@ -23,11 +25,13 @@ struct PitchView {
 
 struct PitchCalibrationOptions {
   geometry::PitchSize size;
+  GroundKnown known = GroundKnown::nothing;
+  geometry::GroundSurface ground = {};  ///< in the world, where it is known wholly
 };
 
 /// How one camera came out.
 struct PitchViewResult {
-  Camera camera;                                      ///< in a right-handed world, m, z up, the pitch on z = 0
+  Camera camera;                                      ///< in a right-handed world, m, z up, the pitch's corners on z = 0
   std::vector<char> inlier;                           ///< for each point
   std::vector<double> error_px;                       ///< for each point: from the click to where the camera sees its place
   std::vector<std::optional<double>> error_m;         ///< for each point, on the ground; nothing where the click is in the sky
@@ -41,10 +45,12 @@ struct PitchCalibration {
   Matrix<3> ground_from_world =
       Matrix<3>::Identity();             ///< the users' frame from the world's (x, y, 1): a reflection where theirs is left-handed
   Vector<2> corner = Vector<2>::Zero();  ///< m: where in the users' frame the pitch's corner with the smallest x and y lies
+  PitchFit fit;                          ///< of all views: their ground, in the world, and how sure it all is
   std::vector<PitchViewResult> views;
 };
 
-/// Lens and pose of every camera over one pitch, from points clicked by hand and then from the white lines themselves. Throws Error
+/// Lens and pose of every camera over one pitch and the heights of its ground, from points clicked by hand and then from the white
+/// lines themselves. Throws Error
 /// where a view's points do not decide a camera, or where the views contradict each other: one of them has left and right
 /// exchanged.
 PitchCalibration calibrate_pitch(const std::vector<PitchView>& views, const PitchCalibrationOptions& options = {});

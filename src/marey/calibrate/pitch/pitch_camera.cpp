@@ -8,8 +8,8 @@
 
 #include <Eigen/LU>
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
 
+#include "marey/calibrate/pitch/pitch_residual.h"
 #include "marey/calibrate/solve.h"
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
@@ -29,10 +29,6 @@ struct Start {
   double strength = 0;
   double cost = std::numeric_limits<double>::infinity();
 };
-
-Vector<2> middle_of(cv::Size size) {
-  return {(size.width - 1) / 2.0, (size.height - 1) / 2.0};
-}
 
 /// Least squares with both sides scaled about their middle (Hartley); nothing where the points do not decide it.
 std::optional<Matrix<3>> homography(const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to,
@@ -130,53 +126,13 @@ void check(const std::string& name, const std::vector<PitchPoint>& points) {
 
 // --- Lens and pose together ----------------------------------------------------------------------------------------------
 
-// focal, principal 2, distortion 8, angle-axis 3, translation 3
-constexpr int kFocal = 0, kPrincipal = 1, kDistortion = 3, kRotation = 11, kTranslation = 14, kNumbers = 17;
-using Numbers = std::array<double, kNumbers>;
-
-constexpr double kNearest = 0.5;  // m before the camera
-
-Numbers numbers_of(const Camera& camera) {
-  const auto& lens = std::get<geometry::BrownLens>(camera.lens());
-  Numbers p{};
-  p[kFocal] = lens.focal.x();
-  p[kPrincipal] = lens.principal.x();
-  p[kPrincipal + 1] = lens.principal.y();
-  std::copy(lens.distortion.begin(), lens.distortion.end(), p.begin() + kDistortion);
-  const Vector<3> rotation = geometry::angle_axis_of(camera.camera_from_world().rotation);
-  std::copy_n(rotation.data(), 3, p.begin() + kRotation);
-  std::copy_n(camera.camera_from_world().translation.data(), 3, p.begin() + kTranslation);
-  return p;
-}
-
-Camera camera_of(const Numbers& p, cv::Size size) {
-  geometry::BrownLens lens{{p[kFocal], p[kFocal]}, {p[kPrincipal], p[kPrincipal + 1]}, {}};
-  std::copy_n(p.begin() + kDistortion, 8, lens.distortion.begin());
-  return {lens,
-          {geometry::rotation_from({p[kRotation], p[kRotation + 1], p[kRotation + 2]}),
-           {p[kTranslation], p[kTranslation + 1], p[kTranslation + 2]}},
-          size};
-}
-
-/// What would come to lie behind the camera is held before it, so that every step of the solver has a cost.
-template <typename T>
-Eigen::Matrix<T, 2, 1> project(const T* p, const Vector<2>& ground) {
-  const T place[3] = {T(ground.x()), T(ground.y()), T(0)};
-  Eigen::Matrix<T, 3, 1> at;
-  ceres::AngleAxisRotatePoint(p + kRotation, place, at.data());
-  for (int i = 0; i < 3; ++i) at(i) += p[kTranslation + i];
-  if (!(at.z() > T(kNearest))) at.z() = T(kNearest);
-  const Eigen::Matrix<T, 2, 1> plane = geometry::BrownLens::distort(at, p + kDistortion);
-  return {p[kFocal] * plane.x() + p[kPrincipal], p[kFocal] * plane.y() + p[kPrincipal + 1]};
-}
-
 struct PointError {
   PitchPoint point;
   double sigma;
 
   template <typename T>
   bool operator()(const T* p, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = project(p, point.ground);
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, point.ground, T(0));
     error[0] = (pixel.x() - point.pixel.x()) / sigma;
     error[1] = (pixel.y() - point.pixel.y()) / sigma;
     return true;
@@ -189,33 +145,22 @@ struct LineError {
 
   template <typename T>
   bool operator()(const T* p, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = project(p, seen.ground);
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, seen.ground, T(0));
     error[0] = ((pixel.x() - seen.pixel.x()) * seen.normal.x() + (pixel.y() - seen.pixel.y()) * seen.normal.y()) / sigma;
-    return true;
-  }
-};
-
-/// What is known of any lens before anything is seen; deviation 0 holds the number.
-struct LensPrior {
-  Numbers middle{}, sigma{};
-
-  template <typename T>
-  bool operator()(const T* p, T* error) const {
-    for (int i = kPrincipal; i < kRotation; ++i) error[i - kPrincipal] = sigma[i] > 0 ? (p[i] - middle[i]) / sigma[i] : T(0);
     return true;
   }
 };
 
 LensPrior prior_of(cv::Size size, bool free_lens) {
   LensPrior prior;
-  prior.middle[kPrincipal] = middle_of(size).x();
-  prior.middle[kPrincipal + 1] = middle_of(size).y();
+  prior.middle.p[CameraNumbers::principal] = middle_of(size).x();
+  prior.middle.p[CameraNumbers::principal + 1] = middle_of(size).y();
   const double off_centre = (free_lens ? 0.05 : 0.02) * size.width;
-  prior.sigma[kPrincipal] = prior.sigma[kPrincipal + 1] = off_centre;
+  prior.sigma.p[CameraNumbers::principal] = prior.sigma.p[CameraNumbers::principal + 1] = off_centre;
   const double tangential = free_lens ? 0.02 : 0.002;
   const double rational = free_lens ? 0.3 : 0;
   const std::array<double, 8> distortion = {0.5, 0.5, tangential, tangential, 0.3, rational, rational, rational};
-  std::copy(distortion.begin(), distortion.end(), prior.sigma.begin() + kDistortion);
+  std::copy(distortion.begin(), distortion.end(), prior.sigma.p.begin() + CameraNumbers::distortion);
   return prior;
 }
 
@@ -223,30 +168,32 @@ constexpr double kClickSigmaAlone = 3;         // px: how well people click
 constexpr double kClickSigmaBesideLines = 15;  // px: where lines are seen, clicks only keep the whole in place
 constexpr double kPaintSigmaMetres = 0.04;     // m: how well it was laid, and how level the ground is
 
-double solve(Numbers& p, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
+double solve(CameraNumbers& numbers, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
              const std::vector<LineSighting>& sightings, bool free_lens) {
   ceres::Problem problem;
   const double click = sightings.empty() ? kClickSigmaAlone : kClickSigmaBesideLines;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!inlier[i]) continue;
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, kNumbers>(new PointError{points[i], click}),
-                             new ceres::SoftLOneLoss(1), p.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, CameraNumbers::count>(new PointError{points[i], click}),
+                             new ceres::SoftLOneLoss(1), numbers.p.data());
   }
   for (const LineSighting& seen : sightings) {
     const double sigma = std::hypot(seen.sigma_px, kPaintSigmaMetres * seen.pixels_per_metre);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LineError, 1, kNumbers>(new LineError{seen, sigma}),
-                             new ceres::CauchyLoss(1), p.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LineError, 1, CameraNumbers::count>(new LineError{seen, sigma}),
+                             new ceres::CauchyLoss(1), numbers.p.data());
   }
   const LensPrior prior = prior_of(size, free_lens);
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LensPrior, kRotation - kPrincipal, kNumbers>(new LensPrior(prior)),
-                           nullptr, p.data());
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<LensPrior, CameraNumbers::rotation - CameraNumbers::principal, CameraNumbers::count>(
+          new LensPrior(prior)),
+      nullptr, numbers.p.data());
   std::vector<int> held;
-  for (int i = kPrincipal; i < kRotation; ++i) {
-    if (prior.sigma[i] == 0) held.push_back(i);
+  for (int i = CameraNumbers::principal; i < CameraNumbers::rotation; ++i) {
+    if (prior.sigma.p[i] == 0) held.push_back(i);
   }
-  if (!held.empty()) problem.SetManifold(p.data(), new ceres::SubsetManifold(kNumbers, held));
-  problem.SetParameterLowerBound(p.data(), kFocal, 0.1 * size.width);
-  problem.SetParameterUpperBound(p.data(), kFocal, 100.0 * size.width);
+  if (!held.empty()) problem.SetManifold(numbers.p.data(), new ceres::SubsetManifold(CameraNumbers::count, held));
+  problem.SetParameterLowerBound(numbers.p.data(), CameraNumbers::focal, 0.1 * size.width);
+  problem.SetParameterUpperBound(numbers.p.data(), CameraNumbers::focal, 100.0 * size.width);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 200;
@@ -302,6 +249,28 @@ std::vector<char> inliers_of(const std::vector<double>& errors) {
 
 }  // namespace
 
+CameraNumbers CameraNumbers::of(const Camera& camera) {
+  const auto& lens = std::get<geometry::BrownLens>(camera.lens());
+  CameraNumbers numbers;
+  numbers.p[focal] = lens.focal.x();
+  numbers.p[principal] = lens.principal.x();
+  numbers.p[principal + 1] = lens.principal.y();
+  std::copy(lens.distortion.begin(), lens.distortion.end(), numbers.p.begin() + distortion);
+  const Vector<3> turn = geometry::angle_axis_of(camera.camera_from_world().rotation);
+  std::copy_n(turn.data(), 3, numbers.p.begin() + rotation);
+  std::copy_n(camera.camera_from_world().translation.data(), 3, numbers.p.begin() + translation);
+  return numbers;
+}
+
+Camera CameraNumbers::camera(cv::Size size) const {
+  geometry::BrownLens lens{{p[focal], p[focal]}, {p[principal], p[principal + 1]}, {}};
+  std::copy_n(p.begin() + distortion, 8, lens.distortion.begin());
+  return {lens,
+          {geometry::rotation_from({p[rotation], p[rotation + 1], p[rotation + 2]}),
+           {p[translation], p[translation + 1], p[translation + 2]}},
+          size};
+}
+
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   check(name, points);
   const Start start = find_start(points, size);
@@ -322,18 +291,18 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
     agree.push_back(((start.image_from_ground * point.ground.homogeneous()).hnormalized() - straight).norm() < kReach);
   }
   double best = std::numeric_limits<double>::infinity();
-  Numbers numbers{};
+  CameraNumbers numbers;
   for (const double focal : focal_candidates(start.image_from_ground)) {
-    Numbers p = numbers_of(camera_at(start, focal, size));
+    CameraNumbers p = CameraNumbers::of(camera_at(start, focal, size));
     const double cost = solve(p, size, points, agree, {}, false);
     if (cost < best) best = cost, numbers = p;
   }
   if (!std::isfinite(best)) throw Error("{}: no camera over a level pitch fits the points; is each with its place on it?", name);
   for (int round = 0; round < 4; ++round) {
-    agree = inliers_of(errors_of(camera_of(numbers, size), points));
+    agree = inliers_of(errors_of(numbers.camera(size), points));
     solve(numbers, size, points, agree, {}, false);
   }
-  PitchCamera result{camera_of(numbers, size), {}, {}};
+  PitchCamera result{numbers.camera(size), {}, {}};
   result.error_px = errors_of(result.camera, points);
   result.inlier = inliers_of(result.error_px);
   std::vector<double> sorted = result.error_px;
@@ -349,15 +318,11 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
   return result;
 }
 
-std::vector<char> points_near(const Camera& camera, const std::vector<PitchPoint>& points) {
-  return inliers_of(errors_of(camera, points));
-}
-
 Camera refine(const Camera& start, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
               const std::vector<LineSighting>& sightings, bool free_lens) {
-  Numbers numbers = numbers_of(start);
+  CameraNumbers numbers = CameraNumbers::of(start);
   solve(numbers, start.size(), points, inlier, sightings, free_lens);
-  return camera_of(numbers, start.size());
+  return numbers.camera(start.size());
 }
 
 }  // namespace marey::calibrate::pitch

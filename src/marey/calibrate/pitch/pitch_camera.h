@@ -54,9 +54,6 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
 /// above, so that the sign of the map decides. Throws Error as `camera_from_points`.
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size);
 
-/// Which points lie about as near to where the camera sees them as most of them do.
-std::vector<char> points_near(const Camera& camera, const std::vector<PitchPoint>& points);
-
 /// Refines lens and pose on points (those not `inlier` are left out) and sightings of lines, both with a robust loss.
 /// `free_lens`: all coefficients of the lens move, else only those of a simple lens.
 Camera refine(const Camera& start, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,

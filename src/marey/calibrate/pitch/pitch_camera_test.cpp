@@ -73,7 +73,6 @@ TEST(PitchCamera, WrongPointsAreNoInliers) {
   points[7].ground += Vector<2>(0, 12);
   const PitchCamera found = camera_from_points("left", points, kSize);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(found.inlier[i] != 0, i != 2 && i != 7) << i;
-  EXPECT_EQ(points_near(truth, points), found.inlier);
   EXPECT_NEAR(found.error_px[2], std::hypot(80, 30), 8);
 }
 

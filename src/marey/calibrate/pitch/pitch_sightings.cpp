@@ -44,16 +44,18 @@ struct Sample {
 };
 
 /// A sample in the picture, or nothing.
-std::optional<Sample> sample_at(const Camera& camera, const Vector<2>& ground, const Vector<2>& tangent, double margin) {
-  const auto lift = [](const Vector<2>& p) { return Vector<3>(p.x(), p.y(), 0); };
-  const auto seen = camera.project_with_jacobian(lift(ground));
+std::optional<Sample> sample_at(const GroundView& view, const Vector<2>& ground, const Vector<2>& tangent, double margin) {
+  const Camera& camera = *view.camera();
+  const Vector<2> slope = view.surface().slope(ground);
+  const auto on_ground = [&](const Vector<2>& way) { return Vector<3>(way.x(), way.y(), slope.dot(way)); };
+  const auto seen = camera.project_with_jacobian({ground.x(), ground.y(), view.surface().height(ground)});
   if (!seen) return std::nullopt;
   const Vector<2> inside = Vector<2>(camera.size().width - 1 - margin, camera.size().height - 1 - margin);
   if ((seen->pixel.array() < margin).any() || (seen->pixel.array() > inside.array()).any()) return std::nullopt;
-  const Vector<2> along = (seen->by_world * lift(tangent)).normalized();
+  const Vector<2> along = (seen->by_world * on_ground(tangent)).normalized();
   const Vector<2> normal(-along.y(), along.x());
   const Vector<2> aside(-tangent.y(), tangent.x());
-  return Sample{ground, seen->pixel, normal, geometry::kPitchLineWidth * std::abs(normal.dot(seen->by_world * lift(aside)))};
+  return Sample{ground, seen->pixel, normal, geometry::kPitchLineWidth * std::abs(normal.dot(seen->by_world * on_ground(aside)))};
 }
 
 double brightness(const cv::Mat& luma, const Vector<2>& at) {
@@ -236,7 +238,7 @@ void find_piece(const cv::Mat& luma, const std::vector<Sample>& samples, int lin
 
 }  // namespace
 
-std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
+std::vector<LineSighting> find_lines(const cv::Mat& luma, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
                                      double reach) {
   std::vector<LineSighting> found;
   for (std::size_t number = 0; number < lines.size(); ++number) {
@@ -244,7 +246,7 @@ std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, 
     const bool is_arc = line.tangents.front().dot(line.tangents.back()) < 1 - 1e-9;
     std::vector<Sample> samples;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
-      if (const auto sample = sample_at(camera, line.points[i], line.tangents[i], reach + 8)) samples.push_back(*sample);
+      if (const auto sample = sample_at(view, line.points[i], line.tangents[i], reach + 8)) samples.push_back(*sample);
       if (is_arc && samples.size() >= kLongestArc) {
         find_piece(luma, samples, static_cast<int>(number), reach, found);
         samples.clear();

@@ -13,14 +13,15 @@
 
 #include "marey/calibrate/pitch/pitch_camera.h"
 #include "marey/core/geometry.h"
+#include "marey/geometry/ground_view.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::calibrate::pitch {
 
-/// `luma`: CV_8UC1, people not in it (a median over time). `lines` in the world, m, z = 0. `reach`: how far from where
-/// it is expected a line may be, px where the pitch is far away, 3 cm each near by. Lines that are not seen, or not for a quarter
-/// of what is in the picture, give no sighting.
-std::vector<LineSighting> find_lines(const cv::Mat& luma, const Camera& camera, const std::vector<geometry::PitchLine>& lines,
+/// `luma`: CV_8UC1, people not in it (a median over time). `view` has a whole camera. `lines` in the world, m, on its ground.
+/// `reach`: how far from where it is expected a line may be, px where the pitch is far away, 3 cm each near by. Lines that are not
+/// seen, or not for a quarter of what is in the picture, give no sighting.
+std::vector<LineSighting> find_lines(const cv::Mat& luma, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
                                      double reach);
 
 }  // namespace marey::calibrate::pitch

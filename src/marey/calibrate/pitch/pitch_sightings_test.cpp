@@ -43,7 +43,7 @@ const std::vector<geometry::PitchLine>& lines() {
 
 TEST(PitchSightings, PaintIsFoundWhereItIs) {
   const Camera truth = above_the_corner();
-  const auto found = find_lines(painted(truth, lines()), truth, lines(), 10);
+  const auto found = find_lines(painted(truth, lines()), GroundView(truth), lines(), 10);
   ASSERT_GT(found.size(), 200U);
   std::vector<double> off;
   for (const LineSighting& one : found) {
@@ -59,7 +59,7 @@ TEST(PitchSightings, PaintIsFoundWhereItIs) {
 
 TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
   const Camera truth = above_the_corner(), guess = above_the_corner({0.3, 0.2, 0.1});
-  const auto found = find_lines(painted(truth, lines()), guess, lines(), 20);
+  const auto found = find_lines(painted(truth, lines()), GroundView(guess), lines(), 20);
   ASSERT_GT(found.size(), 150U);
   std::vector<double> expected, seen;
   for (const LineSighting& one : found) {
@@ -75,21 +75,21 @@ TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
 
 TEST(PitchSightings, BareGrassAndNoiseShowNoLine) {
   const Camera camera = above_the_corner();
-  EXPECT_TRUE(find_lines(cv::Mat(kPaintedSize, CV_8UC1, cv::Scalar(80)), camera, lines(), 10).empty());
-  EXPECT_TRUE(find_lines(painted(camera, lines()), camera, {}, 10).empty());
+  EXPECT_TRUE(find_lines(cv::Mat(kPaintedSize, CV_8UC1, cv::Scalar(80)), GroundView(camera), lines(), 10).empty());
+  EXPECT_TRUE(find_lines(painted(camera, lines()), GroundView(camera), {}, 10).empty());
   board::Noise noise(5);
   cv::Mat rough(kPaintedSize, CV_8UC1);
   for (int y = 0; y < rough.rows; ++y) {
     for (int x = 0; x < rough.cols; ++x) rough.at<unsigned char>(y, x) = cv::saturate_cast<unsigned char>(80 + noise.gaussian(2));
   }
-  EXPECT_LT(find_lines(rough, camera, lines(), 10).size(), 40U);
+  EXPECT_LT(find_lines(rough, GroundView(camera), lines(), 10).size(), 40U);
 }
 
 TEST(PitchSightings, AStripeThatIsNoPaintIsNotTaken) {
   const Camera camera = above_the_corner();
   cv::Mat luma(kPaintedSize, CV_8UC1, cv::Scalar(80));
   luma.colRange(300, 420).setTo(110);  // the mower's
-  EXPECT_LT(find_lines(luma, camera, lines(), 10).size(), 10U);
+  EXPECT_LT(find_lines(luma, GroundView(camera), lines(), 10).size(), 10U);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "marey/calibrate/pitch/pitch_deviation.h"
 #include "marey/calibrate/pitch/pitch_sightings.h"
 #include "marey/core/error.h"
 #include "marey/core/geometry.h"
@@ -29,13 +30,14 @@ Camera turned_on_the_stand(double turn) {
 }
 
 /// What a user clicks: corners and crossings in view, `sigma` px off. `left_handed`: his y grows towards the camera.
-std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_handed, unsigned seed) {
+std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_handed, unsigned seed,
+                               const geometry::GroundSurface& ground = {}) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise;
   std::vector<PitchPoint> points;
   for (const double x : {0.0, 5.5, 11.0, 16.5, 44.0, 52.5, 61.0, 88.5, 99.5, 105.0}) {
     for (const double y : {0.0, 13.84, 24.84, 34.0, 43.16, 54.16, 68.0}) {
-      const auto pixel = camera.project({x, y, 0});
+      const auto pixel = camera.project({x, y, ground.height({x, y})});
       if (!pixel || !camera.in_picture(*pixel)) continue;
       points.push_back(
           {{x, left_handed ? 68 - y : y}, *pixel + sigma * Vector<2>(noise(random), noise(random)), fmt::format("({},{})", x, y)});
@@ -45,9 +47,9 @@ std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_han
 }
 
 /// Grass with the lines painted on it: every pixel looks at its own place on the ground, 4 × 4 times.
-cv::Mat painted(const Camera& camera) {
+cv::Mat painted(const Camera& camera, const geometry::GroundSurface& ground = {}) {
   cv::Mat picture(kClickedSize, CV_8UC1, cv::Scalar(90));
-  const GroundView view(camera);
+  const GroundView view(camera, ground);
   for (int y = 0; y < kClickedSize.height; ++y) {
     for (int x = 0; x < kClickedSize.width; ++x) {
       const auto middle = view.place({static_cast<double>(x), static_cast<double>(y)});
@@ -66,16 +68,17 @@ cv::Mat painted(const Camera& camera) {
   return picture;
 }
 
-double worst_on_the_ground(const Camera& found, const Camera& truth, const Matrix<3>& ground_from_world, bool left_handed) {
-  const GroundView seen(found);
+/// Camera `index` of what was found against the truth, m.
+double worst_on_the_ground(const PitchCalibration& found, const GroundView& truth, bool left_handed, std::size_t index = 0) {
+  const GroundView seen(found.views[index].camera, found.fit.ground);
   double worst = 0;
   for (double x = 0; x <= 52; x += 4) {
     for (double y = 0; y <= 60; y += 4) {
-      const auto pixel = truth.project({x, y, 0});
-      if (!pixel || !truth.in_picture(*pixel)) continue;
+      const auto pixel = truth.pixel({x, y});
+      if (!pixel || !truth.camera()->in_picture(*pixel)) continue;
       const auto place = seen.place(*pixel);
       if (!place) return 1e9;
-      const Vector<2> ground = (ground_from_world * place->ground.homogeneous()).hnormalized();
+      const Vector<2> ground = (found.ground_from_world * place->ground.homogeneous()).hnormalized();
       worst = std::max(worst, (ground - Vector<2>(x, left_handed ? 68 - y : y)).norm());
     }
   }
@@ -87,7 +90,7 @@ TEST(PitchCalibration, PerfectClicksGiveTheCameraBack) {
   for (const bool left_handed : {false, true}) {
     const auto result = calibrate_pitch({{"left", kClickedSize, clicks(truth, 0, left_handed, 1), {}, {}}}, {kUsualPitch});
     EXPECT_EQ(result.ground_from_world(1, 1), left_handed ? -1 : 1);
-    EXPECT_LT(worst_on_the_ground(result.views[0].camera, truth, result.ground_from_world, left_handed), 0.15);
+    EXPECT_LT(worst_on_the_ground(result, GroundView(truth), left_handed), 0.15);
     EXPECT_GT(result.views[0].camera.centre().z(), 0) << "the camera looks down upon the pitch";
   }
 }
@@ -98,12 +101,54 @@ TEST(PitchCalibration, LinesCorrectWhatClicksGetWrong) {
   const auto points = clicks(truth, 2, true, 3);
   const auto clicked = calibrate_pitch({{"left", kClickedSize, points, {}, {}}}, {kUsualPitch});
   const auto refined = calibrate_pitch({{"left", kClickedSize, points, {}, ground}}, {kUsualPitch});
-  const double before = worst_on_the_ground(clicked.views[0].camera, truth, clicked.ground_from_world, true);
-  const double after = worst_on_the_ground(refined.views[0].camera, truth, refined.ground_from_world, true);
+  const double before = worst_on_the_ground(clicked, GroundView(truth), true);
+  const double after = worst_on_the_ground(refined, GroundView(truth), true);
   EXPECT_LT(after, 0.3);
   EXPECT_LT(after, before);
   EXPECT_GT(refined.views[0].lines.size(), 500u);
   EXPECT_LT(refined.views[0].line_median_m, 0.03);
+}
+
+/// Two cameras of one stand, clicked in with a gross one among it, and their pictures.
+std::vector<PitchView> two_views(const geometry::GroundSurface& ground) {
+  std::vector<PitchView> views;
+  for (const double turn : {-0.45, 0.45}) {
+    const Camera truth = turned_on_the_stand(turn);
+    PitchView& view = views.emplace_back(
+        PitchView{turn < 0 ? "left" : "right", kClickedSize, clicks(truth, 1, true, 5, ground), {}, painted(truth, ground)});
+    view.points[2].pixel += Vector<2>(70, -50);
+  }
+  return views;
+}
+
+TEST(PitchCalibration, ACrownIsNotLeftToTheLens) {
+  const geometry::GroundSurface crowned{.middle = {52.5, 34}, .half = {52.5, 34}, .across = 0.3, .along = 0.2};
+  const auto views = two_views(crowned);
+  const auto found = calibrate_pitch(views, {.size = kUsualPitch});
+  const auto level = calibrate_pitch(views, {.size = kUsualPitch, .known = GroundKnown::level});
+  EXPECT_NEAR(found.fit.ground.height(found.fit.ground.middle), 0.5, 0.05);
+  EXPECT_TRUE(level.fit.ground.flat());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const GroundView truth(turned_on_the_stand(i == 0 ? -0.45 : 0.45), crowned);
+    EXPECT_LT(worst_on_the_ground(found, truth, true, i), 0.35) << views[i].name;
+    EXPECT_GT(worst_on_the_ground(level, truth, true, i), 0.7) << "or there would be nothing to show";
+    EXPECT_NEAR(geometry::focal_of(found.views[i].camera.lens()).x(), 1050, 5);
+    EXPECT_EQ(std::count(found.views[i].inlier.begin(), found.views[i].inlier.end(), 0), 1);
+    EXPECT_FALSE(found.views[i].inlier[2]);
+    const auto unsure = place_covariance(found.fit, i, found.fit.ground.middle);
+    ASSERT_TRUE(unsure);
+    EXPECT_GT(unsure->trace(), 0);
+    EXPECT_LT(std::sqrt(unsure->trace()), 0.3);
+  }
+  const auto kept = calibrate_pitch({views[0]}, {.size = kUsualPitch, .known = GroundKnown::wholly, .ground = found.fit.ground});
+  EXPECT_EQ(kept.fit.ground.terms(), found.fit.ground.terms());
+}
+
+TEST(PitchCalibration, ALevelPitchStaysLevel) {
+  const auto found = calibrate_pitch(two_views({}), {.size = kUsualPitch});
+  EXPECT_LT(std::abs(found.fit.ground.height(found.fit.ground.middle)), 0.03);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_LT(worst_on_the_ground(found, GroundView(turned_on_the_stand(i == 0 ? -0.45 : 0.45)), true, i), 0.3);
 }
 
 TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
@@ -126,8 +171,7 @@ TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
   }
   const auto without = calibrate_pitch({{"left", kClickedSize, few, {}, {}}}, {kUsualPitch});
   const auto with = calibrate_pitch({{"left", kClickedSize, few, lines, {}}}, {kUsualPitch});
-  EXPECT_LT(worst_on_the_ground(with.views[0].camera, truth, with.ground_from_world, true),
-            0.5 * worst_on_the_ground(without.views[0].camera, truth, without.ground_from_world, true));
+  EXPECT_LT(worst_on_the_ground(with, GroundView(truth), true), 0.5 * worst_on_the_ground(without, GroundView(truth), true));
 }
 
 TEST(PitchCalibration, WrongNamesAreFoundAndNamed) {

@@ -22,7 +22,8 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kLargestPicture = 1e5;  // px, of either side
+constexpr double kLargestPicture = 1e5;                       // px, of either side
+constexpr double kSmallestGround = 10, kLargestGround = 500;  // m, from the middle to its lines
 
 bool whole(double value) {
   return value == std::floor(value);
@@ -146,6 +147,46 @@ Rigid3 y_up_from_z_up() {
   return turn;
 }
 
+std::optional<Vector<2>> read_pair(const Section& section, std::string_view key) {
+  const auto pair = section.numbers(key, 2, 2, "[x, y] in m");
+  if (!section.has(key)) section.problem(key, fmt::format("{} is missing; add {} = [x, y] in m", key, key));
+  if (!pair) return std::nullopt;
+  return Vector<2>((*pair)[0], (*pair)[1]);
+}
+
+/// [world.ground]: level where anything is wrong with it.
+geometry::GroundSurface read_ground(const toml::node& node, Problems& problems) {
+  geometry::GroundSurface ground;
+  if (!node.is_table()) {
+    problems.add(node.source(), "ground must be a table: [world.ground]");
+    return ground;
+  }
+  const Section section(*node.as_table(), "ground", problems);
+  section.only({"middle", "half", "across", "along", "dome", "ridge"});
+  const auto middle = read_pair(section, "middle"), half = read_pair(section, "half");
+  if (half && !(half->minCoeff() >= kSmallestGround && half->maxCoeff() <= kLargestGround)) {
+    section.problem("half", fmt::format("half is [{}, {}]; from the middle to the lines it must be {} to {} m", half->x(),
+                                        half->y(), kSmallestGround, kLargestGround));
+    return {};
+  }
+  const auto height = [&](std::string_view key) {
+    const double value = section.number(key).value_or(0);
+    if (std::abs(value) <= geometry::GroundSurface::kHighest) return value;
+    section.problem(key,
+                    fmt::format("{} is {} m; a pitch is raised by at most {} m", key, value, geometry::GroundSurface::kHighest));
+    return 0.0;
+  };
+  ground.across = height("across"), ground.along = height("along"), ground.dome = height("dome");
+  ground.ridge = section.number("ridge").value_or(0);
+  if (!(ground.ridge >= 0 && ground.ridge <= 1)) {
+    section.problem("ridge", fmt::format("ridge is {}; it must be between 0, a parabola, and 1, a roof", ground.ridge));
+    return {};
+  }
+  if (middle) ground.middle = *middle;
+  if (half) ground.half = *half;
+  return ground;
+}
+
 /// Reads [world]; true where y is up.
 bool read_world(const toml::node& node, Problems& problems, Rig& rig) {
   if (!node.is_table()) {
@@ -153,8 +194,9 @@ bool read_world(const toml::node& node, Problems& problems, Rig& rig) {
     return false;
   }
   const Section section(*node.as_table(), "world", problems);
-  section.only({"up", "ground_from_world"});
+  section.only({"up", "ground_from_world", "ground"});
   rig.ground_from_world = section.invertible("ground_from_world");
+  if (const toml::node* ground = node.as_table()->get("ground")) rig.ground = read_ground(*ground, problems);
   const std::string up = section.text("up").value_or("z");
   if (up != "y" && up != "z") section.problem("up", fmt::format("up is \"{}\"; it must be \"z\" or \"y\"", excerpt(up)));
   return up == "y";

@@ -1,5 +1,6 @@
 #include "marey/format/rig/rig_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
@@ -44,6 +45,41 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+const std::string kCrowned =
+    "[world.ground]\nmiddle = [52.5, -34.0]\nhalf = [52.5, 34.0]\nacross = 0.15\nalong = 0.2\nridge = 0.25\n";
+
+TEST(RigFile, KeepsACrownedGround) {
+  EXPECT_TRUE(parse_rig(kExample, "rig.toml").ground.flat());
+  EXPECT_EQ(rig_text(parse_rig(kExample, "rig.toml")).find("ground]"), std::string::npos) << "a level one is not written";
+  const Rig rig = parse_rig(replaced(kExample, "[[camera]]", kCrowned + "[[camera]]"), "rig.toml");
+  EXPECT_EQ(rig.ground.middle, Vector<2>(52.5, -34));
+  EXPECT_EQ(rig.ground.half, Vector<2>(52.5, 34));
+  EXPECT_EQ(rig.ground.terms(), (std::array<double, 4>{0.15, 0.2, 0, 0.25}));
+  const Rig again = parse_rig(rig_text(rig), "rig.toml");
+  EXPECT_EQ(again.ground.terms(), rig.ground.terms());
+  EXPECT_EQ(again.ground.middle, rig.ground.middle);
+  const GroundView view = again.cameras[0].ground_view(again.ground).value();
+  EXPECT_EQ(view.surface().height({52.5, -34}), rig.ground.height({52.5, -34}));
+}
+
+TEST(RigFile, AGroundThatIsNoneIsRefused) {
+  const auto told = [](const std::string& from, const std::string& to) {
+    return problems_of(replaced(kExample, "[[camera]]", replaced(kCrowned, from, to) + "[[camera]]"));
+  };
+  EXPECT_NE(told("across = 0.15", "across = 50").find("rig.toml:6: ground: across is 50 m; a pitch is raised by at most 2 m"),
+            std::string::npos);
+  for (const char* value : {"nan", "inf", "-inf", "1e300", "\"much\"", "[1]"})
+    EXPECT_NE(told("along = 0.2", fmt::format("along = {}", value)).find("along must be a finite number"), std::string::npos)
+        << value;
+  EXPECT_NE(told("half = [52.5, 34.0]", "half = [52.5, 0.0]").find("must be 10 to 500 m"), std::string::npos);
+  EXPECT_NE(told("half = [52.5, 34.0]\n", "").find("half is missing"), std::string::npos);
+  EXPECT_NE(told("middle = [52.5, -34.0]", "middle = [nan, 0]").find("middle must be [x, y] in m"), std::string::npos);
+  EXPECT_NE(told("ridge = 0.25", "ridge = 1.5").find("ridge is 1.5"), std::string::npos);
+  EXPECT_NE(told("ridge = 0.25", "bump = 1").find("unknown key \"bump\""), std::string::npos);
+  EXPECT_NE(problems_of(replaced(kExample, "[[camera]]", "ground = 3\n[[camera]]")).find("ground must be a table"),
+            std::string::npos);
+}
+
 TEST(RigFile, ReadsTheExample) {
   const Rig rig = parse_rig(kExample, "rig.toml");
   ASSERT_EQ(rig.cameras.size(), 2u);
@@ -59,7 +95,7 @@ TEST(RigFile, ReadsTheExample) {
   EXPECT_TRUE(left.camera());
   EXPECT_FALSE(rig.cameras[1].offset_s) << "nobody said";
   EXPECT_FALSE(rig.cameras[1].camera());
-  EXPECT_TRUE(rig.cameras[1].ground_view());
+  EXPECT_TRUE(rig.cameras[1].ground_view({}));
 }
 
 TEST(RigFile, IsWrittenInItsOwnLayoutAndReadsBackTheSame) {

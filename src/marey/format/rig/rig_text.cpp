@@ -137,6 +137,19 @@ std::string calibration_text(const Rig::Calibration& calibration) {
   return "\n[calibration]\n" + lines.text();
 }
 
+/// Nothing for a level one.
+std::string ground_text(const geometry::GroundSurface& ground) {
+  if (ground.flat()) return "";
+  Lines lines(true);
+  lines.add("middle", row(ground.middle), "m, in the world; how high the ground is above z = 0:");
+  lines.add("half", row(ground.half), "m from the middle to the lines: u and v are 1 there");
+  lines.add("across", number_text(ground.across), "m: across (1 - v^2) + along (1 - u^2) + dome (1 - u^2) (1 - v^2)");
+  lines.add("along", number_text(ground.along));
+  if (ground.dome != 0) lines.add("dome", number_text(ground.dome));
+  if (ground.ridge != 0) lines.add("ridge", number_text(ground.ridge), "0: parabolas as above; 1: roofs");
+  return "\n[world.ground]\n" + lines.text();
+}
+
 }  // namespace
 
 std::string rig_text(const Rig& rig, const std::string& folder) {
@@ -144,7 +157,7 @@ std::string rig_text(const Rig& rig, const std::string& folder) {
   world.add("up", in_quotes("z"), "metres, right-handed");
   if (rig.ground_from_world)
     world.add_matrix("ground_from_world", *rig.ground_from_world, "the ground as its user counts it, of (x, y, 1)");
-  std::string text = "[world]\n" + world.text();
+  std::string text = "[world]\n" + world.text() + ground_text(rig.ground);
   if (rig.calibration) text += calibration_text(*rig.calibration);
   for (const RigCamera& camera : rig.cameras) {
     text += "\n[[camera]]\n" + camera_text(camera, folder, &camera == rig.cameras.data());

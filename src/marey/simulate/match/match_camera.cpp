@@ -24,11 +24,11 @@ MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const Match
     : scene_(scene),
       index_(index),
       rig_camera_(scene.rig.cameras[index]),
-      camera_(*rig_camera_.camera()),
+      view_(rig_camera_.ground_view(scene.rig.ground).value()),
       motion_(scene.seed, scene.options.pitch),
       detector_(detector),
       random_((scene.seed * 64 + index) * 2654435761u + 41) {
-  if (film) film_.emplace(camera_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
+  if (film) film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
 }
 
 double MatchCamera::time() const {
@@ -40,11 +40,11 @@ void MatchCamera::advance() {
   match_time_ = scene_.match_time(time() + rig_camera_.offset_s.value_or(0));
   motion_.advance(match_time_);
   stances_ = scene_.stances(motion_.people());
-  seen_ = people_in_view(camera_, scene_.figures, stances_);
+  seen_ = people_in_view(view_, scene_.figures, stances_);
 }
 
 std::vector<LabelledBox> MatchCamera::detect() {
-  return detect_match(seen_, camera_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
+  return detect_match(seen_, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
                       random_);
 }
 
@@ -53,11 +53,11 @@ Picture MatchCamera::picture() const {
 }
 
 std::vector<MatchClick> MatchCamera::clicks(double noise, int wrong) const {
-  return match_clicks(camera_, scene_.world_from_pitch, scene_.options.pitch, noise, wrong, film_seed());
+  return match_clicks(view_, scene_.world_from_pitch, scene_.options.pitch, noise, wrong, film_seed());
 }
 
 MatchTruth::MatchTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {
-  for (const RigCamera& camera : scene.rig.cameras) cameras_.push_back(*camera.camera());
+  for (const RigCamera& camera : scene.rig.cameras) views_.push_back(*camera.ground_view(scene.rig.ground));
   for (int i = 0; i < kMatchPeople; ++i) people_.push_back({TrackId{i + 1}, match_label(i), std::string(match_team(i))});
 }
 
@@ -66,10 +66,10 @@ Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
   motion_.advance(scene_.match_time(time));
   const auto stances = scene_.stances(motion_.people());
   std::array<CameraMask, kMatchPeople> seen_by{};
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+  for (std::size_t i = 0; i < views_.size(); ++i) {
     std::vector<SeenPerson> own;
     const bool in_step = scene_.rig.cameras[i].offset_s.value_or(0) == 0;
-    if (!in_step) own = people_in_view(cameras_[i], scene_.figures, stances);
+    if (!in_step) own = people_in_view(views_[i], scene_.figures, stances);
     for (const SeenPerson& person : in_step ? cameras[i].seen() : std::span<const SeenPerson>(own)) {
       if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
     }

@@ -65,7 +65,7 @@ class MatchCamera {
   const MatchScene& scene_;
   std::size_t index_;
   const RigCamera& rig_camera_;
-  Camera camera_;
+  GroundView view_;
   MatchMotion motion_;
   MatchDetectorOptions detector_;
   Random random_;
@@ -90,7 +90,7 @@ class MatchTruth {
  private:
   const MatchScene& scene_;
   MatchMotion motion_;
-  std::vector<Camera> cameras_;
+  std::vector<GroundView> views_;
   std::vector<TrackName> people_;
   std::int64_t frame_ = 0;
 };

@@ -20,6 +20,9 @@ class Builder {
   Builder(const MatchCamerasOptions& options, std::uint64_t seed) : options_(options), random_(seed * 2654435761u + 21) {}
 
   Rig build() {
+    rig_.ground = options_.ground;
+    rig_.ground.half = Vector<2>(options_.pitch.length, options_.pitch.width) / 2;
+    rig_.ground.middle = rig_.ground.half;
     switch (options_.stand) {
       case MatchStand::round:
         round();
@@ -29,6 +32,9 @@ class Builder {
         break;
       case MatchStand::corners:
         corners();
+        break;
+      case MatchStand::apart:
+        football();
         break;
     }
     rig_.calibration.emplace().method = "simulated: the exact truth";
@@ -50,8 +56,9 @@ class Builder {
     const double bend = random_.uniform(-0.16, -0.10);
     if (options_.distorted) lens.distortion = {bend, 0.16 * -bend, random_.uniform(-5e-4, 5e-4), random_.uniform(-5e-4, 5e-4)};
     camera.lens = lens;
-    camera.camera_from_world =
-        looking_at(centre, target, options_.stand == MatchStand::football ? random_.uniform(-0.015, 0.015) : 0);
+    camera.camera_from_world = looking_at(
+        centre, target,
+        options_.stand == MatchStand::football || options_.stand == MatchStand::apart ? random_.uniform(-0.015, 0.015) : 0);
     const double offset = random_.uniform(-options_.offset_s, options_.offset_s);
     camera.offset_s = rig_.cameras.empty() ? 0 : offset;
     rig_.cameras.push_back(std::move(camera));
@@ -79,12 +86,14 @@ class Builder {
     Matrix<3> ground_from_world = Matrix<3>::Identity();
     ground_from_world(1, 1) = -1;
     rig_.ground_from_world = ground_from_world;
+    rig_.ground.middle.y() *= -1;
     const double x = options_.pitch.length / 2 - 1 + random_.uniform(-1, 1),
                  y = -(options_.pitch.width + kBehind + random_.uniform(-0.5, 0.5));
     const double height = 7.4 + random_.uniform(-0.2, 0.2);
     for (const double side : {-1.0, 1.0}) {
       const Vector<3> ahead(side * 0.47, 0.87, -0.165);
-      const Vector<3> centre(x + 0.25 * side, y, height);
+      const double off = options_.stand == MatchStand::apart ? options_.pitch.length / 4 : 0.25;
+      const Vector<3> centre(x + off * side, y, height);
       add(side < 0 ? "left" : "right", {3072, 1728}, 0.686, centre, centre + ahead);
     }
   }
@@ -119,6 +128,11 @@ Rig match_cameras(const MatchCamerasOptions& options, std::uint64_t seed) {
     throw Error("pictures of {} x {} pixels; 64 x 64 is the least", options.size->width, options.size->height);
   if (!(options.pitch.length >= 40 && options.pitch.width >= 25))
     throw Error("a pitch of {} x {} m; 40 x 25 m is the least", options.pitch.length, options.pitch.width);
+  const geometry::GroundSurface& ground = options.ground;
+  for (const double height : {ground.across, ground.along, ground.dome}) {
+    if (!(std::abs(height) <= geometry::GroundSurface::kHighest))
+      throw Error("a pitch raised by {} m; up to {} m are possible", height, geometry::GroundSurface::kHighest);
+  }
   return Builder(options, seed).build();
 }
 

@@ -6,6 +6,7 @@
 #include <opencv2/core/types.hpp>
 
 #include "marey/core/rig.h"
+#include "marey/geometry/ground_surface.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::simulate::match {
@@ -16,6 +17,7 @@ enum class MatchStand {
   football,  ///< two on one stand, half a metre apart, 7.4 m up, 14 m behind the touchline: left half and right half, with an
              ///< overlap
   corners,   ///< two behind opposite corners, 15 m up
+  apart,     ///< as `football`, but each stands at its own quarter of the touchline
 };
 
 struct MatchCamerasOptions {
@@ -26,6 +28,7 @@ struct MatchCamerasOptions {
   double offset_s = 0;           ///< cameras were started up to this much before or after the first
   bool distorted = true;         ///< lenses with Brown's distortion, as cheap cameras have; else pinholes
   geometry::PitchSize pitch;
+  geometry::GroundSurface ground = {};  ///< its heights; it is laid under the pitch
 };
 
 /// The exact cameras, "cam1", "cam2", …, of the football stand "left" and "right". x, y and z of the world are the pitch's

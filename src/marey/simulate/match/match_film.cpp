@@ -31,7 +31,7 @@ std::vector<people::Post> goal_posts(const Matrix<3>& world_from_pitch, const ge
   return posts;
 }
 
-people::PeopleRenderer renderer_of(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+people::PeopleRenderer renderer_of(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                    const MatchFilmOptions& options, std::uint64_t seed) {
   people::RenderOptions render;
   render.samples = 3;
@@ -41,11 +41,11 @@ people::PeopleRenderer renderer_of(const Camera& camera, const Matrix<3>& world_
   render.noise = options.noise;
   render.contact = options.contact;
   render.look = options.look;
-  const Picture ground = draw_match_ground(camera, world_from_pitch.inverse(), pitch, seed);
+  const Picture ground = draw_match_ground(view, world_from_pitch.inverse(), pitch, seed);
   // Far outside the picture nothing needs to be drawn, however large a lens would make it.
-  const auto in_reach = [camera](const Vector<3>& point) -> std::optional<people::Sighting> {
-    const auto seen = sight(camera, point);
-    const double reach = camera.size().width;
+  const auto in_reach = [view](const Vector<3>& point) -> std::optional<people::Sighting> {
+    const auto seen = sight(view, point);
+    const double reach = view.size().width;
     if (!seen || std::abs(seen->at.x()) > 2 * reach || std::abs(seen->at.y()) > 2 * reach || seen->scale > reach)
       return std::nullopt;
     return seen;
@@ -73,9 +73,9 @@ std::vector<Vector<2>> known_places(const geometry::PitchSize& pitch) {
 
 }  // namespace
 
-MatchFilm::MatchFilm(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+MatchFilm::MatchFilm(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                      const MatchFilmOptions& options, std::uint64_t seed)
-    : options_(options), seed_(seed), renderer_(renderer_of(camera, world_from_pitch, pitch, options, seed)) {}
+    : options_(options), seed_(seed), renderer_(renderer_of(view, world_from_pitch, pitch, options, seed)) {}
 
 Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
                           std::span<const people::Stance, kMatchPeople> stances, double time, std::int64_t index) const {
@@ -90,16 +90,16 @@ Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
   return renderer_.render(people, conditions).picture;
 }
 
-std::vector<MatchClick> match_clicks(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                      double noise, int wrong, std::uint64_t seed) {
   constexpr double kSlip = 40;  // px
   Random random(seed * 2654435761u + 51);
   std::vector<MatchClick> clicks;
   for (const Vector<2>& place : known_places(pitch)) {
     const Vector<2> at = in_world(world_from_pitch, place);
-    const auto pixel = camera.project({at.x(), at.y(), 0});
+    const auto pixel = view.pixel(at);
     const Vector<2> slip(noise * random.gaussian(), noise * random.gaussian());
-    if (pixel && camera.in_picture(*pixel)) clicks.push_back({place, *pixel + slip});
+    if (pixel && view.camera()->in_picture(*pixel)) clicks.push_back({place, *pixel + slip});
   }
   const int count = std::min(wrong, static_cast<int>(clicks.size()) / 2);
   for (int i = 0; i < count; ++i) {  // in turn put elsewhere and named as its neighbour

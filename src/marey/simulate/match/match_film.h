@@ -22,10 +22,10 @@ struct MatchFilmOptions {
   people::CameraLook look = {};  ///< what lens, sharpening and codec make of the picture
 };
 
-/// A match as one camera films it. Its empty scene is drawn once.
+/// A match as one camera films it; `view` holds the whole camera. Its empty scene is drawn once.
 class MatchFilm {
  public:
-  MatchFilm(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+  MatchFilm(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
             const MatchFilmOptions& options, std::uint64_t seed);
 
   /// The frame `index` at `time`, s since the kick-off. Safe to call from several threads.
@@ -46,7 +46,7 @@ struct MatchClick {
 
 /// What a user would click in a camera's picture: every such place that it sees, `noise` px off in each axis. Of these `wrong`
 /// lie elsewhere or bear another place's name.
-std::vector<MatchClick> match_clicks(const Camera& camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                      double noise, int wrong, std::uint64_t seed);
 
 }  // namespace marey::simulate::match

@@ -20,7 +20,7 @@ Rig small_stand() {
 TEST(MatchGround, LinesLieWhereTheCameraSeesThem) {
   const Rig rig = small_stand();
   const Camera camera = *rig.cameras[0].camera();
-  const Picture ground = draw_match_ground(camera, *rig.ground_from_world, {}, 1);
+  const Picture ground = draw_match_ground(GroundView(camera), *rig.ground_from_world, {}, 1);
   const cv::Mat& luma = ground.luma();
   const auto level = [&](const Vector<2>& pixel) {
     return static_cast<int>(
@@ -37,6 +37,34 @@ TEST(MatchGround, LinesLieWhereTheCameraSeesThem) {
   EXPECT_EQ(bright, asked);
 }
 
+TEST(MatchGround, ACrownedPitchIsPaintedAndClickedWhereItIsSeen) {
+  MatchCamerasOptions options;
+  options.stand = MatchStand::football;
+  options.size = cv::Size(1536, 864);
+  options.ground.across = 0.4, options.ground.along = 0.3;
+  const Rig rig = match_cameras(options, 1);
+  const GroundView view = rig.cameras[0].ground_view(rig.ground).value(), plane(*view.camera());
+  EXPECT_NEAR(rig.ground.height({52.5, -34}), 0.7, 1e-9);
+  const cv::Mat luma = draw_match_ground(view, *rig.ground_from_world, {}, 1).luma();
+  const auto level = [&](const Vector<2>& pixel) {
+    return static_cast<int>(
+        luma.at<std::uint8_t>(static_cast<int>(std::lround(pixel.y())), static_cast<int>(std::lround(pixel.x()))));
+  };
+  int bright = 0, bright_on_plane = 0, asked = 0;
+  for (double x = 30; x < 50; x += 0.5) {
+    const auto on = view.pixel({x, -68}), level_on = plane.pixel({x, -68}), beside = view.pixel({x, -67});
+    if (!on || !level_on || !view.camera()->in_picture(*on) || !view.camera()->in_picture(*level_on)) continue;
+    ++asked;
+    bright += level(*on) > level(*beside) + 30 ? 1 : 0;
+    bright_on_plane += level(*level_on) > level(*beside) + 30 ? 1 : 0;
+  }
+  EXPECT_GT(asked, 20);
+  EXPECT_EQ(bright, asked);
+  EXPECT_LT(bright_on_plane, asked / 2) << "or the crown would not be seen";
+  for (const MatchClick& click : match_clicks(view, rig.ground_from_world->inverse(), {}, 0, 0, 1))
+    EXPECT_LT((*view.pixel({click.ground.x(), -click.ground.y()}) - click.pixel).norm(), 1e-9);
+}
+
 TEST(MatchFilm, PeopleAreDrawnWithinTheirBoxes) {
   const Rig rig = small_stand();
   const Camera camera = *rig.cameras[1].camera();
@@ -45,7 +73,7 @@ TEST(MatchFilm, PeopleAreDrawnWithinTheirBoxes) {
   options.noise = 0;
   options.light_change = 0;
   options.shadows = false;
-  const MatchFilm film(camera, world_from_pitch, {}, options, 1);
+  const MatchFilm film(GroundView(camera), world_from_pitch, {}, options, 1);
   const auto figures = match_figures(1);
   MatchMotion motion(1);
   const auto stances_now = [&] {
@@ -61,7 +89,7 @@ TEST(MatchFilm, PeopleAreDrawnWithinTheirBoxes) {
   cv::absdiff(film.render(figures, first, 3, 0).luma(), film.render(figures, second, 3, 1).luma(), changed);
   EXPECT_GT(cv::countNonZero(changed > 20), 500);
   for (const auto& stances : {first, second}) {
-    for (const SeenPerson& seen : people_in_view(camera, figures, stances)) {
+    for (const SeenPerson& seen : people_in_view(GroundView(camera), figures, stances)) {
       const Box& box = seen.shown;
       const cv::Rect around(static_cast<int>(std::floor(box.left)) - 1, static_cast<int>(std::floor(box.top)) - 1,
                             static_cast<int>(box.width) + 3, static_cast<int>(box.height) + 3);
@@ -79,7 +107,8 @@ TEST(MatchClicks, LieOnThePlacesThatTheyName) {
     const Vector<3> at = world_from_pitch * click.ground.homogeneous();
     return (*camera.project({at.x(), at.y(), 0}) - click.pixel).norm();
   };
-  const auto good = match_clicks(camera, world_from_pitch, {}, 1, 0, 1), bad = match_clicks(camera, world_from_pitch, {}, 1, 2, 1);
+  const auto good = match_clicks(GroundView(camera), world_from_pitch, {}, 1, 0, 1),
+             bad = match_clicks(GroundView(camera), world_from_pitch, {}, 1, 2, 1);
   EXPECT_GE(good.size(), 12u);
   for (const MatchClick& click : good) EXPECT_LT(off(click), 5);
   int wrong = 0;

@@ -42,8 +42,9 @@ people::Rgb times(const people::Rgb& a, double factor) {
 
 class Painter {
  public:
-  Painter(const Camera& camera, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch, std::uint64_t seed)
-      : camera_(camera), pitch_from_world_(pitch_from_world), pitch_(pitch), seed_(seed) {
+  Painter(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch, std::uint64_t seed)
+      : surface_(view.surface()), camera_(*view.camera()), pitch_from_world_(pitch_from_world), pitch_(pitch), seed_(seed) {
+    const Camera& camera = camera_;
     columns_ = camera.size().width / kGrid + 2;
     const int rows = camera.size().height / kGrid + 2;
     const Matrix<3> to_world = camera.camera_from_world().rotation.transpose();
@@ -78,8 +79,10 @@ class Painter {
   std::optional<Vector<2>> on_ground(const Vector<3>& ray) const {
     if (ray.z() > -1e-5) return std::nullopt;
     const double far = -camera_.centre().z() / ray.z();
-    const Vector<2> world = camera_.centre().head<2>() + far * ray.head<2>();
-    const Vector<2> at = (pitch_from_world_ * world.homogeneous()).head<2>();
+    std::optional<Vector<2>> world = camera_.centre().head<2>() + far * ray.head<2>();
+    if (!surface_.flat()) world = geometry::ground_met({camera_.centre(), ray}, surface_);
+    if (!world) return std::nullopt;
+    const Vector<2> at = (pitch_from_world_ * world->homogeneous()).head<2>();
     return outside(at) > kWall ? std::nullopt : std::optional(at);
   }
 
@@ -138,6 +141,7 @@ class Painter {
     return mix(kSky, {236, 239, 244}, cloud);
   }
 
+  const geometry::GroundSurface& surface_;
   const Camera& camera_;
   Matrix<3> pitch_from_world_;
   geometry::PitchSize pitch_;
@@ -148,10 +152,10 @@ class Painter {
 
 }  // namespace
 
-Picture draw_match_ground(const Camera& camera, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch,
+Picture draw_match_ground(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch,
                           std::uint64_t seed) {
-  const Painter painter(camera, pitch_from_world, pitch, seed);
-  cv::Mat bgr(camera.size(), CV_8UC3);
+  const Painter painter(view, pitch_from_world, pitch, seed);
+  cv::Mat bgr(view.size(), CV_8UC3);
   cv::parallel_for_(cv::Range(0, bgr.rows), [&](const cv::Range& rows) {
     for (int y = rows.start; y < rows.end; ++y) painter.paint(bgr, y);
   });

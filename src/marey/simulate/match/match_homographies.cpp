@@ -18,12 +18,12 @@ struct SeenGround {
   Vector<2> ground, pixel;
 };
 
-std::vector<SeenGround> ground_seen_by(const Camera& camera, const geometry::PitchSize& pitch) {
+std::vector<SeenGround> ground_seen_by(const GroundView& view, const geometry::PitchSize& pitch) {
   std::vector<SeenGround> seen;
   for (double x = 0; x <= pitch.length; x += 2) {
     for (double y = 0; y <= pitch.width; y += 2) {
-      const auto pixel = camera.project({x, y, 0});
-      if (pixel && camera.in_picture(*pixel)) seen.push_back({{x, y}, *pixel});
+      const auto pixel = view.pixel({x, y});
+      if (pixel && view.camera()->in_picture(*pixel)) seen.push_back({{x, y}, *pixel});
     }
   }
   return seen;
@@ -82,11 +82,12 @@ Rig known_by_homographies(const Rig& exact, const geometry::PitchSize& pitch, do
   Rig rig = exact;
   for (RigCamera& camera : rig.cameras) {
     const Camera truth = camera.camera().value();
-    const std::vector<SeenGround> seen = ground_seen_by(truth, pitch);
+    const std::vector<SeenGround> seen = ground_seen_by(GroundView(truth, rig.ground), pitch);
     camera.ground_from_image = off_by(seen, truth.size(), pitch, random.uniform(least, most), random);
     camera.lens.reset();
     camera.camera_from_world.reset();
   }
+  rig.ground = {};
   return rig;
 }
 

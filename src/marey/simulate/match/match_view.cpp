@@ -20,13 +20,13 @@ struct Placed {
   double depth = 0;  // m
 };
 
-std::optional<Placed> place(const Camera& camera, const people::Figure& figure, const people::Stance& stance) {
-  const auto foot = sight(camera, {stance.place.x(), stance.place.y(), 0});
+std::optional<Placed> place(const GroundView& view, const people::Figure& figure, const people::Stance& stance) {
+  const auto foot = sight(view, {stance.place.x(), stance.place.y(), 0});
   if (!foot) return std::nullopt;
   Placed placed;
   placed.depth = foot->depth;
   for (const people::Limb& limb : people::pose(figure, stance)) {
-    const auto from = sight(camera, limb.from), to = sight(camera, limb.to);
+    const auto from = sight(view, limb.from), to = sight(view, limb.to);
     if (!from || !to) return std::nullopt;
     const Box box =
         people::bounds(people::RoundCone2{from->at, to->at, limb.from_radius * from->scale, limb.to_radius * to->scale});
@@ -78,9 +78,9 @@ int poisson(double mean, Random& random) {
 }
 
 /// What the box of a person upright at a place of the ground would be; nothing where that is out of the picture.
-std::optional<Box> box_at(const Camera& camera, const Vector<2>& at, double stature) {
-  const auto foot = sight(camera, {at.x(), at.y(), 0}), head = sight(camera, {at.x(), at.y(), stature});
-  if (!foot || !head || !camera.in_picture(foot->at) || !camera.in_picture(head->at)) return std::nullopt;
+std::optional<Box> box_at(const GroundView& view, const Vector<2>& at, double stature) {
+  const auto foot = sight(view, {at.x(), at.y(), 0}), head = sight(view, {at.x(), at.y(), stature});
+  if (!foot || !head || !view.camera()->in_picture(foot->at) || !view.camera()->in_picture(head->at)) return std::nullopt;
   const double height = foot->at.y() - head->at.y();
   if (height < kLeast) return std::nullopt;
   return Box::from_centre((foot->at + head->at) / 2, 0.3 * height, height);
@@ -94,12 +94,13 @@ void wear(people::Figure& figure, const people::Rgb& shirt, const people::Rgb& s
 
 }  // namespace
 
-std::optional<people::Sighting> sight(const Camera& camera, const Vector<3>& point) {
-  const auto seen = camera.project_with_jacobian(point);
+std::optional<people::Sighting> sight(const GroundView& view, const Vector<3>& on_level) {
+  const Vector<3> point = on_level + Vector<3>(0, 0, view.surface().height(on_level.head<2>()));
+  const auto seen = view.camera()->project_with_jacobian(point);
   if (!seen) return std::nullopt;
   // Two of the three directions of space change the pixel: the geometric mean of how much.
   const double scale = std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
-  return people::Sighting{seen->pixel, scale, (point - camera.centre()).norm()};
+  return people::Sighting{seen->pixel, scale, (point - view.camera()->centre()).norm()};
 }
 
 std::array<people::Figure, kMatchPeople> match_figures(std::uint64_t seed) {
@@ -134,12 +135,12 @@ people::Stance match_stance(const MatchPerson& person, const Matrix<3>& world_fr
   return stance;
 }
 
-std::vector<SeenPerson> people_in_view(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
+std::vector<SeenPerson> people_in_view(const GroundView& view, std::span<const people::Figure, kMatchPeople> figures,
                                        std::span<const people::Stance, kMatchPeople> stances) {
-  const Box picture{0, 0, static_cast<double>(camera.size().width), static_cast<double>(camera.size().height)};
+  const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
   std::vector<Placed> all;
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    auto placed = place(camera, figures[i], stances[i]);
+    auto placed = place(view, figures[i], stances[i]);
     if (!placed) continue;
     placed->seen.person = static_cast<int>(i);
     placed->seen.shown = geometry::intersection(placed->seen.whole, picture);
@@ -153,7 +154,7 @@ std::vector<SeenPerson> people_in_view(const Camera& camera, std::span<const peo
   return seen;
 }
 
-std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const Camera& camera, const Matrix<3>& world_from_pitch,
+std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const GroundView& view, const Matrix<3>& world_from_pitch,
                                       const geometry::PitchSize& pitch, std::int32_t frame, const MatchDetectorOptions& options,
                                       Random& random) {
   std::vector<LabelledBox> boxes;
@@ -170,7 +171,7 @@ std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const Ca
   for (int left = poisson(options.false_alarms, random); left > 0; --left) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const Vector<3> at(random.uniform(-kMargin, pitch.length + kMargin), random.uniform(-kMargin, pitch.width + kMargin), 1);
-      const auto box = box_at(camera, (world_from_pitch * at).head<2>(), random.uniform(1.5, 2));
+      const auto box = box_at(view, (world_from_pitch * at).head<2>(), random.uniform(1.5, 2));
       if (!box) continue;
       const double score = std::clamp(random.gaussian(0.55, 0.15), 0.1, 1.0);
       boxes.push_back({frame, LabelledBox::nobody, disturbed(*box, options.size_noise, random), score});

@@ -15,8 +15,9 @@
 
 namespace marey::simulate::match {
 
-/// Where a point of the world is seen by a camera; nothing where it cannot be.
-std::optional<people::Sighting> sight(const Camera& camera, const Vector<3>& point);
+/// Where a point is seen by a view's camera, which must be whole, as in all of these; nothing where it cannot be. Its height counts
+/// from the ground below it: what stands on a crowned pitch is raised with it.
+std::optional<people::Sighting> sight(const GroundView& view, const Vector<3>& point);
 
 /// How each person of a match is built and dressed: white and blue sides, keepers and referees in colours of their own.
 std::array<people::Figure, kMatchPeople> match_figures(std::uint64_t seed);
@@ -33,7 +34,7 @@ struct SeenPerson {
 };
 
 /// Each person of whom something lies within the picture, in the order of their numbers.
-std::vector<SeenPerson> people_in_view(const Camera& camera, std::span<const people::Figure, kMatchPeople> figures,
+std::vector<SeenPerson> people_in_view(const GroundView& view, std::span<const people::Figure, kMatchPeople> figures,
                                        std::span<const people::Stance, kMatchPeople> stances);
 
 /// A person of whom less is to be seen is hardly ever detected.
@@ -49,7 +50,7 @@ struct MatchDetectorOptions {
 
 /// What such a detector says of one frame, from left to right; `margin` m round the pitch is where it sees people who are not
 /// there.
-std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const Camera& camera, const Matrix<3>& world_from_pitch,
+std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const GroundView& view, const Matrix<3>& world_from_pitch,
                                       const geometry::PitchSize& pitch, std::int32_t frame, const MatchDetectorOptions& options,
                                       Random& random);
 

@@ -79,7 +79,7 @@ TEST(MatchView, BoxesHoldHeadAndFeetAndHideWhatIsBehind) {
     const auto stances = stances_of(motion, Matrix<3>::Identity());
     for (const RigCamera& eye : rig.cameras) {
       const Camera camera = *eye.camera();
-      for (const SeenPerson& seen : people_in_view(camera, figures, stances)) {
+      for (const SeenPerson& seen : people_in_view(GroundView(camera), figures, stances)) {
         const auto i = static_cast<std::size_t>(seen.person);
         const Vector<2> at = motion.people()[i].place;
         const auto foot = camera.project({at.x(), at.y(), 0});
@@ -116,16 +116,16 @@ TEST(MatchView, TheDetectorErrsAsOftenAsItSays) {
   constexpr int kFrames = 800;
   for (int k = 0; k < kFrames; ++k) {
     motion.advance(0.2 * k);
-    const auto seen = people_in_view(camera, figures, stances_of(motion, Matrix<3>::Identity()));
+    const auto seen = people_in_view(GroundView(camera), figures, stances_of(motion, Matrix<3>::Identity()));
     const auto detect = [&](const MatchDetectorOptions& options) {
-      return detect_match(seen, camera, Matrix<3>::Identity(), cameras.pitch, k, options, random);
+      return detect_match(seen, GroundView(camera), Matrix<3>::Identity(), cameras.pitch, k, options, random);
     };
     EXPECT_EQ(detect(truthful).size(), seen.size());
     people += static_cast<double>(seen.size());
     found += static_cast<double>(detect(missing).size());
     alarms += static_cast<double>(detect(ghosts).size() - seen.size());
     const std::vector<SeenPerson> one(seen.begin(), seen.begin() + 1);
-    const auto box = detect_match(one, camera, Matrix<3>::Identity(), cameras.pitch, k, noisy, random);
+    const auto box = detect_match(one, GroundView(camera), Matrix<3>::Identity(), cameras.pitch, k, noisy, random);
     squares += std::pow(box.front().box.height / one.front().shown.height - 1, 2);
   }
   EXPECT_NEAR(found / people, 0.9, 0.01);
