@@ -1,21 +1,31 @@
-# marey_unity(TARGET SOURCE ...)
+# marey_unity(TARGET GROUP MOST SOURCE ...)
 #
-# With MAREY_UNITY the compiler reads these sources, one room's or one program's, together, up to twelve at a time. What costs is the headers (Eigen,
-# OpenCV, fmt, the standard library) and what is instantiated out of them, and one source alone needs as much of that as twelve. A source with
-# flags of its own stays alone. Therefore names in a room's unnamed namespaces are distinct, and no source has `using namespace` at its top.
+# With MAREY_UNITY the compiler reads the sources of a group together, up to MOST at a time. What costs is the headers (Eigen, OpenCV, fmt, the standard
+# library) and what is instantiated out of them, and one source alone needs as much of that as all: seven rooms of 38 sources took 70 s of the processor
+# one by one and 48 s as one unit. A group is a room with its inner rooms, or a program. Where sources instantiate much, units are smaller: 21 of calibrate
+# at once need 2 GB. A source with flags of its own stays alone. Therefore names in unnamed namespaces are distinct in a room, and no source has
+# `using namespace` at its top.
 # A precompiled header of the usual heads (Eigen, OpenCV, fmt, core) was tried on top: it is 205 MB, and a unit takes as long with it (on a busy machine, evaluate 9.2 s of the
 # processor against 9.7) or longer (assign 8.6 against 4.5), because reading it costs what parsing the part that is needed does.
 # CMake's own unity builds name their sources by where the checkout lies, so that no compiler's cache serves two of them; these do not.
-function(marey_unity target)
-  if(MAREY_UNITY)
-    cmake_language(EVAL CODE "cmake_language(DEFER CALL marey_write_units ${target} ${ARGN})")  # when the sources' own flags are known
+function(marey_unity target group most)
+  if(NOT MAREY_UNITY)
+    return()
   endif()
-endfunction()
-
-function(marey_write_units target)
-  set(together "")
+  get_property(sources GLOBAL PROPERTY MAREY_UNITY_${target}_${group})
+  if(NOT sources)  # written when all the group's sources and their own flags are known
+    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL marey_write_units ${target} ${group} ${most})")
+  endif()
   foreach(source IN LISTS ARGN)
     cmake_path(ABSOLUTE_PATH source)
+    set_property(GLOBAL APPEND PROPERTY MAREY_UNITY_${target}_${group} ${source})
+  endforeach()
+endfunction()
+
+function(marey_write_units target group most)
+  get_property(sources GLOBAL PROPERTY MAREY_UNITY_${target}_${group})
+  set(together "")
+  foreach(source IN LISTS sources)
     get_source_file_property(options ${source} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
     get_source_file_property(definitions ${source} TARGET_DIRECTORY ${target} COMPILE_DEFINITIONS)
     if(NOT options AND NOT definitions)
@@ -26,24 +36,28 @@ function(marey_write_units target)
   if(count EQUAL 0)
     return()
   endif()
-  # Units of the same size: thirteen sources are seven and six, not twelve and one.
-  math(EXPR units "(${count} + 11) / 12")
+  # Units of the same size: where twelve may stand together thirteen sources are seven and six, not twelve and one.
+  math(EXPR units "(${count} + ${most} - 1) / ${most}")
   math(EXPR size "(${count} + ${units} - 1) / ${units}")
   set_source_files_properties(${together} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
+  set(folder ${PROJECT_BINARY_DIR}/units)
   math(EXPR last "${units} - 1")
   foreach(unit RANGE ${last})
     math(EXPR begin "${unit} * ${size}")
     list(SUBLIST together ${begin} ${size} sources)
-    set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_unit_${unit}.cpp)
+    set(file ${folder}/${target}_${group}_${unit}.cpp)
     set(text "")
     foreach(source IN LISTS sources)
-      cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+      cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${folder})
       string(APPEND text "#include \"${source}\"\n")
     endforeach()
     file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
     target_sources(${target} PRIVATE ${file})
   endforeach()
 endfunction()
+
+# Rooms whose inner rooms are as large as other rooms: each of them is a group of its own, of smaller units.
+set(MAREY_LARGE_ROOMS calibrate format solve)
 
 # marey_module(NAME [SOURCES ...] [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
@@ -63,14 +77,20 @@ function(marey_module name)
   list(TRANSFORM arg_VIDEO_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   target_sources(marey PRIVATE ${arg_SOURCES})
   target_sources(marey_video PRIVATE ${arg_VIDEO_SOURCES})
-  marey_unity(marey ${arg_SOURCES})
-  marey_unity(marey_video ${arg_VIDEO_SOURCES})
+  string(REGEX MATCH "^[^/]+" room ${name})
+  set(most 24)
+  if(room IN_LIST MAREY_LARGE_ROOMS)
+    string(REPLACE "/" "_" room ${name})
+    set(most 12)
+  endif()
+  marey_unity(marey ${room} ${most} ${arg_SOURCES})
+  marey_unity(marey_video ${room} ${most} ${arg_VIDEO_SOURCES})
   if(MAREY_TESTS AND arg_TESTS)
     string(REPLACE "/" "." prefix ${name})
     string(REPLACE "/" "_" name ${name})
     add_executable(${name}_test ${arg_TESTS})
     target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings marey_test_support ${arg_TEST_LIBRARIES})
-    marey_unity(${name}_test ${arg_TESTS})
+    marey_unity(${name}_test all 12 ${arg_TESTS})
     gtest_discover_tests(${name}_test TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   endif()
 endfunction()
@@ -83,6 +103,11 @@ target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshado
                        $<$<AND:$<BOOL:${MAREY_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
                        # libstdc++ 12's own stable_sort and stable_partition call what it has deprecated, and clang tells.
                        $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
+# GCC clears up what it allocated from 128 MB on, again and again where a unit needs a gigabyte. From half a gigabyte on a unit of 0.5 GB took 9.1 s of the
+# processor instead of 9.9, and 0.6 GB; the largest (calibrate) needs 2 GB.
+if(MAREY_UNITY)
+  target_compile_options(marey_warnings INTERFACE "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=524288 --param ggc-min-expand=200>")
+endif()
 # A release is built hard: what runs over a buffer or out of a container ends the program. Not with sanitizers, which see more.
 if(NOT MAREY_SANITIZE AND NOT MAREY_FUZZ)
   target_compile_options(marey_warnings INTERFACE $<$<CONFIG:Release>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3;-fstack-protector-strong;-D_GLIBCXX_ASSERTIONS>)

@@ -7,6 +7,17 @@
 
 namespace marey {
 
+std::optional<Camera> RigCamera::camera() const {
+  if (!lens || !camera_from_world || !size) return std::nullopt;
+  return Camera(*lens, *camera_from_world, *size);
+}
+
+std::optional<GroundView> RigCamera::ground_view(const geometry::GroundSurface& surface) const {
+  if (const auto whole = camera()) return GroundView(*whole, surface);
+  if (!ground_from_image || !size) return std::nullopt;
+  return GroundView(*ground_from_image, *size);
+}
+
 std::string camera_names(const Rig& rig) {
   std::string all;
   for (const RigCamera& camera : rig.cameras) all += (all.empty() ? "" : ", ") + camera.name;

@@ -28,17 +28,10 @@ struct RigCamera {
   std::optional<double> rms_px;                ///< 2-D reprojection error of its calibration
 
   /// Everything that projecting needs; nothing where lens, pose or size is missing.
-  std::optional<Camera> camera() const {
-    if (!lens || !camera_from_world || !size) return std::nullopt;
-    return Camera(*lens, *camera_from_world, *size);
-  }
+  std::optional<Camera> camera() const;
 
   /// How it sees the ground, `surface` being its rig's: by its camera, else by its homography, else not at all.
-  std::optional<GroundView> ground_view(const geometry::GroundSurface& surface) const {
-    if (const auto whole = camera()) return GroundView(*whole, surface);
-    if (!ground_from_image || !size) return std::nullopt;
-    return GroundView(*ground_from_image, *size);
-  }
+  std::optional<GroundView> ground_view(const geometry::GroundSurface& surface) const;
 };
 
 /// The cameras of one setup. The world is right-handed, z up, in m (a file with y up is turned when it is read); CameraId i is

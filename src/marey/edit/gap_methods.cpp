@@ -6,8 +6,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 
+#include "marey/geometry/decompositions.h"
 #include "marey/geometry/rigid.h"
 
 namespace marey::edit {
@@ -96,11 +97,11 @@ class Carrier {
     Matrix<3> cross = Matrix<3>::Zero();
     for (std::size_t i = 0; i < from.size(); ++i)
       cross += weights_[i] / weight * (to[i] - to_mean) * (from[i] - from_mean).transpose();
-    const Eigen::JacobiSVD<Matrix<3>> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.singularValues()[1] < 1e-6) return std::nullopt;  // m²: within a millimetre of one line
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    const auto [U, values, V] = geometry::singular_values(cross);
+    if (values[1] < 1e-6) return std::nullopt;  // m²: within a millimetre of one line
+    const double sign = (U * V.transpose()).determinant() < 0 ? -1 : 1;
     geometry::Rigid3 result;
-    result.rotation = svd.matrixU() * Vector<3>(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    result.rotation = U * Vector<3>(1, 1, sign).asDiagonal() * V.transpose();
     result.translation = to_mean - result.rotation * from_mean;
     return result;
   }

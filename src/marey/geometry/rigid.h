@@ -17,16 +17,9 @@ struct Rigid3 {
 };
 
 /// The rotation by `angle_axis`' length, in rad, about its direction (Rodrigues' vector, as OpenCV writes it).
-inline Matrix<3> rotation_from(const Vector<3>& angle_axis) {
-  const double angle = angle_axis.norm();
-  if (angle < 1e-300) return Matrix<3>::Identity();
-  return Eigen::AngleAxisd(angle, angle_axis / angle).toRotationMatrix();
-}
+Matrix<3> rotation_from(const Vector<3>& angle_axis);
 
 /// The inverse: Rodrigues' vector of a rotation, its length in [0, π].
-inline Vector<3> angle_axis_of(const Matrix<3>& rotation) {
-  const Eigen::AngleAxisd angle_axis(rotation);
-  return angle_axis.angle() * angle_axis.axis();
-}
+Vector<3> angle_axis_of(const Matrix<3>& rotation);
 
 }  // namespace marey::geometry

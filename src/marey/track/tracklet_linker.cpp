@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
+
+#include "marey/assign/sparse_assignment.h"
+#include "marey/track/tracklet_chains.h"
 
 namespace marey::track {
 namespace {
@@ -92,22 +94,15 @@ std::vector<Tracklet> TrackletLinker::decide_anew(std::vector<Tracklet> tracklet
 }
 
 std::vector<Tracklet> TrackletLinker::link(std::vector<TrackletPiece> pieces, double longest_gap) const {
-  assign::GatedAssigner assigner;
   const int count = static_cast<int>(pieces.size());
-  const auto successors = assigner.assign(count, count, candidates(pieces, longest_gap));
-  std::vector<char> follows(pieces.size(), 0);
-  for (const int successor : successors) {
-    if (successor != assign::kNoIndex) follows[successor] = 1;
-  }
+  const std::vector<int> next = assign::sparse_assignment(count, count, candidates(pieces, longest_gap));
   std::vector<Tracklet> joined;
-  for (int first = 0; first < count; ++first) {
-    if (follows[first]) continue;
-    Tracklet whole = std::move(pieces[first].rows);
-    for (int next = successors[first]; next != assign::kNoIndex; next = successors[next]) {
-      append(whole, pieces[next].rows);
-      Tracklet().swap(pieces[next].rows);
+  for (const std::vector<int>& chain : chains_of(next)) {
+    Tracklet& whole = joined.emplace_back(std::move(pieces[chain.front()].rows));
+    for (const int piece : std::span(chain).subspan(1)) {
+      append(whole, pieces[piece].rows);
+      Tracklet().swap(pieces[piece].rows);
     }
-    joined.push_back(std::move(whole));
   }
   return joined;
 }
@@ -167,33 +162,25 @@ TrackletLinker::End TrackletLinker::end_of(const TrackletPiece& piece, bool tail
 }
 
 std::vector<assign::GatedPair> TrackletLinker::candidates(std::span<const TrackletPiece> pieces, double longest_gap) const {
-  const int count = static_cast<int>(pieces.size());
   std::vector<End> heads, tails;
   for (const TrackletPiece& piece : pieces) {
     heads.push_back(end_of(piece, false));
     tails.push_back(end_of(piece, true));
   }
-  std::vector<int> by_time(heads.size());
-  std::iota(by_time.begin(), by_time.end(), 0);
-  std::sort(by_time.begin(), by_time.end(),
-            [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
   std::vector<assign::GatedPair> pairs;
   const auto consider = [&](int tail, int head, Passage passage) {
     const double worth = worth_of(tails[tail], heads[head], passage);
     if (worth > 0) pairs.push_back({tail, head, worth});
   };
   const double longest = std::max(longest_gap, kLongestMeeting);
-  for (int tail = 0; tail < count; ++tail) {
-    const auto later = [&](double time, int head) { return time < heads[head].time; };
-    const double now = tails[tail].time;
-    auto next = std::upper_bound(by_time.begin(), by_time.end(), now, later);
-    for (; next != by_time.end() && heads[*next].time - now <= longest; ++next) {
-      const Passage passage = passage_of(pieces, tail, *next);
-      if (passage == Passage::apart && heads[*next].time - now > longest_gap) continue;
-      consider(tail, *next, passage);
-    }
-    const bool far_ahead = tail + 1 < count && heads[tail + 1].time - now > longest;  // who walked together for long
-    if (far_ahead && passage_of(pieces, tail, tail + 1) == Passage::as_tracked) consider(tail, tail + 1, Passage::as_tracked);
+  const auto gap = [&](int tail, int head) { return heads[head].time - tails[tail].time; };
+  for_each_successor(tails, heads, longest, [&](int tail, int head) {
+    const Passage passage = passage_of(pieces, tail, head);
+    if (passage != Passage::apart || gap(tail, head) <= longest_gap) consider(tail, head, passage);
+  });
+  for (int tail = 0; tail + 1 < static_cast<int>(pieces.size()); ++tail) {  // who walked together for long
+    const bool as_tracked = passage_of(pieces, tail, tail + 1) == Passage::as_tracked;
+    if (as_tracked && gap(tail, tail + 1) > longest) consider(tail, tail + 1, Passage::as_tracked);
   }
   return pairs;
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -13,6 +12,7 @@
 #include "marey/assign/sparse_assignment.h"
 #include "marey/core/colour.h"
 #include "marey/track/ground/ground_openness.h"
+#include "marey/track/tracklet_chains.h"
 
 namespace marey::track::ground {
 namespace {
@@ -64,20 +64,11 @@ bool near_border(const GroundState& state, Timestamp time, double direction, con
 /// Pairs within the longest gap that gain more than `least`.
 std::vector<assign::GatedPair> gated_pairs(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads,
                                            const GroundColours& colours, const GroundChainOptions& options, double least) {
-  std::vector<int> by_time(heads.size());
-  std::iota(by_time.begin(), by_time.end(), 0);
-  std::sort(by_time.begin(), by_time.end(),
-            [&](int a, int b) { return std::pair(heads[a].time, a) < std::pair(heads[b].time, b); });
-  const Duration longest = duration_from_seconds(options.longest_gap);
   std::vector<assign::GatedPair> pairs;
-  for (int tail = 0; tail < static_cast<int>(tails.size()); ++tail) {
-    auto next = std::upper_bound(by_time.begin(), by_time.end(), tails[tail].time,
-                                 [&](Timestamp time, int head) { return time < heads[head].time; });
-    for (; next != by_time.end() && heads[*next].time - tails[tail].time <= longest; ++next) {
-      const std::optional<double> gain = gain_of_joining(tails[tail], heads[*next], colours, options);
-      if (gain && *gain > least) pairs.push_back({tail, *next, *gain});
-    }
-  }
+  for_each_successor(tails, heads, duration_from_seconds(options.longest_gap), [&](int tail, int head) {
+    const std::optional<double> gain = gain_of_joining(tails[tail], heads[head], colours, options);
+    if (gain && *gain > least) pairs.push_back({tail, head, *gain});
+  });
   return pairs;
 }
 
@@ -219,16 +210,10 @@ class Chainer {
   }
 
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
-    std::vector<char> follows(chains.size(), 0);
-    for (const int successor : next) {
-      if (successor != assign::kNoIndex) follows[successor] = 1;
-    }
     std::vector<std::vector<int>> joined;
-    for (std::size_t first = 0; first < chains.size(); ++first) {
-      if (follows[first]) continue;
-      std::vector<int> whole = chains[first];
-      for (int k = next[first]; k != assign::kNoIndex; k = next[k]) whole.insert(whole.end(), chains[k].begin(), chains[k].end());
-      joined.push_back(std::move(whole));
+    for (const std::vector<int>& parts : chains_of(next)) {
+      std::vector<int>& whole = joined.emplace_back();
+      for (const int part : parts) whole.insert(whole.end(), chains[part].begin(), chains[part].end());
     }
     chains = std::move(joined);
   }
