@@ -37,6 +37,7 @@ Odometry::Odometry(cv::Size size, const OdometryOptions& options) : options_(opt
 
 void Odometry::refer(const geometry::Tripod& tripod, const geometry::Heading& heading) {
   reference_ = pyramid_;
+  reference_tripod_ = tripod;
   reference_heading_ = chained_ = heading;
   age_ = 0;
   corners_.clear();
@@ -159,7 +160,7 @@ std::optional<Turned> Odometry::step(const cv::Mat& luma, const geometry::Tripod
     refer(tripod, last);
     return std::nullopt;
   }
-  const auto turned = fit(tripod, follow(), chained_);
+  const auto turned = fit(reference_tripod_, follow(), chained_);
   if (!turned) {
     refer(tripod, last);
     return std::nullopt;

@@ -56,6 +56,7 @@ class Odometry {
   std::vector<cv::Mat> pyramid_, reference_;
   std::vector<cv::Point2f> corners_, now_;
   std::vector<Vector<3>> places_;
+  geometry::Tripod reference_tripod_;  // a tripod that is refined meanwhile must not move the places
   geometry::Heading reference_heading_, chained_;
   int age_ = 0;
   std::size_t begun_with_ = 0;

@@ -38,8 +38,7 @@ struct TripodSolution {
   double cost = 0;
 };
 
-/// Refines a tripod and the headings of its frames on all that is seen in them, with a robust loss. A frame in which nothing is seen
-/// keeps its heading.
+/// Refines a tripod and the headings of its frames on all that is seen in them, with a robust loss.
 TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const TripodFrameSight> frames, cv::Size size,
                             const TripodSolveOptions& options = {});
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::string_view kTurnsHeader = "time,pan,tilt,focal,pan_sd,tilt_sd,focal_sd,pan_tilt,pan_focal,tilt_focal";
 constexpr std::size_t kTurnsColumns = 10;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kTurnDegree = std::numbers::pi / 180;
 constexpr double kMostDegrees = 1e4;
 
 /// One row's numbers; nothing where one is missing or none.
@@ -48,8 +48,8 @@ bool is_lost(const std::vector<std::string_view>& fields) {
 TurningCamera::Turn turn_of(const std::array<double, kTurnsColumns>& row, cv::Size size) {
   TurningCamera::Turn turn;
   turn.time_s = row[0];
-  turn.heading = geometry::Heading{row[1] * kDegree, row[2] * kDegree, std::log(row[3] / (size.width / 2.0))};
-  const Vector<3> sd(row[4] * kDegree, row[5] * kDegree, row[6] / row[3]);
+  turn.heading = geometry::Heading{row[1] * kTurnDegree, row[2] * kTurnDegree, std::log(row[3] / (size.width / 2.0))};
+  const Vector<3> sd(row[4] * kTurnDegree, row[5] * kTurnDegree, row[6] / row[3]);
   Matrix<3> together = Matrix<3>::Identity();
   together(0, 1) = together(1, 0) = row[7];
   together(0, 2) = together(2, 0) = row[8];
@@ -88,7 +88,8 @@ std::shared_ptr<const TurningCamera> turning_in(const Section& section, const st
   if (!file || !place || !size) return nullptr;
   auto camera = std::make_shared<TurningCamera>();
   camera->tripod.place = {(*place)[0], (*place)[1], (*place)[2]};
-  if (lean) camera->tripod.lean = {(*lean)[0] * kDegree, (*lean)[1] * kDegree}, camera->tripod.roll = (*lean)[2] * kDegree;
+  if (lean)
+    camera->tripod.lean = {(*lean)[0] * kTurnDegree, (*lean)[1] * kTurnDegree}, camera->tripod.roll = (*lean)[2] * kTurnDegree;
   camera->tripod.ahead = ahead.value_or(0), camera->tripod.bend = bend.value_or(0);
   try {
     const std::string path = (std::filesystem::path(folder) / *file).string();
@@ -108,8 +109,8 @@ std::string tripod_text(const geometry::Tripod& tripod, const std::string& turns
       "lean = [{:.6f}, {:.6f}, {:.6f}]  # of the pan axis about x and y, and roll, in degrees\n"
       "nodal_offset = {:.6f}  # m from the axes to the centre of projection\n"
       "bend = {:.8f}  # radial term per half picture width squared\n",
-      turns, tripod.place.x(), tripod.place.y(), tripod.place.z(), tripod.lean.x() / kDegree, tripod.lean.y() / kDegree,
-      tripod.roll / kDegree, tripod.ahead, tripod.bend);
+      turns, tripod.place.x(), tripod.place.y(), tripod.place.z(), tripod.lean.x() / kTurnDegree, tripod.lean.y() / kTurnDegree,
+      tripod.roll / kTurnDegree, tripod.ahead, tripod.bend);
 }
 
 }  // namespace
@@ -160,8 +161,8 @@ std::string turns_text(const TurningCamera& camera, cv::Size size) {
     };
     const double focal = std::exp(turn.heading->log_focal) * size.width / 2;
     fmt::format_to(add, "{:.6f},{:.5f},{:.5f},{:.3f},{:.3g},{:.3g},{:.3g},{:.3f},{:.3f},{:.3f}\n", turn.time_s,
-                   turn.heading->pan / kDegree, turn.heading->tilt / kDegree, focal, sd(0) / kDegree, sd(1) / kDegree,
-                   sd(2) * focal, together(0, 1), together(0, 2), together(1, 2));
+                   turn.heading->pan / kTurnDegree, turn.heading->tilt / kTurnDegree, focal, sd(0) / kTurnDegree,
+                   sd(1) / kTurnDegree, sd(2) * focal, together(0, 1), together(0, 2), together(1, 2));
   }
   return text;
 }
