@@ -43,7 +43,7 @@ class Turning(unittest.TestCase):
             if was["pan"]:
                 self.assertLess(abs(float(is_["focal"]) / float(was["focal"]) - 1), 0.02)
         self.run_marey("track", "film/found.toml", "--ground", "main=film/boxes.txt", "-o", "film/found.csv", "-q")
-        score = json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", "film/found.csv", "--json").stdout)
+        score = json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", "film/found.csv", "--distance", "1.5", "--json").stdout)
         self.assertTrue(score)
 
     def test_pictures_need_a_network(self):
