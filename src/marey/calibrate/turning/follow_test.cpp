@@ -70,7 +70,9 @@ TEST(Follow, IsLostWhileAnotherCameraIsShownAndComesBack) {
     const bool known = followed.result.camera.turns[i].heading.has_value();
     wrong += known && !followed.truth[i] ? 1 : 0;
     late += !known && followed.truth[i] ? 1 : 0;
-    if (known && followed.truth[i]) EXPECT_LT(off_px(followed, i, match.tripod(), options.size), 1.5) << i;
+    if (known && followed.truth[i]) {
+      EXPECT_LT(off_px(followed, i, match.tripod(), options.size), 1.5) << i;
+    }
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_LE(late, 5);
