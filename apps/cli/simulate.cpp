@@ -1,5 +1,6 @@
 #include "command_line.h"
 #include "commands.h"
+#include "simulate_turning.h"
 
 namespace marey::cli {
 
@@ -10,6 +11,7 @@ void add_simulate(Command& program) {
   add_simulate_room(simulate);
   add_simulate_match(simulate);
   add_simulate_square(simulate);
+  add_simulate_turning(simulate);
 }
 
 }  // namespace marey::cli

@@ -6,6 +6,7 @@
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
@@ -134,7 +135,8 @@ void track_on_ground(const GroundCommand& command, const GroundFlags& flags, con
   Rig rig = format::rig::read_rig(command.rig);
   set_sources(rig, flags.sources);
   const pipeline::GroundOutput output = output_of(command, flags);
-  const pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
+  pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
+  options.turning = format::rig::read_turning(command.rig);
   run_with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
       [&](const pipeline::GroundSummary& summary, double elapsed) {

@@ -51,8 +51,18 @@ std::optional<std::array<std::size_t, 4>> columns_of(const std::vector<std::stri
   return columns;
 }
 
+/// A row's frame, where there is a column for it.
+std::optional<std::int64_t> frame_of(const std::vector<std::string_view>& fields, std::optional<std::size_t> column,
+                                     const std::string& where) {
+  if (!column) return std::nullopt;
+  const auto frame = *column < fields.size() ? whole_number_of(fields[*column]) : std::nullopt;
+  if (!frame || *frame < 0) throw Error("{}: its frame is no whole number from 0 on", where);
+  return frame;
+}
+
 PitchClicks parse_csv(std::string_view text, const std::string& name) {
   PitchClicks clicks;
+  std::optional<std::size_t> frame_column;
   std::array<std::size_t, 4> columns = {0, 1, 2, 3};
   bool first = true;
   TextLines lines(text);
@@ -65,6 +75,8 @@ PitchClicks parse_csv(std::string_view text, const std::string& name) {
       const auto named = columns_of(fields);
       if (!named) throw Error("{}:{}: the header must name the columns x, y (m on the pitch), u, v (px)", name, lines.number());
       columns = *named;
+      const auto frame = std::find(fields.begin(), fields.end(), "frame");
+      if (frame != fields.end()) frame_column = static_cast<std::size_t>(frame - fields.begin());
       continue;
     }
     std::array<double, 4> values{};
@@ -74,7 +86,10 @@ PitchClicks parse_csv(std::string_view text, const std::string& name) {
         throw Error("{}:{}: four numbers are wanted, x,y,u,v: a place on the pitch in m and its pixel", name, lines.number());
       values[i] = *value;
     }
-    clicks.points.push_back({{values[0], values[1]}, {values[2], values[3]}, fmt::format("({:g},{:g})", values[0], values[1])});
+    clicks.points.push_back({{values[0], values[1]},
+                             {values[2], values[3]},
+                             fmt::format("({:g},{:g})", values[0], values[1]),
+                             frame_of(fields, frame_column, fmt::format("{}:{}", name, lines.number()))});
   }
   return clicks;
 }
@@ -106,7 +121,8 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
       if (kind == "points") {
         const auto ground = pair(label);
         if (!ground) throw Error("{}: the label {} is no place on the pitch; it must read (x,y), in m", name, shown(label));
-        for (const Vector<2>& pixel : *pixels) clicks.points.push_back({*ground, pixel, std::string(label)});
+        const auto frame = whole_number_of(image.node().attribute("id").value());
+        for (const Vector<2>& pixel : *pixels) clicks.points.push_back({*ground, pixel, std::string(label), frame});
         continue;
       }
       const auto middle = label.find(")-(");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +15,8 @@ struct PitchClicks {
   struct Point {
     Vector<2> ground;  ///< m, in the frame of whoever clicked
     Vector<2> pixel;
-    std::string name;  ///< as the file has it
+    std::string name;                        ///< as the file has it
+    std::optional<std::int64_t> frame = {};  ///< in which it was clicked, from 0; nothing where the file does not say
   };
   /// Pixels anywhere along the straight line between two places.
   struct Line {
@@ -26,9 +29,10 @@ struct PitchClicks {
 };
 
 /// Reads clicks from a file (docs/football.md):
-///   CSV       one point a line: x, y in m, then u, v in px. A header names the columns where the order is another: x y u v
+///   CSV       one point a line: x, y in m, then u, v in px. A header names the columns where the order is another: x y u v;
+///             a column `frame` says in which frame of a film each was clicked
 ///   CVAT XML  <points label="(x,y)" points="u,v">; <polyline label="(x,y)-(x,y)" points="u,v;u,v;…">. CVAT counts pixels from
-///   their corner
+///   their corner; an image's id is its frame
 /// Throws Error, with the line, where the file is neither, or a number is none.
 PitchClicks read_pitch_clicks(const std::string& path);
 

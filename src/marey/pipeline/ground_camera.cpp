@@ -7,6 +7,7 @@
 #include "marey/detect/appearance.h"
 #include "marey/detect/people/body_rows.h"
 #include "marey/detect/people/person_size_map.h"
+#include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
 
@@ -79,6 +80,19 @@ std::vector<std::optional<reconstruct::PersonRows>> rows_of(const detect::Detect
   return all;
 }
 
+/// A camera that turns has no empty scene to learn: a network looks at every frame.
+detect::DetectorOptions for_turning(detect::DetectorOptions options, const std::string& name) {
+  auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
+  if (network == nullptr)
+    throw Error(
+        "camera \"{0}\" turns, and background subtraction needs a camera that stands; give a network with --detector MODEL.toml "
+        "(docs/network.md), or what another program detected: {0}=boxes.txt",
+        name);
+  network->background = false;
+  network->every = 1;
+  return options;
+}
+
 }  // namespace
 
 GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface& ground) {
@@ -94,12 +108,12 @@ GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface
 
 GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
                            const GroundCameraOptions& options)
-    : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)) {
+    : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)), turning_(options.turning) {
   const GroundView& view = view_at(Timestamp{});
   const Camera* whole = view.camera();
   if (feed.has_pictures()) {
-    detect::DetectorOptions detector = options.detector;
-    if (whole != nullptr) {
+    detect::DetectorOptions detector = turning_ ? for_turning(options.detector, camera_.name) : options.detector;
+    if (whole != nullptr && !turning_) {
       const cv::Rect part = part_with_people(view, area);
       if (part.size() != whole->size()) part_ = part;
       if (detect::people::PeopleOptions* people = detect::people_options_of(detector))
@@ -177,6 +191,8 @@ void GroundCamera::place(const Frame& frame, detect::Detections& found) {
   for (std::size_t i = 0; i < placed.seen.size(); ++i) {
     if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
     seen_.push_back(placed.seen[i]);
+    if (turning_ && seen_.back().box)
+      seen_.back().covariance += aim_covariance(camera_, *turning_, frame.time, seen_.back().box->foot());
     seen_.back().appearance = appearances[static_cast<std::size_t>(placed.detection[i])];
   }
   outside_ += std::ssize(found.detections) - std::ssize(seen_);

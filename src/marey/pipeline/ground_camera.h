@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "marey/core/ground_views.h"
+#include "marey/core/turning_camera.h"
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
@@ -20,6 +21,7 @@ namespace marey::pipeline {
 struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
+  std::shared_ptr<const TurningCamera> turning = {};  ///< how it turns; nothing where it stands
 };
 
 /// How a camera sees the ground at the beginning. Throws Error, with the camera's name, where that is not known.
@@ -28,7 +30,7 @@ GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface
 class GroundCamera {
  public:
   /// `views`: of all cameras of the rig, this one's among them. Of the feed's pictures only the part is looked at in which people
-  /// may be who count.
+  /// may be who count. Throws Error where a camera that turns has pictures and its detector needs one that stands.
   GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
                const GroundCameraOptions& options);
   ~GroundCamera();
@@ -58,6 +60,7 @@ class GroundCamera {
   CameraId id_;
   reconstruct::GroundArea area_;
   std::shared_ptr<const GroundViews> views_;
+  std::shared_ptr<const TurningCamera> turning_;            // nothing where it stands
   std::optional<cv::Rect> part_;                            // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::Detector> detector_;              // none where another program's detections come
   std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are

@@ -160,11 +160,21 @@ class GroundStage final : public PeopleOnGround {
     if (feeds.empty()) throw Error("{}", "the rig has no camera");
     if (feeds.size() > kMostCameras) throw Error("the rig has {} cameras; {} is the most", feeds.size(), kMostCameras);
     std::vector<GroundView> views;
-    for (const RigCamera& camera : rig_.cameras) views.push_back(ground_view_of(camera, rig_.ground));
+    for (std::size_t i = 0; i < feeds.size(); ++i) {
+      const auto turning = turning_of(options_.turning, feeds[i].id());
+      views.push_back(turning ? first_view(rig_.cameras[i], *turning, rig_.ground) : ground_view_of(rig_.cameras[i], rig_.ground));
+    }
     views_ = ground_views(std::move(views));
-    const GroundCameraOptions how{.detector = options_.detector, .prime = !options_.live};
+    for (std::size_t i = 0; i < feeds.size(); ++i) {
+      if (const auto turning = turning_of(options_.turning, feeds[i].id()))
+        enter_turns(*views_, feeds[i].id(), rig_.cameras[i], *turning, rig_.ground);
+    }
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
-    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) { opened[i].emplace(feeds[i], views_, area_, how); });
+    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) {
+      const GroundCameraOptions how{
+          .detector = options_.detector, .prime = !options_.live, .turning = turning_of(options_.turning, feeds[i].id())};
+      opened[i].emplace(feeds[i], views_, area_, how);
+    });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
   }
 

@@ -12,6 +12,7 @@
 #include "marey/geometry/pitch.h"
 #include "marey/pipeline/ground_camera.h"
 #include "marey/pipeline/run.h"
+#include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ground/ground_recorder.h"
 #include "marey/track/ground/ground_run.h"
@@ -28,6 +29,7 @@ struct PeopleOnGroundOptions {
   std::optional<double> rate_hz;             ///< of cameras of which the rig does not say it
   std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
   std::vector<Vector<2>> area;               ///< corners of another part of the ground, m, in place of a pitch; none: none
+  TurningCameras turning;                    ///< of the rig's cameras, those that turn
   double margin = 2;                         ///< m round the pitch or the area where people still count
   /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;

@@ -116,8 +116,9 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   RigCamera camera;
   camera.name = section.text("name").value_or("");
   section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", excerpt(camera.name)));
-  section.only({"name", "source", "detections", "region", "rate", "offset_s", "size", "model", "focal", "principal", "distortion",
-                "rotation", "translation", "ground_from_image", "rms_px"});
+  section.only({"name",   "source", "detections", "region",     "rate",         "offset_s",    "size",
+                "model",  "focal",  "principal",  "distortion", "rotation",     "translation", "ground_from_image",
+                "rms_px", "turns",  "tripod",     "lean",       "nodal_offset", "bend"});
   check_name(section, camera.name);
   camera.source = source_beside(folder, section.text("source").value_or(""));
   camera.detections = source_beside(folder, section.text("detections").value_or(""));

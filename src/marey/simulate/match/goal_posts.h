@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "marey/core/geometry.h"
+#include "marey/geometry/pitch.h"
+#include "marey/simulate/people/people_renderer.h"
+
+namespace marey::simulate::match {
+
+/// The posts of both goals, in the world.
+std::vector<people::Post> goal_posts(const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch);
+
+}  // namespace marey::simulate::match
