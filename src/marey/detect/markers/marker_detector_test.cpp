@@ -76,6 +76,11 @@ struct Case {
   bool dark = false;
 };
 
+/// Without it the bytes are printed, those between the members too, which nobody has set.
+void PrintTo(const Case& each, std::ostream* out) {
+  *out << "radius " << each.radius << " px, noise " << each.noise << ", level " << each.level << " on " << each.background;
+}
+
 class MarkerAccuracy : public testing::TestWithParam<Case> {};
 
 TEST_P(MarkerAccuracy, RootMeanSquareAndBiasStayBelowTheirLimits) {
