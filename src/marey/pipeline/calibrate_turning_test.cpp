@@ -1,4 +1,4 @@
-#include "marey/calibrate/turning/follow.h"
+#include "marey/pipeline/calibrate_turning.h"
 
 #include <cmath>
 
@@ -6,31 +6,33 @@
 
 #include "marey/simulate/match/turning_match.h"
 
-namespace marey::calibrate::turning {
+namespace marey::pipeline {
 namespace {
 
+using calibrate::turning::TurningFollower;
+using calibrate::turning::TurningResult;
 using simulate::match::TurningMatch;
 using simulate::match::TurningMatchOptions;
 
-TurningMatchOptions small_film() {
+TurningMatchOptions turning_film() {
   TurningMatchOptions options;
   options.size = {640, 360};
   options.people = false;
   return options;
 }
 
-struct Followed {
+struct FollowedTurning {
   TurningResult result;
   std::vector<std::optional<geometry::Heading>> truth;
 };
 
 /// From the exact tripod, but a little of its place, without clicks: the first picture has to tell where the camera looks.
-Followed follow(const TurningMatchOptions& options, int frames) {
+FollowedTurning follow_turning(const TurningMatchOptions& options, int frames) {
   TurningMatch match(options, 2);
   geometry::Tripod tripod = match.tripod();
   tripod.place += Vector<3>(0.15, -0.2, 0.1);
   TurningFollower follower(tripod, options.size);
-  Followed followed;
+  FollowedTurning followed;
   for (int i = 0; i < frames; ++i) {
     match.advance();
     follower.add(match.picture(), match.time());
@@ -41,7 +43,7 @@ Followed follow(const TurningMatchOptions& options, int frames) {
 }
 
 /// px between where the truth and the answer see the middle of the picture's ground.
-double off_px(const Followed& followed, std::size_t frame, const geometry::Tripod& tripod, cv::Size size) {
+double turned_off_px(const FollowedTurning& followed, std::size_t frame, const geometry::Tripod& tripod, cv::Size size) {
   const Camera truth = geometry::camera_of(tripod, *followed.truth[frame], size);
   const Camera found = geometry::camera_of(followed.result.camera.tripod, *followed.result.camera.turns[frame].heading, size);
   const auto ray = truth.ray({size.width / 2.0, size.height / 2.0});
@@ -49,21 +51,21 @@ double off_px(const Followed& followed, std::size_t frame, const geometry::Tripo
   return (*found.project(place) - *truth.project(place)).norm();
 }
 
-TEST(Follow, FindsItselfAndStaysOnThePitch) {
-  const TurningMatchOptions options = small_film();
-  const Followed followed = follow(options, 40);
+TEST(CalibrateTurning, FindsItselfAndStaysOnThePitch) {
+  const TurningMatchOptions options = turning_film();
+  const FollowedTurning followed = follow_turning(options, 40);
   const TurningMatch match(options, 2);
   EXPECT_EQ(followed.result.lost, 0);
   for (std::size_t i = 0; i < followed.truth.size(); ++i) {
     ASSERT_TRUE(followed.result.camera.turns[i].heading.has_value()) << i;
-    EXPECT_LT(off_px(followed, i, match.tripod(), options.size), 1.0) << i;
+    EXPECT_LT(turned_off_px(followed, i, match.tripod(), options.size), 1.0) << i;
   }
 }
 
-TEST(Follow, IsLostWhileAnotherCameraIsShownAndComesBack) {
-  TurningMatchOptions options = small_film();
+TEST(CalibrateTurning, IsLostWhileAnotherCameraIsShownAndComesBack) {
+  TurningMatchOptions options = turning_film();
   options.cuts = {{0.4, 0.8}};
-  const Followed followed = follow(options, 40);
+  const FollowedTurning followed = follow_turning(options, 40);
   const TurningMatch match(options, 2);
   int wrong = 0, late = 0;
   for (std::size_t i = 0; i < followed.truth.size(); ++i) {
@@ -71,7 +73,7 @@ TEST(Follow, IsLostWhileAnotherCameraIsShownAndComesBack) {
     wrong += known && !followed.truth[i] ? 1 : 0;
     late += !known && followed.truth[i] ? 1 : 0;
     if (known && followed.truth[i]) {
-      EXPECT_LT(off_px(followed, i, match.tripod(), options.size), 1.5) << i;
+      EXPECT_LT(turned_off_px(followed, i, match.tripod(), options.size), 1.5) << i;
     }
   }
   EXPECT_EQ(wrong, 0);
@@ -79,4 +81,4 @@ TEST(Follow, IsLostWhileAnotherCameraIsShownAndComesBack) {
 }
 
 }  // namespace
-}  // namespace marey::calibrate::turning
+}  // namespace marey::pipeline
