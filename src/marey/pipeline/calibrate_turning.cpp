@@ -150,8 +150,8 @@ void draw_overlay(const Feed& feed, const TurningRun& run, const TurningRunOptio
     if (index >= turning.turns.size()) break;
     const TurningCamera::Turn& turn = turning.turns[index++];
     if (turn.heading) {
-      movie.write(draw::draw_pitch(given->frame.picture, geometry::camera_of(turning.tripod, *turn.heading, feed.info().size),
-                                   lines, {}, {}),
+      movie.write(draw::draw_pitch(given->frame.picture,
+                                   GroundView(geometry::camera_of(turning.tripod, *turn.heading, feed.info().size)), lines, {}, {}),
                   given->frame.time);
     } else {
       draw::Canvas canvas(given->frame.picture);

@@ -63,7 +63,7 @@ void TurningMatch::advance() {
   if (frame_ == 0) before_ = now_;
   camera_.emplace(heading() ? camera_now(now_) : geometry::camera_of(kOtherTripod, kOtherHeading, options_.size));
   for (std::size_t i = 0; i < stances_.size(); ++i) stances_[i] = match_stance(motion_.people()[i], Matrix<3>::Identity());
-  seen_ = people_in_view(*camera_, figures_, stances_);
+  seen_ = people_in_view(GroundView(*camera_), figures_, stances_);
 }
 
 /// Every frame is smeared by the way its middle moves while it is exposed.
@@ -118,8 +118,8 @@ Picture TurningMatch::picture() const {
   render.noise = 0;
   cv::Mat scene = ground_.draw(*camera_);
   if (options_.people) {
-    const auto in_reach = [this](const Vector<3>& point) -> std::optional<people::Sighting> {
-      const auto seen = sight(*camera_, point);
+    const auto in_reach = [this, view = GroundView(*camera_)](const Vector<3>& point) -> std::optional<people::Sighting> {
+      const auto seen = sight(view, point);
       const double reach = camera_->size().width;
       if (!seen || std::abs(seen->at.x()) > 2 * reach || std::abs(seen->at.y()) > 2 * reach || seen->scale > reach)
         return std::nullopt;
@@ -144,12 +144,13 @@ Picture TurningMatch::picture() const {
 }
 
 std::vector<LabelledBox> TurningMatch::detect(const MatchDetectorOptions& detector) {
-  return detect_match(seen_, *camera_, Matrix<3>::Identity(), options_.pitch, static_cast<std::int32_t>(frame_), detector,
-                      detections_);
+  return detect_match(seen_, GroundView(*camera_), Matrix<3>::Identity(), options_.pitch, static_cast<std::int32_t>(frame_),
+                      detector, detections_);
 }
 
 std::vector<MatchClick> TurningMatch::clicks(double noise) const {
-  return match_clicks(*camera_, Matrix<3>::Identity(), options_.pitch, noise, 0, seed_ * 1009 + static_cast<std::uint64_t>(frame_));
+  return match_clicks(GroundView(*camera_), Matrix<3>::Identity(), options_.pitch, noise, 0,
+                      seed_ * 1009 + static_cast<std::uint64_t>(frame_));
 }
 
 }  // namespace marey::simulate::match
