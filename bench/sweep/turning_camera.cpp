@@ -144,6 +144,40 @@ Vector<2> axis_of(const geometry::Tripod& tripod, const geometry::Heading& headi
   return {std::atan2(ahead.x(), ahead.y()), std::asin(-ahead.z())};
 }
 
+/// What was found of each frame beside the truth: where the axis points, how long the lens is, where places of the pitch are seen.
+void judge(const TurningResult& result, const geometry::Tripod& tripod, const std::vector<std::optional<geometry::Heading>>& truth,
+           const std::vector<GroundView>& views, cv::Size size, Score& score) {
+  score.frames += static_cast<int>(truth.size());
+  Vector<2> last_off = Vector<2>::Zero(), last_true = Vector<2>::Zero();
+  bool goes_on = false;  // from the frame before
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const TurningCamera::Turn& turn = result.camera.turns[i];
+    if (!truth[i]) {
+      score.wrong += turn.heading ? 1 : 0;
+      goes_on = false;
+      continue;
+    }
+    ++score.known;
+    if (!turn.heading) {
+      ++score.lost;
+      goes_on = false;
+      continue;
+    }
+    const Vector<2> is = axis_of(tripod, *truth[i], size), found = axis_of(result.camera.tripod, *turn.heading, size),
+                    off = found - is;
+    score.pan.values.push_back(std::abs(off.x()) * kDegrees);
+    score.tilt.values.push_back(std::abs(off.y()) * kDegrees);
+    const double focal = turn.heading->log_focal - truth[i]->log_focal;
+    score.focal.values.push_back(100 * std::abs(focal));
+    compare(views[i], GroundView(geometry::camera_of(result.camera.tripod, *turn.heading, size)), size, score.ground);
+    const double px = std::exp(truth[i]->log_focal) * size.width / 2;
+    if (goes_on && (is - last_true).norm() * px < 1) score.jitter.values.push_back(px * (off - last_off).norm());
+    last_off = off, last_true = is, goes_on = true;
+    const Vector<3> error(off.x(), off.y(), focal);
+    score.nees += error.dot(turn.covariance.inverse() * error) / 3;
+  }
+}
+
 void run(const std::string& scene, std::uint64_t seed, int frames, Score& score) {
   const TurningMatchOptions options = scene_of(scene);
   const std::vector<ClickedFrame> clicks = clicks_of(options, seed, frames);
@@ -173,36 +207,7 @@ void run(const std::string& scene, std::uint64_t seed, int frames, Score& score)
   const double begin = cpu_seconds();
   const TurningResult result = follower.finish();
   score.follow_s += cpu_seconds() - begin;
-  score.frames += frames;
-  Vector<2> last_off = Vector<2>::Zero(), last_true = Vector<2>::Zero();
-  bool goes_on = false;  // from the frame before
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const TurningCamera::Turn& turn = result.camera.turns[i];
-    if (!truth[i]) {
-      score.wrong += turn.heading ? 1 : 0;
-      goes_on = false;
-      continue;
-    }
-    ++score.known;
-    if (!turn.heading) {
-      ++score.lost;
-      goes_on = false;
-      continue;
-    }
-    const Vector<2> is = axis_of(match.tripod(), *truth[i], options.size),
-                    found = axis_of(result.camera.tripod, *turn.heading, options.size), off = found - is;
-    score.pan.values.push_back(std::abs(off.x()) * kDegrees);
-    score.tilt.values.push_back(std::abs(off.y()) * kDegrees);
-    const double focal = turn.heading->log_focal - truth[i]->log_focal;
-    score.focal.values.push_back(100 * std::abs(focal));
-    compare(views[i], GroundView(geometry::camera_of(result.camera.tripod, *turn.heading, options.size)), options.size,
-            score.ground);
-    const double px = std::exp(truth[i]->log_focal) * options.size.width / 2;
-    if (goes_on && (is - last_true).norm() * px < 1) score.jitter.values.push_back(px * (off - last_off).norm());
-    last_off = off, last_true = is, goes_on = true;
-    const Vector<3> error(off.x(), off.y(), focal);
-    score.nees += error.dot(turn.covariance.inverse() * error) / 3;
-  }
+  judge(result, match.tripod(), truth, views, options.size, score);
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 namespace marey::calibrate::turning {
 namespace {
 
-const cv::Size kSize(1280, 720);
-const geometry::Tripod kTripod{{50, -24, 13}, {0.003, -0.004}, 0.004, 0.2, 0.015};
+const cv::Size kClickedSize(1280, 720);
+const geometry::Tripod kClickedTripod{{50, -24, 13}, {0.003, -0.004}, 0.004, 0.2, 0.015};
 
 /// Crossings of lines that a user knows, as the tripod sees them, a pixel off.
 ClickedFrame clicked(std::int64_t frame, const geometry::Heading& heading, std::mt19937& random) {
   ClickedFrame result{frame, {}};
-  const Camera camera = geometry::camera_of(kTripod, heading, kSize);
+  const Camera camera = geometry::camera_of(kClickedTripod, heading, kClickedSize);
   std::normal_distribution<double> slip(0, 1);
   for (const double x : {0.0, 5.5, 16.5, 52.5, 88.5, 99.5, 105.0}) {
     for (const double y : {0.0, 13.84, 24.84, 43.16, 54.16, 68.0}) {
@@ -34,9 +34,9 @@ std::vector<ClickedFrame> three_frames() {
 TEST(TripodSolve, ClicksInThreeFramesPlaceTheTripod) {
   const std::vector<ClickedFrame> frames = three_frames();
   for (const ClickedFrame& frame : frames) ASSERT_GE(frame.places.size(), 3u);
-  const ClickedTripod found = tripod_from_clicks(frames, kSize, {});
+  const ClickedTripod found = tripod_from_clicks(frames, kClickedSize, {});
   EXPECT_FALSE(found.reflected);
-  EXPECT_LT((found.tripod.place - kTripod.place).norm(), 1.5);
+  EXPECT_LT((found.tripod.place - kClickedTripod.place).norm(), 1.5);
   EXPECT_LT(found.median_px, 2);
   EXPECT_NEAR(found.headings[1].pan, 0, 0.02);
   EXPECT_NEAR(found.headings[1].log_focal, 0.5, 0.05);
@@ -47,14 +47,14 @@ TEST(TripodSolve, ALeftHandedFrameIsReflected) {
   for (ClickedFrame& frame : frames) {
     for (ClickedPlace& click : frame.places) click.ground.y() = 68 - click.ground.y();
   }
-  const ClickedTripod found = tripod_from_clicks(frames, kSize, {});
+  const ClickedTripod found = tripod_from_clicks(frames, kClickedSize, {});
   EXPECT_TRUE(found.reflected);
-  EXPECT_LT((found.tripod.place - kTripod.place).norm(), 1.5);
+  EXPECT_LT((found.tripod.place - kClickedTripod.place).norm(), 1.5);
 }
 
 std::string refusal(const std::vector<ClickedFrame>& frames) {
   try {
-    tripod_from_clicks(frames, kSize, {});
+    tripod_from_clicks(frames, kClickedSize, {});
   } catch (const Error& error) {
     return error.what();
   }

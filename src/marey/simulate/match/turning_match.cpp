@@ -118,7 +118,8 @@ Picture TurningMatch::picture() const {
   render.noise = 0;
   cv::Mat scene = ground_.draw(*camera_);
   if (options_.people) {
-    const auto in_reach = [this, view = GroundView(*camera_)](const Vector<3>& point) -> std::optional<people::Sighting> {
+    const GroundView view(*camera_);
+    const auto in_reach = [&](const Vector<3>& point) -> std::optional<people::Sighting> {
       const auto seen = sight(view, point);
       const double reach = camera_->size().width;
       if (!seen || std::abs(seen->at.x()) > 2 * reach || std::abs(seen->at.y()) > 2 * reach || seen->scale > reach)
