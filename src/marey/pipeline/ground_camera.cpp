@@ -62,6 +62,8 @@ Box moved(const Box& box, const cv::Point& by) {
   return {box.left + by.x, box.top + by.y, box.width, box.height};
 }
 
+constexpr double kLeastBody = 80;  // px tall: the feet of smaller people have too few rows, and rows of one frame jump
+
 /// The rows in which those who are alone are seen, in the camera's picture; `corner` is that of the part which was looked at.
 std::vector<std::optional<reconstruct::PersonRows>> rows_of(const detect::Detections& found, const Picture& picture,
                                                             const GroundView& view, const cv::Point& corner) {
@@ -70,7 +72,8 @@ std::vector<std::optional<reconstruct::PersonRows>> rows_of(const detect::Detect
   const Vector<3> centre = view.camera()->centre();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Detection& one = found.detections[i];
-    const auto place = one.group ? std::nullopt : view.place(moved(one.box, corner).foot());
+    if (one.group || one.box.height < kLeastBody) continue;
+    const auto place = view.place(moved(one.box, corner).foot());
     if (!place) continue;
     const Vector<3> foot(place->ground.x(), place->ground.y(), 0);
     const double steepness = std::abs(centre.z()) / (centre - foot).norm();

@@ -162,7 +162,8 @@ TEST(RigFile, TellsAllProblemsAtOnceEachWithItsLine) {
       "rig.toml:12: camera \"left\": rotation is a mirroring (its determinant is -1); it must be a rotation\n"
       "rig.toml:15: camera \"left\": another camera has this name; each needs its own\n"
       "rig.toml:16: camera \"left\": unknown key \"focul\"; there are: name, source, detections, region, rate, offset_s, size, "
-      "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px");
+      "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px, turns, tripod, lean, nodal_offset, "
+      "bend");
 }
 
 TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {
