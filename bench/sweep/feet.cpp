@@ -86,13 +86,13 @@ class Film {
         camera_(*match_.rig.cameras.front().camera()),
         view_(camera_),
         motion_(seed, match_.options.pitch),
-        film_(camera_, match_.world_from_pitch, match_.options.pitch, film_options(scene.look), seed) {
+        film_(view_, match_.world_from_pitch, match_.options.pitch, film_options(scene.look), seed) {
     detect::people::PeopleDetectorOptions options;
     options.people.sizes = std::make_shared<detect::people::PersonSizeMap>(scene.size, [this](double x, double y) {
       std::optional<detect::people::PersonSize> size;
       const auto place = view_.place({x, y});
       if (!place || (place->ground - camera_.centre().head<2>()).norm() > 120) return size;
-      const auto box = reconstruct::person_box(camera_, place->ground);
+      const auto box = reconstruct::person_box(camera_, {place->ground.x(), place->ground.y(), 0});
       if (box && box->height >= 8) size = detect::people::PersonSize{box->height, box->width};
       return size;
     });
@@ -117,7 +117,7 @@ class Film {
     people_.clear();
     std::vector<Expected> expected;
     const auto stances = match_.stances(motion_.people());
-    for (const auto& seen : simulate::match::people_in_view(camera_, match_.figures, stances)) {
+    for (const auto& seen : simulate::match::people_in_view(view_, match_.figures, stances)) {
       expected.push_back({seen.shown});
       const bool whole = seen.shown.height == seen.whole.height && seen.shown.width == seen.whole.width;
       if (!whole || seen.visible_share < kAlone) continue;

@@ -5,7 +5,6 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
-#include "marey/detect/people/body_rows.h"
 #include "marey/detect/people/person_size_map.h"
 #include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/person_view.h"
@@ -60,27 +59,6 @@ cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea&
 
 Box moved(const Box& box, const cv::Point& by) {
   return {box.left + by.x, box.top + by.y, box.width, box.height};
-}
-
-constexpr double kLeastBody = 80;  // px tall: the feet of smaller people have too few rows, and rows of one frame jump
-
-/// The rows in which those who are alone are seen, in the camera's picture; `corner` is that of the part which was looked at.
-std::vector<std::optional<reconstruct::PersonRows>> rows_of(const detect::Detections& found, const Picture& picture,
-                                                            const GroundView& view, const cv::Point& corner) {
-  std::vector<std::optional<reconstruct::PersonRows>> all(found.detections.size());
-  if (view.camera() == nullptr || found.foreground.mask.empty()) return all;
-  const Vector<3> centre = view.camera()->centre();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Detection& one = found.detections[i];
-    if (one.group || one.box.height < kLeastBody) continue;
-    const auto place = view.place(moved(one.box, corner).foot());
-    if (!place) continue;
-    const Vector<3> foot(place->ground.x(), place->ground.y(), 0);
-    const double steepness = std::abs(centre.z()) / (centre - foot).norm();
-    const auto rows = detect::people::find_body_rows(picture, found.foreground.mask, one.box, steepness);
-    if (rows) all[i] = {rows->head + corner.y, rows->stand + corner.y};
-  }
-  return all;
 }
 
 /// A camera that turns has no empty scene to learn: a network looks at every frame.
@@ -185,11 +163,10 @@ void GroundCamera::place(const Frame& frame, detect::Detections& found) {
   for (std::size_t i = 0; i < found.detections.size(); ++i) {
     appearances.push_back(detect::upper_body(frame.picture, found.foreground, found.detections, i));
   }
-  const auto rows = rows_of(found, frame.picture, view_at(frame.time), corner());
   for (Detection& detection : found.detections) detection.box = moved(detection.box, corner());
   reconstruct::PlacePeopleOptions placing;
   if (detector_) placing.toe = detector_->traits().toe_m;
-  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_at(frame.time), id_, placing, rows);
+  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_at(frame.time), id_, placing);
   seen_.clear();
   for (std::size_t i = 0; i < placed.seen.size(); ++i) {
     if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
