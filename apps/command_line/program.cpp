@@ -189,7 +189,7 @@ int Program::run(int argc, char** argv) {
   } catch (const CLI::Success& said) {
     parser_->app.exit(said);
   } catch (const CLI::ParseError& error) {
-    say(error.what());
+    say(plain_text(error.what()));  // it repeats words as they were given
     code = 2;
   } catch (const WrongUsage& error) {
     say(error.what());

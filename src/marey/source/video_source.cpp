@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/text_safety.h"
 #include "marey/source/decoder.h"
 
 namespace marey::source {
@@ -91,7 +92,7 @@ class VideoSource final : public Source {
 
 std::unique_ptr<Source> open_video(const std::string& path, std::optional<double> rate_hz) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw Error("{}: no such file", path);
+  if (!std::filesystem::exists(path, ignored)) throw Error("{}: no such file", plain_text(path));
   if (std::filesystem::is_regular_file(path, ignored) && std::filesystem::file_size(path, ignored) == 0) {
     throw Error("{}: the file is empty", path);
   }

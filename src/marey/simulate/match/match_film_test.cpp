@@ -45,7 +45,8 @@ TEST(MatchGround, ACrownedPitchIsPaintedAndClickedWhereItIsSeen) {
   const Rig rig = match_cameras(options, 1);
   const GroundView view = rig.cameras[0].ground_view(rig.ground).value(), plane(*view.camera());
   EXPECT_NEAR(rig.ground.height({52.5, -34}), 0.7, 1e-9);
-  const cv::Mat luma = draw_match_ground(view, *rig.ground_from_world, {}, 1).luma();
+  const Picture ground = draw_match_ground(view, *rig.ground_from_world, {}, 1);
+  const cv::Mat& luma = ground.luma();
   const auto level = [&](const Vector<2>& pixel) {
     return static_cast<int>(
         luma.at<std::uint8_t>(static_cast<int>(std::lround(pixel.y())), static_cast<int>(std::lround(pixel.x()))));
@@ -53,7 +54,8 @@ TEST(MatchGround, ACrownedPitchIsPaintedAndClickedWhereItIsSeen) {
   int bright = 0, bright_on_plane = 0, asked = 0;
   for (double x = 30; x < 50; x += 0.5) {
     const auto on = view.pixel({x, -68}), level_on = plane.pixel({x, -68}), beside = view.pixel({x, -67});
-    if (!on || !level_on || !view.camera()->in_picture(*on) || !view.camera()->in_picture(*level_on)) continue;
+    const auto seen = [&](const std::optional<Vector<2>>& pixel) { return pixel && view.camera()->in_picture(*pixel); };
+    if (!seen(on) || !seen(level_on) || !seen(beside)) continue;
     ++asked;
     bright += level(*on) > level(*beside) + 30 ? 1 : 0;
     bright_on_plane += level(*level_on) > level(*beside) + 30 ? 1 : 0;
