@@ -244,7 +244,7 @@ std::vector<Variant> variants(bool sweep) {
   for (const double v : {0.0, 0.5, 1.0}) add("chroma", v, [](Variant& one, double x) { one.rows.chroma = x; });
   for (const double v : {8.0, 25.0}) add("least contrast", v, [](Variant& one, double x) { one.rows.least_contrast = x; });
   for (const double v : {0.0, 0.3, 0.6, 0.8}) add("stride", v, [](Variant& one, double x) { one.rows.stride = x; });
-  for (const double v : {0.02, 0.04, 0.1}) add("row noise", v, [](Variant& one, double x) { one.placing.row_noise = x; });
+  for (const double v : {0.01, 0.03, 0.04, 0.06}) add("row noise", v, [](Variant& one, double x) { one.placing.row_noise = x; });
   for (const double v : {0.08, 0.12, 0.15}) add("toe", v, [](Variant& one, double x) { one.placing.toe = x; });
   return all;
 }

@@ -133,7 +133,8 @@ class Placer {
       const auto head = camera.project_with_jacobian({both.place.x(), both.place.y(), head_height(camera, both.place)});
       if (!head) return foot;
       const Vector<2> slope = head->by_world.row(1).head<2>();
-      const double spread = head->by_world(1, 2) * options_.height_spread;
+      const double spread =
+          head->by_world(1, 2) * (rows_of(index) != nullptr ? options_.row_height_spread : options_.height_spread);
       const double residual = row - head->pixel.y() - slope.dot(foot.place - both.place);
       const double S = slope.dot(foot.covariance * slope) + row_variance(index) + spread * spread;
       if (residual * residual > inconsistent * S) {

@@ -24,11 +24,12 @@ namespace marey::reconstruct {
 struct PlacePeopleOptions {
   double pixel_noise = 0.5;    ///< px, of each edge of a box,
   double edge_noise = 0.04;    ///< and so much of the box's height more
-  double row_noise = 0.06;     ///< the same of rows that are known (PersonRows)
+  double row_noise = 0.02;     ///< the same of rows that are known (PersonRows)
   double stride = 0.12;        ///< m; feet are in a stride before or behind where the body is
   double toe = 0;              ///< m; a box ends at the foot's nearest point, so far before the body's middle, seen along the view
   double height = 1.75;        ///< m, of a person from the ground to the crown
   double height_spread = 0.1;  ///< m, over people
+  double row_height_spread = 0.25;  ///< m, of those whose rows are known: what is seen of their feet is better than any guess
 };
 
 /// In which rows a person is seen, px, where that is known better than by its box.
