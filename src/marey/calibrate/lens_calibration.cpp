@@ -136,11 +136,13 @@ class Solver {
   bundle::BundleResult last_;
 };
 
-/// The widest angle between the directions that two used boards face, rad.
+/// The widest angle between the planes of two used boards, whichever side of them is seen, rad.
 double spread_of(const Solver& solver) {
   std::vector<Vector<3>> normals;
   for (std::size_t i = 0; i < solver.bundle().bodies.size(); ++i) {
-    if (solver.used(i)) normals.push_back(std::get<Rigid3>(solver.bundle().bodies[i]).rotation.col(2));
+    if (!solver.used(i)) continue;
+    const Vector<3> normal = std::get<Rigid3>(solver.bundle().bodies[i]).rotation.col(2);
+    normals.push_back(normal.z() < 0 ? Vector<3>(-normal) : normal);
   }
   double widest = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {

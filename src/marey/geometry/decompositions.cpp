@@ -1,6 +1,8 @@
 #include "marey/geometry/decompositions.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 namespace marey::geometry {
@@ -18,5 +20,14 @@ Eigenpairs<N> eigenpairs(const Matrix<N>& symmetric) {
 
 template Eigenpairs<3> eigenpairs(const Matrix<3>& symmetric);
 template Eigenpairs<9> eigenpairs(const Matrix<9>& symmetric);
+template Eigenpairs<Eigen::Dynamic> eigenpairs(const Eigen::MatrixXd& symmetric);
+
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.ldlt().solve(B);
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
 
 }  // namespace marey::geometry

@@ -27,6 +27,7 @@ namespace marey::calibrate::board {
 namespace {
 
 constexpr int kLeastCorners = 4;
+constexpr int kSurelyInFront = 6;       // corners, or a quarter of the board's: then it is not looked for from behind
 constexpr double kLeastLikeness = 0.6;  // of opposite points round a corner that nothing hides
 constexpr double kSearchWidth = 1600;   // px: larger pictures are searched at a smaller scale; corners are refined at full size
 
@@ -153,7 +154,7 @@ BoardDetector::~BoardDetector() = default;
 std::optional<BoardView> BoardDetector::detect(const Picture& picture) const {
   if (picture.empty() || std::min(picture.size().width, picture.size().height) < 16) return std::nullopt;
   const cv::Mat grey = grey_of(picture, board_.inverted);
-  return board_.kind == Board::Kind::chess ? chess(grey) : charuco(grey);
+  return board_.kind == Board::Kind::chess ? chess(grey) : charuco_from_either_side(grey);
 }
 
 std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
@@ -180,6 +181,18 @@ std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
     view.corners.push_back({id, *pixel});
   }
   return view;
+}
+
+/// The side from which more of the board is seen: a mirrored marker may now and then be read as another one.
+std::optional<BoardView> BoardDetector::charuco_from_either_side(const cv::Mat& grey) const {
+  auto front = charuco(grey);
+  if (front && static_cast<int>(front->corners.size()) >= std::max(kSurelyInFront, board_.corner_count() / 4)) return front;
+  cv::Mat mirrored;
+  cv::flip(grey, mirrored, 1);
+  auto behind = charuco(mirrored);
+  if (!behind || (front && front->corners.size() >= behind->corners.size())) return front;
+  for (BoardCorner& corner : behind->corners) corner.pixel.x() = grey.cols - 1 - corner.pixel.x();
+  return behind;
 }
 
 std::optional<BoardView> BoardDetector::charuco(const cv::Mat& grey) const {

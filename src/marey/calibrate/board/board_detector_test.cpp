@@ -87,6 +87,21 @@ TEST(BoardDetector, CornerZeroIsTheSameUpsideDown) {
   }
 }
 
+TEST(BoardDetector, ACharucoOnGlassIsFoundFromBehind) {
+  for (const char* text :
+       {"charuco:8x6:0.04:0.03:4X4_50", "charuco:7x5:0.04:0.03:5X5_100:inverted", "charuco:4x5:0.05:0.04:4X4_1000"}) {
+    const Board board = parse_board(text);
+    for (const bool upside_down : {false, true}) {
+      Seen scene = seen(board, upside_down);
+      cv::flip(scene.picture, scene.picture, 1);
+      scene.picture_from_drawing = cv::Matx33d(-1, 0, scene.picture.cols - 1, 0, 1, 0, 0, 0, 1) * scene.picture_from_drawing;
+      expect_found(board, scene, board.corner_count());
+      scene.picture(cv::Rect(450, 0, 350, 640)).setTo(90);  // a part of it hidden
+      expect_found(board, scene, 4);
+    }
+  }
+}
+
 TEST(BoardDetector, AHiddenPartOfACharucoIsLeftOut) {
   const Board board = parse_board("charuco:8x6:0.04:0.03:4X4_50");
   Seen scene = seen(board);

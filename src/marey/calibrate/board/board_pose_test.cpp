@@ -38,6 +38,26 @@ TEST(BoardPose, IsFoundThroughEveryLens) {
   }
 }
 
+TEST(BoardPose, IsFoundFromBehindTheBoard) {
+  const Board board = parse_board("charuco:8x6:0.04:0.03:4X4_50");
+  const Camera camera(kLenses[0], {}, {1280, 960});
+  const Matrix<3> about = Vector<3>(-1, 1, -1).asDiagonal();
+  int tried = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Noise noise(seed);
+    const Rigid3 front = before_the_camera(noise);
+    const Rigid3 truth{front.rotation * about, front.translation + front.rotation * Vector<3>(0.2, 0, 0)};
+    const auto view = see_board(camera, board, [&](double) { return truth; }, 0, noise);
+    if (!view) continue;
+    ++tried;
+    const auto pose = board_pose(board, *view, kLenses[0]);
+    ASSERT_TRUE(pose) << seed;
+    EXPECT_LT((pose->rotation - truth.rotation).norm(), 1e-3) << seed;
+    EXPECT_LT((pose->translation - truth.translation).norm(), 1e-3) << seed;
+  }
+  EXPECT_GE(tried, 8);
+}
+
 TEST(BoardPose, FewCornersOrALineGiveNone) {
   const Board board = parse_board("chess:8x6:0.03");
   const Camera camera(kLenses[0], {}, {1280, 960});

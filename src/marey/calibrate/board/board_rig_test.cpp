@@ -48,6 +48,7 @@ struct Film {
   double rate_hz = 25, seconds = 12, noise_px = 0.1;
   std::vector<double> offsets_s{0, 0};
   double readout_s = 0;
+  bool last_behind = false;  ///< the last camera stands on the board's other side
 };
 
 Rigged film(const Film& how, std::uint64_t seed) {
@@ -55,9 +56,11 @@ Rigged film(const Film& how, std::uint64_t seed) {
   const HandMotion motion(noise);
   Rigged rigged;
   const std::vector<Vector<3>> centres{{-0.6, -2.2, 1.4}, {0.7, -2.0, 1.1}, {0.1, -2.6, 2.0}};
+  const Vector<3> behind(-0.3, 2.3, 1.5);
   for (std::size_t c = 0; c < how.offsets_s.size(); ++c) {
     const geometry::BrownLens lens{{900, 905}, {640, 355}, {-0.2, 0.05, 0.001, -0.001, 0, 0, 0, 0}};
-    rigged.cameras.emplace_back(lens, looking(centres[c], {0, 0, 1.2}), cv::Size(1280, 720));
+    rigged.cameras.emplace_back(lens, looking(how.last_behind && c + 1 == how.offsets_s.size() ? behind : centres[c], {0, 0, 1.2}),
+                                cv::Size(1280, 720));
     BoardRigCamera input{"camera " + std::to_string(c), {1280, 720}, lens, 0, {}};
     for (int i = 0; i < how.rate_hz * how.seconds; ++i) {
       const double time = i / how.rate_hz;
@@ -95,6 +98,15 @@ TEST(BoardRig, OffsetIsFoundToAFractionOfAFrame) {
     for (const std::size_t c : {1, 2})
       EXPECT_LT(centre_error(scene, found, c), 4 * found.cameras[c].centre_deviation.norm() + 2e-4);
   }
+}
+
+TEST(BoardRig, ACameraBehindAGlassBoardIsTiedToTheOthers) {
+  Film how{25, 3, 0.1, {0, 0, 0.01}};
+  how.last_behind = true;
+  const Rigged scene = film(how, 13);
+  const BoardRig found = calibrate_board_rig(kBoard, scene.inputs);
+  EXPECT_NEAR(found.cameras[2].offset_s, 0.01, 0.001);
+  for (const std::size_t c : {1, 2}) EXPECT_LT(centre_error(scene, found, c), 4 * found.cameras[c].centre_deviation.norm() + 5e-4);
 }
 
 TEST(BoardRig, OffsetsHeldStayAndPosesAreFoundAllTheSame) {

@@ -4,11 +4,10 @@
 #include <map>
 #include <memory>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <ceres/cost_function.h>
 
 #include "marey/calibrate/bundle/bundle_residual.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::bundle {
 namespace {
@@ -94,9 +93,10 @@ void add_body(const Bundle& bundle, const std::vector<const BundleObservation*>&
     Dense& w = W.try_emplace(one->camera, Dense::Zero(n, V.cols())).first->second;
     w += d.by_camera.transpose() * d.by_body;
   }
-  const Eigen::LDLT<Dense> solver(V);
+  std::erase_if(W, [](const auto& camera) { return camera.second.size() == 0; });  // all of it is held
+  if (W.empty()) return;
   for (const auto& [a, left] : W) {
-    const Dense solved = solver.solve(left.transpose());  // body's × free numbers of a
+    const Dense solved = geometry::solve_symmetric(V, left.transpose());  // body's × free numbers of a
     for (const auto& [b, right] : W) {
       S.block(free[static_cast<std::size_t>(b)].first, free[static_cast<std::size_t>(a)].first, right.rows(), left.rows()) -=
           right * solved;
@@ -107,11 +107,11 @@ void add_body(const Bundle& bundle, const std::vector<const BundleObservation*>&
 /// Inverse on what is determined, after scaling to a unit diagonal.
 Dense inverse_of_determined(const Dense& S) {
   const Eigen::VectorXd scale = S.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Dense> eigen(scale.asDiagonal() * S * scale.asDiagonal());
-  Eigen::VectorXd inverse = eigen.eigenvalues();
+  const auto eigen = geometry::eigenpairs<Eigen::Dynamic>(scale.asDiagonal() * S * scale.asDiagonal());
+  Eigen::VectorXd inverse = eigen.values;
   const double least = 1e-11 * inverse.maxCoeff();
   for (double& value : inverse) value = value > least ? 1 / value : 0;
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
+  return scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal();
 }
 
 CameraDeviation deviation_of(const BundleCamera& camera, const FreeNumbers& free, const Dense& covariance) {

@@ -5,11 +5,11 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "marey/calibrate/pitch/ground_pair.h"
 #include "marey/calibrate/pitch/ground_paths.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -64,9 +64,8 @@ std::vector<double> adjust(Tree& tree, const std::vector<Edge>& edges) {
     normal(a, b) -= 1 / variance, normal(b, a) -= 1 / variance;
     right(b) += off / variance, right(a) -= off / variance;
   }
-  const Eigen::LLT<Eigen::MatrixXd> solver(normal);
-  const Eigen::VectorXd by = solver.solve(right);
-  const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::VectorXd by = geometry::solve_symmetric(normal, right);
+  const Eigen::MatrixXd covariance = geometry::solve_symmetric(normal, Eigen::MatrixXd::Identity(n, n));
   std::vector<double> deviations;
   for (Eigen::Index c = 0; c < n; ++c) {
     tree.offset[static_cast<std::size_t>(c)] += by(c);

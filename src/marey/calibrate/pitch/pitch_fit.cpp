@@ -10,6 +10,7 @@
 #include <ceres/ceres.h>
 
 #include "marey/calibrate/solve.h"
+#include "marey/geometry/decompositions.h"
 #include "marey/geometry/ground_view.h"
 
 namespace marey::calibrate::pitch {
@@ -338,7 +339,7 @@ Eigen::MatrixXd covariance_of(const std::vector<SeenPitch>& seen, PitchModel can
       jacobian(row, sparse.cols[static_cast<std::size_t>(k)]) = sparse.values[static_cast<std::size_t>(k)];
   }
   const Eigen::MatrixXd inverse =
-      (jacobian.transpose() * jacobian).ldlt().solve(Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols()));
+      geometry::solve_symmetric(jacobian.transpose() * jacobian, Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols()));
   const int all = cameras * kCameraNumbers + kGroundTerms;
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(all, all);
   for (std::size_t i = 0; i < free.size(); ++i) {

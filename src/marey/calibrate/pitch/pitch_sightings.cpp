@@ -6,7 +6,7 @@
 #include <optional>
 #include <random>
 
-#include <Eigen/QR>
+#include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -138,7 +138,7 @@ Curve fit(const std::vector<Candidate>& all, const std::vector<int>& which, int 
     for (int k = 0; k <= degree; ++k, power *= 2 * one.along - 1) A(static_cast<Eigen::Index>(i), k) = power;
     b(static_cast<Eigen::Index>(i)) = one.offset;
   }
-  return A.colPivHouseholderQr().solve(b);
+  return geometry::least_squares(A, b);
 }
 
 double at(const Curve& curve, double along) {

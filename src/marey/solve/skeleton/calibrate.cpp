@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "marey/core/error.h"
+#include "marey/geometry/decompositions.h"
 
 namespace marey::solve::skeleton {
 namespace {
@@ -137,7 +138,7 @@ class Calibrator {
       information(u, u) += weight;
       gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
     }
-    const Eigen::VectorXd step = information.ldlt().solve(gradient);
+    const Eigen::VectorXd step = geometry::solve_symmetric(information, gradient);
     for (Eigen::Index u = 0; u < scales; ++u)
       group_scale_[static_cast<std::size_t>(u / 3)][u % 3] =
           std::clamp(group_scale_[static_cast<std::size_t>(u / 3)][u % 3] + step[u], 0.3, 3.0);

@@ -39,7 +39,7 @@ PoseSolver::PoseSolver(const Skeleton& skeleton, const PoseOptions& options)
   damped_.setZero(n, n);
   covariance_.setZero(n, n);
   dof_observed_.assign(static_cast<std::size_t>(n), false);
-  solver_ = Eigen::LDLT<Eigen::MatrixXd>(n);
+  solver_.compute(Eigen::MatrixXd::Identity(n, n));  // its room, taken once
   pose_.residuals.resize(skeleton.markers.size());
   pose_.coordinates = skeleton.rest();
   pose_.deviations.assign(skeleton.coordinates.size(), 0);
