@@ -26,6 +26,7 @@ void print_parameters(const filter::AlphaBetaVariableOptions& o) {
 void print_parameters(const filter::ExtrapolationOptions& o) {
   fmt::print("bend={}\n", o.bend);
 }
+void print_parameters(const filter::CustomFilterOptions&) {}  // brought from outside: nothing to compare with
 void print_parameters(const filter::KalmanOptions& o) {
   fmt::print("acceleration_noise={} initial_speed={}\n", o.acceleration_noise, o.initial_speed);
 }

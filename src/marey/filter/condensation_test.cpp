@@ -1,43 +1,15 @@
 #include "marey/filter/condensation.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
-#include "marey/filter/filter_invariants.h"
+#include "marey/filter/filter.h"
 
 namespace marey::filter {
 namespace {
 
 static_assert(Filter<Condensation<2>> && Filter<Condensation<3>>);
-
-/// Position alone. Enough particles, and little enough diffusion, that what the invariants ask is not lost in their noise.
-template <int D>
-struct Resting : Condensation<D> {
-  static constexpr bool at_rest = true;
-  struct Options : CondensationOptions {
-    Options() {
-      particles = 2000;
-      diffusion = 20;
-    }
-  };
-  using Condensation<D>::Condensation;
-};
-
-template <int D>
-struct Moving : Condensation<D> {
-  struct Options : CondensationOptions {
-    Options() : CondensationOptions(velocity()) {
-      particles = 2000;
-      velocity_diffusion = 100;
-      initial_speed = 150;
-    }
-  };
-  using Condensation<D>::Condensation;
-};
-
-using Restings = testing::Types<Resting<2>, Resting<3>>;
-using Movings = testing::Types<Moving<2>, Moving<3>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Condensation, FilterInvariants, Restings);
-INSTANTIATE_TYPED_TEST_SUITE_P(CondensationVelocity, FilterInvariants, Movings);
 
 /// What is known of a linear, normal target exactly: Kalman's posterior for one axis, (p) or (p, v).
 struct Exact {

@@ -1,9 +1,11 @@
 #include "marey/filter/coordinated_turn.h"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "marey/filter/extended_kalman.h"
-#include "marey/filter/filter_invariants.h"
+#include "marey/filter/filter.h"
+#include "marey/filter/random_measurements.h"
 #include "marey/filter/unscented_kalman.h"
 
 namespace marey::filter {
@@ -11,11 +13,6 @@ namespace {
 
 static_assert(Filter<ExtendedKalman<2>> && Filter<ExtendedKalman<3>>);
 static_assert(Filter<UnscentedKalman<2>> && Filter<UnscentedKalman<3>>);
-
-using ExtendedKalmans = testing::Types<ExtendedKalman<2>, ExtendedKalman<3>>;
-using UnscentedKalmans = testing::Types<UnscentedKalman<2>, UnscentedKalman<3>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(ExtendedKalman, FilterInvariants, ExtendedKalmans);
-INSTANTIATE_TYPED_TEST_SUITE_P(UnscentedKalman, FilterInvariants, UnscentedKalmans);
 
 const TurnNoise kNoise{.acceleration_noise = 30, .turn_sigma = 2, .turn_time = 0.7};
 
@@ -166,7 +163,7 @@ struct Twin {
 };
 
 template <typename F>
-class TurningFilter : public FilterInvariants<F> {};
+class TurningFilter : public testing::Test, public RandomMeasurements<F::dimension> {};
 using Turning = testing::Types<ExtendedKalman<2>, ExtendedKalman<3>, UnscentedKalman<2>, UnscentedKalman<3>>;
 TYPED_TEST_SUITE(TurningFilter, Turning);
 

@@ -50,6 +50,7 @@ FilterOptions filter_named(std::string_view name) {
 }
 
 std::string_view name_of(const FilterOptions& options) {
+  if (const auto* custom = std::get_if<CustomFilterOptions>(&options)) return custom->name;
   const auto& filters = named_filters();
   return std::find_if(filters.begin(), filters.end(), [&](const NamedFilter& f) { return same_filter(f.options, options); })->name;
 }

@@ -8,6 +8,7 @@
 #include "marey/filter/alpha_beta.h"
 #include "marey/filter/alpha_beta_variable.h"
 #include "marey/filter/condensation.h"
+#include "marey/filter/custom_filter.h"
 #include "marey/filter/extended_kalman.h"
 #include "marey/filter/extrapolation.h"
 #include "marey/filter/filter.h"
@@ -23,7 +24,7 @@ namespace marey::filter {
 /// here; every place that must know of it then fails to compile until it does.
 using FilterOptions = std::variant<KalmanOptions, AlphaBetaOptions, AlphaBetaVariableOptions, KalmanPaperOptions,
                                    KalmanAccelerationOptions, ExtendedKalmanOptions, UnscentedKalmanOptions, CondensationOptions,
-                                   ExtrapolationOptions, InteractingModelsOptions>;
+                                   ExtrapolationOptions, InteractingModelsOptions, CustomFilterOptions>;
 
 /// Calls `visitor.template operator()<F>(options)` with the filter type F for dimension D that `options` chooses.
 template <int D, typename Visitor>
@@ -48,7 +49,7 @@ struct NamedFilter {
   FilterOptions options;
 };
 
-/// Every filter, the simplest first.
+/// Every filter but those that are brought from outside, the simplest first.
 const std::vector<NamedFilter>& named_filters();
 
 /// Its default parameters, in pixels. Throws marey::Error, listing the names, where there is none of this name.

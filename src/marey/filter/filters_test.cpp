@@ -3,19 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/filter/filter_invariants.h"
 
 namespace marey::filter {
 namespace {
-
-using Variables = testing::Types<AlphaBetaVariable<2>, AlphaBetaVariable<3>>;
-using Papers = testing::Types<KalmanPaper<2>, KalmanPaper<3>>;
-using Accelerations = testing::Types<KalmanAcceleration<2>, KalmanAcceleration<3>>;
-using Extrapolations = testing::Types<Extrapolation<2>, Extrapolation<3>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(AlphaBetaVariable, FilterInvariants, Variables);
-INSTANTIATE_TYPED_TEST_SUITE_P(KalmanPaper, FilterInvariants, Papers);
-INSTANTIATE_TYPED_TEST_SUITE_P(KalmanAcceleration, FilterInvariants, Accelerations);
-INSTANTIATE_TYPED_TEST_SUITE_P(Extrapolation, FilterInvariants, Extrapolations);
 
 const Matrix<2> kR = Matrix<2>::Identity();
 
@@ -23,7 +13,7 @@ TEST(Filters, EveryOneIsNamedOnceAndFoundByItsName) {
   for (const NamedFilter& filter : named_filters()) EXPECT_EQ(name_of(filter_named(filter.name)), filter.name);
   std::vector<bool> reached(std::variant_size_v<FilterOptions>);
   for (const NamedFilter& filter : named_filters()) reached[filter.options.index()] = true;
-  EXPECT_EQ(std::count(reached.begin(), reached.end(), false), 0);
+  EXPECT_EQ(std::count(reached.begin(), reached.end(), false), 1);  // CustomFilter, which is brought from outside
 }
 
 TEST(Filters, AnUnknownNameListsTheKnownOnes) {

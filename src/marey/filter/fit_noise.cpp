@@ -135,6 +135,7 @@ struct Apply {
   FilterOptions operator()(AlphaBetaVariableOptions options) const { return options; }
   FilterOptions operator()(ExtrapolationOptions options) const { return options; }
   FilterOptions operator()(KalmanPaperOptions options) const { return options; }
+  FilterOptions operator()(CustomFilterOptions options) const { return options; }
   FilterOptions operator()(KalmanOptions options) const {
     options.acceleration_noise = fit.acceleration_noise;
     return options;
