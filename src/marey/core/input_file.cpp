@@ -5,7 +5,6 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -62,16 +61,15 @@ std::size_t InputFile::read(std::span<char> room) {
 
 class InputStream::Buffer : public std::streambuf {
  public:
-  explicit Buffer(const std::string& path)
-      : file_(path), name_(path == "-" ? "standard input" : path), bytes_(std::size_t{1} << 16) {}
+  explicit Buffer(const std::string& path) : file_(path), name_(path == "-" ? "standard input" : path) {}
 
  protected:
   int_type underflow() override {
-    const std::size_t got = file_.read(bytes_);
+    const std::size_t got = file_.read({bytes_.get(), kSize});
     if (got == 0) return traits_type::eof();
-    measure({bytes_.data(), got});
-    setg(bytes_.data(), bytes_.data(), bytes_.data() + got);
-    return traits_type::to_int_type(bytes_.front());
+    measure({bytes_.get(), got});
+    setg(bytes_.get(), bytes_.get(), bytes_.get() + got);
+    return traits_type::to_int_type(bytes_[0]);
   }
 
  private:
@@ -84,7 +82,9 @@ class InputStream::Buffer : public std::streambuf {
   InputFile file_;
   std::string name_;
   std::size_t line_ = 0;  // bytes of it so far
-  std::vector<char> bytes_;
+  static constexpr std::size_t kSize = std::size_t{1} << 16;
+  std::unique_ptr<char[]> bytes_ =
+      std::make_unique_for_overwrite<char[]>(kSize);  // to clear it takes longer than to read a small file
 };
 
 InputStream::InputStream(const std::string& path) : std::istream(nullptr) {

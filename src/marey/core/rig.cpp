@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "marey/core/error.h"
 
@@ -16,6 +17,10 @@ std::optional<GroundView> RigCamera::ground_view(const geometry::GroundSurface& 
   if (const auto whole = camera()) return GroundView(*whole, surface);
   if (!ground_from_image || !size) return std::nullopt;
   return GroundView(*ground_from_image, *size);
+}
+
+bool unfit_for_camera_name(char c) {
+  return static_cast<unsigned char>(c) < ' ' || c == '\x7f' || std::string_view("/\\,=\"").find(c) != std::string_view::npos;
 }
 
 std::string camera_names(const Rig& rig) {

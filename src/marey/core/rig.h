@@ -52,6 +52,9 @@ struct Rig {
   std::vector<RigCamera> cameras;
 };
 
+/// Whether no camera may have this character in its name, which names files and stands in tables: / \ , = " and control characters.
+bool unfit_for_camera_name(char c);
+
 /// The names of all cameras, for messages: "left, right".
 std::string camera_names(const Rig& rig);
 

@@ -7,6 +7,7 @@
 namespace marey {
 namespace {
 
+constexpr std::string_view kPlayed = "play:";
 constexpr std::array<std::string_view, 9> kSchemes{"v4l2", "gige", "rtsp", "rtsps", "http", "https", "play", "sim", "node"};
 
 }  // namespace
@@ -28,10 +29,14 @@ std::string shown_source(std::string_view source) {
 }
 
 std::string source_beside(const std::string& folder, const std::string& source) {
-  constexpr std::string_view kPlayed = "play:";
   if (source.starts_with(kPlayed)) return std::string(kPlayed) + source_beside(folder, source.substr(kPlayed.size()));
   if (folder.empty() || source.empty() || !scheme_of(source).empty() || source.find("://") != std::string::npos) return source;
   return (std::filesystem::path(folder) / source).lexically_normal().string();
+}
+
+std::string path_of_source(std::string_view source) {
+  if (source.starts_with(kPlayed)) return std::string(source.substr(kPlayed.size(), source.find('?') - kPlayed.size()));
+  return scheme_of(source).empty() ? std::string(source) : std::string();
 }
 
 }  // namespace marey

@@ -16,4 +16,7 @@ std::string shown_source(std::string_view source);
 /// played; what names a device or a host is no path.
 std::string source_beside(const std::string& folder, const std::string& source);
 
+/// The path of a source that is a path, also of one that is played, without its options; empty for a device and a host.
+std::string path_of_source(std::string_view source);
+
 }  // namespace marey

@@ -27,5 +27,13 @@ TEST(SourceName, PathsLieBesideTheRigAndDevicesDoNot) {
   EXPECT_EQ(source_beside("", "left.avi"), "left.avi");
 }
 
+TEST(SourceName, APathIsFoundInWhatIsPlayed) {
+  EXPECT_EQ(path_of_source("left.avi"), "left.avi");
+  EXPECT_EQ(path_of_source("play:left.avi?loop"), "left.avi");
+  EXPECT_EQ(path_of_source("play:left.avi"), "left.avi");
+  EXPECT_EQ(path_of_source("v4l2:/dev/video0"), "");
+  EXPECT_EQ(path_of_source(""), "");
+}
+
 }  // namespace
 }  // namespace marey
