@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { join } from "node:path";
+import { isDeepStrictEqual } from "node:util";
 
 const [, , page_folder, folder, scenario, address] = process.argv;
 const { chromium } = createRequire(join(page_folder, "package.json"))("playwright-core");
@@ -17,10 +18,30 @@ const sleep = (ms) => page.waitForTimeout(ms);
 const text = (selector) => page.textContent(selector);
 const time = async () => Number(await page.evaluate(() => document.body.dataset.time));
 const has = (selector, name) => page.evaluate(([s, n]) => document.querySelector(s).classList.contains(n), [selector, name]);
-/** Asked again and again, for the page's policy forbids what Playwright's own waiting does. */
-async function until(what, condition, argument) {
-  for (const end = Date.now() + 20000; Date.now() < end; await sleep(60)) if (await page.evaluate(condition, argument)) return;
+/** Asked again and again, for a slow machine draws late. */
+async function eventually(what, holds) {
+  for (const end = Date.now() + 20000; Date.now() < end; await sleep(60)) if (await holds()) return;
   assert.fail(what);
+}
+/** The same of something in the page, whose policy forbids what Playwright's own waiting does. */
+const until = (what, condition, argument) => eventually(what, () => page.evaluate(condition, argument));
+/** The time that is shown, once it is as it should be. */
+async function time_where(what, holds) {
+  let now = NaN;
+  await eventually(what, async () => holds((now = await time())));
+  return now;
+}
+/** The time that is shown, once it stands still. */
+async function still_time(what) {
+  let before = await time();
+  await eventually(what, async () => {
+    await sleep(300);
+    const now = await time();
+    const still = now === before;
+    before = now;
+    return still;
+  });
+  return before;
 }
 
 /** How many colours a part of the page has, and its pixels as a digest. */
@@ -40,10 +61,14 @@ async function look(selector) {
   }, png);
 }
 async function changes(what, act) {
-  const before = await look("#stage");
+  let before;
+  await eventually(`the view does not stand still before ${what}`, async () => {
+    const earlier = before;
+    before = await look("#stage");
+    return isDeepStrictEqual(before, earlier);
+  });
   await act();
-  await sleep(350);
-  assert.notDeepEqual(await look("#stage"), before, `${what} changes nothing in the view`);
+  await eventually(`${what} changes nothing in the view`, async () => !isDeepStrictEqual(await look("#stage"), before));
 }
 
 /** Nothing that can be pressed is cut off or covered by another one. */
@@ -66,33 +91,25 @@ async function check_layout() {
 async function play_and_scrub() {
   const begin = await time();
   await page.click("#play");
-  await until("it does not play", (t) => Number(document.body.dataset.time) > t + 0.2, begin);
+  await time_where("it does not play", (now) => now > begin + 0.2);
   await page.click("#play");
-  await sleep(200);
-  const paused = await time();
-  await sleep(300);
-  assert.equal(await time(), paused, "it plays on");
+  await still_time("it plays on");
+  await page.keyboard.press("End");
+  const end = await time_where("the key End goes nowhere", (now) => now > begin + 1);
+  await page.keyboard.press("Home");
+  const first = await time_where("the key Home goes nowhere", (now) => now < end);
   await page.click("#forth");
-  await sleep(200);
-  const next = await time();
-  assert(next > paused, "no step on");
+  const next = await time_where("no step on", (now) => now > first);
   await page.click("#back");
-  await sleep(200);
-  assert((await time()) < next, "no step back");
+  await time_where("no step back", (now) => now < next);
   const strip = await page.locator("#strip").boundingBox();
   await page.mouse.click(strip.x + strip.width / 2, strip.y + strip.height / 2);
-  await sleep(200);
-  const middle = await time();
-  await page.keyboard.press("End");
-  await sleep(200);
-  const end = await time();
+  await time_where("the strip's middle is not the recording's", (now) => Math.abs(now - (first + end) / 2) < 0.05 * (end - first));
   await page.keyboard.press("Home");
-  await sleep(200);
-  const first = await time();
-  assert(Math.abs(middle - (first + end) / 2) < 0.05 * (end - first), `the strip's middle is ${middle} of ${first} to ${end}`);
+  await time_where("Home does not lead back", (now) => now === first);
   await page.selectOption("#speed", "4");
   await page.keyboard.press(" ");
-  await until("four times as fast does not play", (t) => Number(document.body.dataset.time) > t + 0.4, first);
+  await time_where("four times as fast does not play", (now) => now > first + 0.4);
   await page.keyboard.press(" ");
   await page.keyboard.press("ArrowDown");
   assert.equal(await page.inputValue("#speed"), "2");
@@ -100,8 +117,7 @@ async function play_and_scrub() {
   await page.keyboard.press("Home");
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Shift+ArrowRight");
-  await sleep(200);
-  assert((await time()) > first + 0.9);
+  await time_where("the arrows do not step", (now) => now > first + 0.9);
   await page.keyboard.press("ArrowLeft");
   await page.keyboard.press("Shift+ArrowLeft");
 }
@@ -117,8 +133,7 @@ async function list_and_plots(space) {
   assert.match(await text("#count"), /1 hidden/);
   const name = await names.nth(2).textContent();
   await page.fill("#filter", name);
-  await sleep(100);
-  assert((await names.count()) < count);
+  await eventually("the filter leaves all", async () => (await names.count()) < count);
   await page.fill("#filter", "");
   await page.click("#by_seen");
   const percents = (await page.locator(".percent").allTextContents()).map(Number);
@@ -130,12 +145,11 @@ async function list_and_plots(space) {
   await page.locator("#coordinates button", { hasText: "speed" }).click();
   await until("no speed is plotted", (n) => document.querySelectorAll(".uplot canvas").length === n, space ? 4 : 3);
   await page.locator("#coordinates button", { hasText: "speed" }).click();
-  await sleep(300);
+  await until("speed stays plotted", (n) => document.querySelectorAll(".uplot canvas").length === n, space ? 3 : 2);
   const over = await page.locator(".u-over").first().boundingBox();
   const before = await time();
   await page.mouse.click(over.x + 0.8 * over.width, over.y + over.height / 2);
-  await sleep(300);
-  assert((await time()) > before, "a click in the plot does not go there");
+  await time_where("a click in the plot does not go there", (now) => now > before);
   await page.screenshot({ path: join(folder, `${scenario}_plots.png`) });
   await page.click('#tabs [data-tab="about"]');
   assert.match(await text("#about"), /Holds/);
@@ -151,7 +165,6 @@ async function buttons(space) {
   await changes("labels", () => page.click("#labels"));
   await page.keyboard.press("l");
   await page.keyboard.press("Shift+ArrowRight");
-  await sleep(200);
   await changes("trails", () => page.keyboard.press("t"));
   if (space) {
     for (const id of ["top", "front", "side", "reset"]) await changes(id, () => page.click(`#${id}`));
@@ -191,8 +204,7 @@ async function pick() {
       }, [stage.x + x, stage.y + y]);
       if (!found) continue;
       await page.mouse.click(stage.x + x, stage.y + y);
-      await sleep(150);
-      assert.match(await text("#count"), /1 selected/);
+      await eventually("a click on a mark selects nothing", async () => /1 selected/.test(await text("#count")));
       await page.keyboard.press("Escape");
       return;
     }
@@ -202,37 +214,31 @@ async function pick() {
 
 /** The picture lies behind its tracks. */
 async function live_image() {
-  await sleep(2500);
-  assert((await look("#view canvas")).colours > 40, "the view has no picture");
-  assert.match(await text("#facts"), /Hz/);
+  await eventually("the view has no picture", async () => (await look("#view canvas")).colours > 40);
+  await eventually("no rate is told", async () => /Hz/.test(await text("#facts")));
   await page.screenshot({ path: join(folder, `${scenario}.png`) });
 }
 
 async function live() {
   await until("no picture comes", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
   if (phone) await page.click("#pictures_tab");
-  await sleep(1500);
-  assert((await look("#cameras canvas")).colours > 10, "a camera's picture is empty");
-  assert.match(await text("#cameras"), /stalled/);
-  assert.match(await text("#cameras"), /7 lost/);
+  await eventually("a camera's picture is empty", async () => (await look("#cameras canvas")).colours > 10);
+  await eventually("no camera is said to be stalled", async () => /stalled/.test(await text("#cameras")));
+  await eventually("no pictures are said to be lost", async () => /7 lost/.test(await text("#cameras")));
   await page.click("#record");
   await until("nothing is recorded", () => document.querySelector("#record").getAttribute("aria-pressed") === "true");
   await page.keyboard.press("r");
   await until("recording does not end", () => document.querySelector("#record").getAttribute("aria-pressed") === "false");
   await page.click("#play");
-  await sleep(300);
-  const paused = await time();
-  await sleep(500);
-  assert.equal(await time(), paused);
+  const paused = await still_time("it does not pause");
   await page.keyboard.press("ArrowLeft");
-  await sleep(300);
-  assert((await time()) < paused);
+  await time_where("no step back", (now) => now < paused);
   await page.click("#live");
   await until("it does not go on", (t) => Number(document.body.dataset.time) > t, paused);
   const figure = page.locator("#cameras figure").first();
   const small = (await figure.boundingBox()).width;
   await figure.click();
-  if (!phone) assert((await figure.boundingBox()).width > small, "a picture does not grow");
+  if (!phone) await eventually("a picture does not grow", async () => (await figure.boundingBox()).width > small);
   await figure.click();
   await page.keyboard.press("m");
   await page.locator(".row .name").first().click();
@@ -246,10 +252,8 @@ async function live() {
 
 await page.goto(address);
 await until("nothing was loaded", () => Number(document.body.dataset.rows) > 0);
-await sleep(700);
 assert(!page.url().includes("token"), "the token stays in the address bar");
-const seen = await look("#stage");
-assert(seen.colours > 30, `the view has ${seen.colours} colours`);
+await eventually("the view has hardly a colour", async () => (await look("#stage")).colours > 30);
 await page.screenshot({ path: join(folder, `${scenario}.png`) });
 await check_layout();
 const space = scenario.includes("space") || scenario.includes("live");

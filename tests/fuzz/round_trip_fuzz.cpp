@@ -103,7 +103,8 @@ void check_rig(std::string_view text) {
        {std::pair{"marey", "a.toml"}, std::pair{"opencv", "a.yml"}, std::pair{"opencv", "a.json"},
         std::pair{"aniposelib", "b.toml"}, std::pair{"qualisys", "a.qca.txt"}, std::pair{"tsai", "a.xml"}}) {
     const std::string path = folder() + file;
-    if (!taken([&] { format::format_to_write(path, name, Content::rig).write_rig(before, path); })) continue;
+    const format::Format& written_as = format::format_to_write(path, name, Content::rig);
+    if (!taken([&] { written_as.write_rig(before, path); })) continue;
     const marey::Rig after = format::format_to_read(path, Content::rig).read_rig(path);
     check(after.cameras.size() == before.cameras.size());
     for (std::size_t i = 0; i < after.cameras.size(); ++i) {
@@ -119,12 +120,12 @@ void check_match(std::string_view text) {
   match::GroundMatch before;
   before.recording = match::parse_ground(text, "file");
   if (before.recording.samples() == 0) return;  // some formats are rows alone, and an empty file is refused
-  for (const auto& [name, file] : {std::pair{"csv", "a.csv"}, std::pair{"mot", "a.txt"}, std::pair{"metrica", "a_home.csv"},
+  for (const auto& [name, file] : {std::pair{"ground", "a.csv"}, std::pair{"mot", "a.txt"}, std::pair{"metrica", "a_home.csv"},
                                    std::pair{"tracab", "a.dat"}, std::pair{"epts", "a.xml"}, std::pair{"soccernet", "a.json"}}) {
     const std::string path = folder() + file;
     std::vector<std::string> warnings;
-    if (!taken([&] { warnings = format::write_whole(path, format::format_to_write(path, name, Content::ground), before); }))
-      continue;
+    const format::Format& written_as = format::format_to_write(path, name, Content::ground);
+    if (!taken([&] { warnings = format::write_whole(path, written_as, before); })) continue;
     const match::GroundMatch after = format::read_match(path);
     // Who is of a third team is left out by some formats, which they say.
     check(warnings.empty() ? after.recording.samples() == before.recording.samples()

@@ -146,6 +146,8 @@ struct Format {
 
   /// It can be written while it is recorded, without a plan; the others begin with what is known only at the end.
   bool while_recording = false;
+  /// It holds bodies' poses beside points.
+  bool poses = false;
   /// Its places on the ground count from the corner of the pitch that is below on the left when it is seen from above with the home
   /// stand at the bottom, y upwards; those of others are as the user has them.
   bool from_corner = false;

@@ -238,4 +238,10 @@ std::vector<std::string> write_whole(const std::string& path, const Format& form
   return {};
 }
 
+std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format) {
+  if (header.bodies.empty() || format.poses) return std::nullopt;
+  return fmt::format("{}: {} holds points alone, not the poses of the {} {}; a take (.marey), .mcap, or CSV by --format poses does",
+                     path, format.title, header.bodies.size(), header.bodies.size() == 1 ? "body" : "bodies");
+}
+
 }  // namespace marey::format

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ WritePlan plan_of(FileReader& reader, const std::string& name);
 /// format that is written while recording needs none. `lost` gets what the format could not hold, with `finish`.
 std::unique_ptr<Sink> create_recording(const std::string& path, const Format& format, const WritePlan& plan = {},
                                        std::vector<std::string>* lost = nullptr);
+
+/// What a user should know where a recording has bodies and `format` holds no poses; nothing where it does, or there are none.
+std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format);
 
 /// Writes a recording that is whole, and says what the format could not hold.
 std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match,

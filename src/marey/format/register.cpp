@@ -14,6 +14,7 @@
 #define MAREY_FORMATS(row) \
   row(format::take, take) \
   row(format::mcap, mcap) \
+  row(format::bodies, poses) \
   row(format::motion, trc) \
   row(format::motion, motive) \
   row(format::motion, nexus) \
@@ -41,6 +42,7 @@
   row(format::rig, soccernet_camera) \
   row(format::rig, marey) \
   row(format::rig, aniposelib) \
+  row(format::rig, openptv) \
   row(format::rig, self_cal) \
   row(format::motion, labels)
 // clang-format on

@@ -80,6 +80,8 @@ TEST(Register, AFileIsKnownByItsContent) {
   EXPECT_EQ(known("1,-1,10,20,30,40,0.5\n2,-1,10,20,30,40,0.5\n"), "another program's detections, MOTChallenge text");
   EXPECT_EQ(known("1,1,10,20,30,40,1,-1,-1,-1\n"), "MOTChallenge text with boxes");
   EXPECT_EQ(known("1 1 10 20 30 40\n"), "MOTChallenge text with boxes");
+  EXPECT_EQ(known("1,1,10,20,30,40,1,1,0.86\n"), "MOTChallenge text with boxes");
+  EXPECT_EQ(known("1,1,10,20,30,40,1,3.5,4.5\n"), "MOTChallenge text with world coordinates");
   EXPECT_EQ(known("1,1,-1,-1,-1,-1,1,3.5,4.5,0\n"), "MOTChallenge text with world coordinates");
   EXPECT_EQ(known("LASI\nRASI\n"), "names of markers");
   EXPECT_EQ(known("label,x,y,z\nLASI,0,0,1\n"), "names of markers");

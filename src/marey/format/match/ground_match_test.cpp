@@ -322,6 +322,30 @@ Vector<2> first_place(const GroundMatch& match) {
   return match.recording.tracks()[row.track].place(row.row);
 }
 
+TEST(GroundExchange, SomebodyMayStandWhereMotChallengeSaysNothing) {
+  const TemporaryFolder folder;
+  GroundMatch match;
+  match.recording.header.rate_hz = 25;
+  Instant instant;
+  instant.samples = {sample_at(1, -1, -1)};
+  match.recording.add(instant);
+  write_whole(folder / "m.txt", of_ground("mot"), match);
+  EXPECT_EQ(first_place(read_match(folder / "m.txt")), Vector<2>(-1, -1));
+  for (const char* nowhere : {"1,1,-1,-1,-1,-1,1,-1,-1,-1\n", "1,1,-1,-1,-1,-1,1,-1,-1\n"})
+    EXPECT_THROW(parse_mot_world(nowhere, "m.txt", 25), Error) << nowhere;
+}
+
+TEST(GroundExchange, RatesThatCouldNotBeReadAreNotWritten) {
+  const TemporaryFolder folder;
+  GroundMatch match = made_up(1);
+  for (const double rate_hz : {1e-9, 1.25e8}) {
+    match.recording.header.rate_hz = rate_hz;
+    for (const char* format : {"metrica", "tracab", "epts"})
+      EXPECT_THROW(write_whole(folder / "m_home.csv", of_ground(format), match), Error) << format << " " << rate_hz;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(GroundExchange, FilesOfVendors) {
   const std::string folder = test::data("football_files/");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";

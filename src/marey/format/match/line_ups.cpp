@@ -135,9 +135,10 @@ std::vector<GroundPeriod> periods_of(const GroundMatch& match) {
 
 int whole_rate(double rate_hz, std::string_view format) {
   const double whole = std::round(rate_hz);
-  if (!(whole >= 1) || std::abs(rate_hz - whole) > 0.005 * whole)
-    throw Error("{} holds whole numbers of frames a second only, and the recording has {:.3f}; write ground or mot", format,
-                rate_hz);
+  constexpr double kMost = 1000;
+  if (!(whole >= 1 && whole <= kMost) || std::abs(rate_hz - whole) > 0.005 * whole)
+    throw Error("{} holds whole numbers of frames a second only, up to {:g}, and the recording has {:.3f}; write ground or mot",
+                format, kMost, rate_hz);
   return static_cast<int>(whole);
 }
 

@@ -38,7 +38,7 @@ LineUps line_ups_of(const GroundMatch& match);
 std::vector<GroundPeriod> periods_of(const GroundMatch& match);
 
 /// Frames a second as a whole number, which some formats ask for. Throws Error, with the format's name, where the rate is more than
-/// 0.5 % off.
+/// 0.5 % off, or above 1,000 Hz.
 int whole_rate(double rate_hz, std::string_view format);
 
 /// A path with its ending, from the last dot on, replaced.

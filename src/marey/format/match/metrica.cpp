@@ -21,6 +21,13 @@
 namespace marey::format::match {
 namespace {
 
+constexpr double kLeastRate = 0.1, kMostRate = 10'000;  // Hz
+constexpr double kMostPitches = 1000;                   // lengths and widths of the pitch
+
+bool is_told_by_times(double rate_hz) {
+  return rate_hz >= kLeastRate && rate_hz <= kMostRate;
+}
+
 constexpr std::size_t kFirstPlayer = 3;  // columns before it
 constexpr std::size_t kBall = 2;         // columns of it
 
@@ -97,8 +104,8 @@ class MetricaReader {
       const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
       if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
       builder_.add(frame, frame / match_.recording.header.rate_hz, column.person,
-                   match_.pitch.length * number(column.at, -1e3, 1e3), match_.pitch.width * (1 - number(column.at + 1, -1e3, 1e3)),
-                   where());
+                   match_.pitch.length * number(column.at, -kMostPitches, kMostPitches),
+                   match_.pitch.width * (1 - number(column.at + 1, -kMostPitches, kMostPitches)), where());
     }
   }
 
@@ -117,7 +124,7 @@ class MetricaReader {
     }
     if (numbers.count() < 2) return;
     const double rate = std::round(1000 * numbers.rate_hz().value_or(0)) / 1000;
-    if (!(rate >= 0.1 && rate <= 10'000))
+    if (!is_told_by_times(rate))
       throw Error("{}: its frames and times make no rate; the match begins with frame 1 at one frame's time", name_);
     match_.recording.header.rate_hz = rate;
   }
@@ -175,8 +182,10 @@ void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, co
                    static_cast<double>(frame + 1) / recording.header.rate_hz);
     for (const std::size_t person : people) {
       if (const auto& place = places[person]) {
-        fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", place->x() / match.pitch.length,
-                       1 - place->y() / match.pitch.width);
+        const Vector<2> share(place->x() / match.pitch.length, 1 - place->y() / match.pitch.width);
+        if (!(share.cwiseAbs().maxCoeff() <= kMostPitches))
+          throw Error("somebody is at ({:g}, {:g}) m, farther from the pitch than Metrica's files can say", place->x(), place->y());
+        fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", share.x(), share.y());
       } else {
         text += ",NaN,NaN";
       }
@@ -232,6 +241,10 @@ bool is_metrica(const Beginning& file) {
 }
 
 std::vector<std::string> write_metrica(const GroundMatch& match, const std::string& path) {
+  if (!is_told_by_times(match.recording.header.rate_hz)) {
+    throw Error("{}: Metrica's files tell a rate of {:g} to {:g} Hz by their times; this is one of {:g} Hz", path, kLeastRate,
+                kMostRate, match.recording.header.rate_hz);
+  }
   LineUps line_ups = line_ups_of(match);
   const std::vector<GroundPeriod> periods = periods_of(match);
   std::string stem = with_ending(path, "");

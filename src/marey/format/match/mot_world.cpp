@@ -15,6 +15,15 @@
 
 namespace marey::format::match {
 
+namespace {
+
+/// (-1, -1), and -1 or nothing behind it, says that there is no place. With a height of 0, as we write it, somebody stands there.
+bool is_no_place(const std::vector<std::string_view>& fields) {
+  return number_of(fields[7]) == -1 && number_of(fields[8]) == -1 && (fields.size() < 10 || number_of(fields[9]) == -1);
+}
+
+}  // namespace
+
 GroundMatch parse_mot_world(std::string_view text, const std::string& name, double rate_hz) {
   constexpr std::array needed = {0, 1, 7, 8};  // frame, id, X, Y
   constexpr std::array<std::string_view, 4> names = {"frame", "id", "X", "Y"};
@@ -40,7 +49,7 @@ GroundMatch parse_mot_world(std::string_view text, const std::string& name, doub
       throw Error("{}: frame is {:g}; frames are whole numbers from 1", where, values[0]);
     if (values[1] < 0 || values[1] > 1e9 || values[1] != std::floor(values[1]))
       throw Error("{}: id is {:g}; ids are whole numbers from 0", where, values[1]);
-    if (values[2] == -1 && values[3] == -1)
+    if (is_no_place(fields))
       throw Error("{}: has no world coordinates (-1, -1); such boxes are placed on the ground by `marey track --ground`", where);
     const auto frame = static_cast<std::int32_t>(values[0]) - 1;
     const int id = static_cast<int>(values[1]);
@@ -71,12 +80,21 @@ std::vector<std::string> write_mot_world(const GroundMatch& match, const std::st
   return {};
 }
 
-/// Ten numbers, or the nine that are needed; the place is not (-1, -1), which says that there is none.
+/// MOTChallenge's truth has nine columns too: behind the box come its class, a whole number, and its visibility, in [0, 1].
+bool is_truth_of_boxes(const std::vector<std::string_view>& fields) {
+  const double width = *number_of(fields[4]), height = *number_of(fields[5]);
+  const double kind = *number_of(fields[7]), visibility = *number_of(fields[8]);
+  return fields.size() == 9 && width > 0 && height > 0 && kind >= 1 && kind == std::floor(kind) && visibility >= 0 &&
+         visibility <= 1;
+}
+
+/// Ten numbers, or the nine that are needed; the place is one.
 bool is_mot_world(const Beginning& file) {
   std::vector<std::string_view> fields;
   const std::string_view line = file.first_line();
   split_fields(line, line.find(',') == std::string_view::npos ? ' ' : ',', fields);
-  return fields.size() >= 9 && all_numbers(fields) && !(number_of(fields[7]) == -1 && number_of(fields[8]) == -1);
+  if (fields.size() < 9 || !all_numbers(fields) || is_truth_of_boxes(fields)) return false;
+  return !is_no_place(fields);
 }
 
 GroundMatch read_mot_world(const std::string& path, const ReadOptions& options) {

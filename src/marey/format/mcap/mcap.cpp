@@ -291,6 +291,7 @@ Format mcap_format() {
           .facts = mcap::facts_of_file,
           .create = mcap::create_mcap,
           .while_recording = true,
+          .poses = true,
           .z_up = true};
 }
 

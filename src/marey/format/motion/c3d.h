@@ -8,11 +8,15 @@
 
 namespace marey::format::motion {
 
+/// What stands among a C3D file's points: places alone, or also angles, forces and whatever else is no place, which then is as
+/// wrong as if its numbers were lengths.
+enum class C3dPoints { places, all };
+
 /// Reads the points of a C3D file: PC, DEC and SGI, integer and real. Analog channels are passed over. A point's camera mask
 /// becomes CameraId 0 to 6, its residual `residual_m`. A point whose fourth word is 0 is `filled`, unless no point of the file has
 /// another one: then the file does not tell, and all are `measured`. Throws Error for what is no C3D file, and for one that is cut
 /// off.
-std::unique_ptr<FileReader> open_c3d(const std::string& path);
+std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points = C3dPoints::places);
 /// The same of bytes in memory, which must outlive the reader; `name` stands for the path in messages.
 std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "marey/core/error.h"
@@ -166,8 +167,8 @@ class LayoutFinder {
 
 class C3dReader : public FileReader {
  public:
-  C3dReader(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const std::string& name)
-      : file_(std::move(file)), head_(read_c3d_head(bytes, name)), bytes_(bytes, head_.processor) {
+  C3dReader(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const std::string& name, C3dPoints points)
+      : file_(std::move(file)), path_(name), head_(read_c3d_head(bytes, name)), bytes_(bytes, head_.processor) {
     LayoutFinder finder(head_, bytes.size(), name);
     layout_ = finder.find();
     for (const auto* sentences : {&head_.warnings, &finder.warnings}) {
@@ -179,7 +180,8 @@ class C3dReader : public FileReader {
     info_.frame_count = static_cast<std::int64_t>(layout_.frames);
     const std::string screen = head_.text("POINT:Y_SCREEN");
     if (screen == "+Y" || screen == "+Z") info_.up = screen == "+Y" ? UpAxis::y : UpAxis::z;
-    find_tracks();
+    find_tracks(points);
+    warn_of_what_is_not_read();
   }
 
   const FileInfo& info() const override { return info_; }
@@ -191,6 +193,7 @@ class C3dReader : public FileReader {
     frame.index = layout_.first_index + static_cast<std::int64_t>(at_);
     frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / info_.header.rate_hz);
     for (std::size_t i = 0; i < layout_.points; ++i) {
+      if (!is_place_[i]) continue;
       if (auto point = point_at(at_, i)) frame.samples.push_back(*point);
     }
     ++at_;
@@ -253,39 +256,85 @@ class C3dReader : public FileReader {
     return company + " " + software;
   }
 
-  void find_tracks() {
-    std::vector<std::string> labels;
+  /// Of a parameter that goes on in others of its name, with a number behind it.
+  std::vector<std::string> texts(std::string_view parameter) const {
+    std::vector<std::string> texts;
     for (int part = 1;; ++part) {
-      const auto found = head_.parameters.find(part == 1 ? "POINT:LABELS" : fmt::format("POINT:LABELS{}", part));
-      if (found == head_.parameters.end()) break;
-      labels.insert(labels.end(), found->second.texts.begin(), found->second.texts.end());
-    }
-    labels.resize(layout_.points);
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      info_.tracks.push_back({TrackId(static_cast<int>(i) + 1), std::move(labels[i]), {}});
+      const auto found = head_.parameters.find(part == 1 ? std::string(parameter) : fmt::format("{}{}", parameter, part));
+      if (found == head_.parameters.end()) return texts;
+      texts.insert(texts.end(), found->second.texts.begin(), found->second.texts.end());
     }
   }
 
+  /// What stands among the points and is none: angles in degrees, forces in N, …
+  std::map<std::string, std::string_view> other_quantities() const {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kGroups{{{"POINT:ANGLES", "angles"},
+                                                                                    {"POINT:FORCES", "forces"},
+                                                                                    {"POINT:MOMENTS", "moments"},
+                                                                                    {"POINT:POWERS", "powers"},
+                                                                                    {"POINT:SCALARS", "scalars"}}};
+    std::map<std::string, std::string_view> quantities;
+    for (const auto& [parameter, quantity] : kGroups) {
+      for (const std::string& label : texts(parameter)) quantities.emplace(label, quantity);
+    }
+    return quantities;
+  }
+
+  void find_tracks(C3dPoints points) {
+    std::vector<std::string> labels = texts("POINT:LABELS");
+    labels.resize(layout_.points);
+    const auto quantities = points == C3dPoints::all ? std::map<std::string, std::string_view>() : other_quantities();
+    std::map<std::string_view, int> left_out;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const auto other = labels[i].empty() ? quantities.end() : quantities.find(labels[i]);
+      is_place_.push_back(other == quantities.end());
+      if (is_place_.back()) {
+        info_.tracks.push_back({TrackId(static_cast<int>(i) + 1), std::move(labels[i]), {}});
+      } else {
+        ++left_out[other->second];
+      }
+    }
+    if (left_out.empty()) return;
+    std::string counts;
+    for (const auto& [quantity, count] : left_out) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, quantity);
+    warnings_.push_back(fmt::format("{}: {} stand among its points and are no places; they are left out", path_, counts));
+  }
+
+  void warn_of_what_is_not_read() {
+    const auto count = [&](const char* parameter) {
+      const double value = head_.number(parameter).value_or(0);
+      return std::isfinite(value) && value > 0 && value < 1e6 ? static_cast<int>(value) : 0;
+    };
+    const int channels = layout_.analog_words > 0 ? count("ANALOG:USED") : 0, events = count("EVENT:USED");
+    if (channels == 0 && events == 0) return;
+    const std::string analog = channels > 0 ? fmt::format("{} channels of analog data (forces, EMG)", channels) : "";
+    const std::string marked = events > 0 ? fmt::format("{} events", events) : "";
+    warnings_.push_back(
+        fmt::format("{}: its {}{}{} are not read", path_, analog, channels > 0 && events > 0 ? " and " : "", marked));
+  }
+
   std::unique_ptr<MappedFile> file_;
+  std::string path_;
   C3dHead head_;
   C3dBytes bytes_;
   Layout layout_;
   bool tells_measured_ = false;
   FileInfo info_;
+  std::vector<bool> is_place_;  // of each point
   std::vector<std::string> warnings_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<FileReader> open_c3d(const std::string& path) {
+std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points) {
   auto file = std::make_unique<MappedFile>(path);
   const std::span<const std::byte> bytes = file->bytes();
-  return std::make_unique<C3dReader>(std::move(file), bytes, path);
+  return std::make_unique<C3dReader>(std::move(file), bytes, path, points);
 }
 
 std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name) {
-  return std::make_unique<C3dReader>(nullptr, bytes, name);
+  return std::make_unique<C3dReader>(nullptr, bytes, name, C3dPoints::places);
 }
 
 }  // namespace marey::format::motion

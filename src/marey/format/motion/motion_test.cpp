@@ -281,7 +281,7 @@ TEST(Trc, ReadsWhatProgramsWrite) {
       "PathFileType\t4\t(X/Y/"
       "Z)\ta.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n"
       "50\t50\t3\t2\tm\t50\t1\t3\nFrame#\tTime\tA\t\t\tB\t\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n1\t0\t1\t2\t3\t\t\t\n2\t0."
-      "02\t1\t2\t3\t4\t5\t6\r\n3\t0.04\tNaN\tNaN\tNaN";
+      "02\t1\t2\t3\t4\t5\t6\r\n3\t0.04\tNaN\tNan\t-nan";
   const Read read = read_all(*read_trc(text + "\t7\t8\t9", "a.trc"));
   EXPECT_TRUE(read.warnings.empty());
   ASSERT_EQ(read.frames.size(), 3U);
@@ -359,6 +359,22 @@ TEST(MocapFiles, EveryProcessorsTwinsAreEqual) {
   expect_same(real, mocap_file(folder + "dec_real.c3d"), 0);
   expect_same(real, mocap_file(folder + "sgi_real.c3d"), 0);
   for (const char* name : {"pc_int.c3d", "dec_int.c3d", "sgi_int.c3d"}) expect_same(real, mocap_file(folder + name), 0.00028119);
+}
+
+TEST(MocapFiles, WhatIsNoPlaceIsNoPoint) {
+  const std::string path = test::data("gait_children/HC002D/straight_HC002D06.c3d");
+  if (!fs::exists(path)) GTEST_SKIP() << path << " is not here";
+  const Read read = read_all(path);
+  const auto has = [&](std::string_view label) {
+    return std::any_of(read.info.tracks.begin(), read.info.tracks.end(),
+                       [&](const TrackName& track) { return track.label == label; });
+  };
+  EXPECT_TRUE(has("LKNE"));
+  for (const char* other : {"LKneeAngles", "LKneeForce", "LKneeMoment", "LKneePower"}) EXPECT_FALSE(has(other)) << other;
+  ASSERT_EQ(read.warnings.size(), 2U);
+  EXPECT_NE(read.warnings[0].find("51 angles, 20 forces, 18 moments, 16 powers, 2 scalars stand among its points"),
+            std::string::npos);
+  EXPECT_NE(read.warnings[1].find("its 24 channels of analog data (forces, EMG) and 12 events are not read"), std::string::npos);
 }
 
 TEST(MocapFiles, HeadersAtOddPlacesReadTheSame) {

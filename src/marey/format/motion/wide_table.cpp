@@ -1,6 +1,7 @@
 #include "marey/format/motion/wide_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,10 @@ namespace {
 constexpr double kLargestSeconds = 1e9;
 
 bool is_missing(std::string_view field) {
-  return field.empty() || field == "NaN" || field == "nan" || field == "NAN" || field == "-nan" || field == "\"\"";
+  if (field.empty() || field == "\"\"") return true;
+  if (field.front() == '-') field.remove_prefix(1);
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return std::ranges::equal(field, std::string_view("nan"), same);
 }
 
 }  // namespace
@@ -31,8 +35,16 @@ const std::vector<std::string_view>& WideTableHead::line(const char* which) {
   return fields_;
 }
 
+namespace {
+
+bool is_table_rate(double rate_hz) {
+  return rate_hz > 1e-6 && rate_hz <= 1e9;
+}
+
+}  // namespace
+
 void WideTableHead::set_rate(std::optional<double> rate_hz, const std::string& otherwise) {
-  if (!rate_hz || *rate_hz <= 1e-6 || *rate_hz > 1e9) fail(otherwise);
+  if (!rate_hz || !is_table_rate(*rate_hz)) fail(otherwise);
   info_.header.rate_hz = *rate_hz;
 }
 
@@ -137,6 +149,7 @@ WideTableWriter::WideTableWriter(const std::string& path, const WritePlan& plan)
 }
 
 void WideTableWriter::start(const RecordingHeader& header) {
+  if (!is_table_rate(header.rate_hz)) throw Error("{}: {:g} Hz is no rate that its head can tell", path(), header.rate_hz);
   file_.emplace(path());
   file_->write(head(header));
   rate_hz_ = header.rate_hz;

@@ -24,21 +24,15 @@ bool is_sound(double value) {
   return std::abs(value) < kLargestInRig;
 }
 
-bool has(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
-
 /// A pixel's direction through a whole lens.
 std::optional<Vector<3>> bearing(const geometry::Lens& lens, cv::Size size, const Vector<2>& pixel) {
   return Camera(lens, Rigid3{}, size).bearing(pixel);
 }
 
-/// A name that is fit for a rig: no / \ , = " and no control characters.
+/// A name that is fit for a rig.
 std::string fit_name(std::string name) {
   name = plain_text(name);
-  for (char& c : name) {
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || has("/\\,=\"", {&c, 1})) c = '_';
-  }
+  std::replace_if(name.begin(), name.end(), unfit_for_camera_name, '_');
   return name;
 }
 

@@ -105,11 +105,8 @@ std::optional<Rigid3> read_pose(const Section& section) {
 
 void check_name(const Section& section, const std::string& name) {
   if (name.empty()) section.problem("name", "its name is missing or empty; add name = \"…\"");
-  if (std::any_of(name.begin(), name.end(), [](char c) {
-        return static_cast<unsigned char>(c) < ' ' || c == '\x7f' || std::string_view("/\\,=\"").find(c) != std::string_view::npos;
-      })) {
+  if (std::any_of(name.begin(), name.end(), unfit_for_camera_name))
     section.problem("name", "its name may hold no / \\ , = \" and no control character: it names files and stands in tables");
-  }
 }
 
 RigCamera read_camera(Section& section, int index, const std::string& folder) {

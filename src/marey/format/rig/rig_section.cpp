@@ -17,7 +17,7 @@ constexpr double kLargestInFile = 1e9;   // of any number in the file
 constexpr double kRotationSlack = 1e-3;  // what rounding to four digits leaves of RᵀR − I
 constexpr double kRotationExact = 1e-9;  // above, the nearest rotation is taken
 
-std::optional<double> number_of(const toml::node& node) {
+std::optional<double> number_in_node(const toml::node& node) {
   if (!node.is_integer() && !node.is_floating_point()) return std::nullopt;
   const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!(std::abs(value) < kLargestInFile)) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<std::vector<double>> numbers_of(const toml::node& node) {
   if (array == nullptr) return std::nullopt;
   std::vector<double> values;
   for (const toml::node& each : *array) {
-    const auto value = number_of(each);
+    const auto value = number_in_node(each);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }
@@ -82,7 +82,7 @@ std::optional<std::string> Section::text(std::string_view key) const {
 std::optional<double> Section::number(std::string_view key) const {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return std::nullopt;
-  if (const auto value = number_of(*node)) return value;
+  if (const auto value = number_in_node(*node)) return value;
   problem(key, fmt::format("{} must be a finite number below 1e9", key));
   return std::nullopt;
 }

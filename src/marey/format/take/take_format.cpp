@@ -73,6 +73,7 @@ Format take_format() {
             return std::make_unique<take::TakeCopy>(path, plan);
           },
           .while_recording = true,
+          .poses = true,
           .z_up = true};
 }
 
