@@ -5,16 +5,11 @@
 #include <Eigen/Core>
 
 #include "marey/detect/markers/marker_fit.h"
+#include "marey/detect/markers/marker_kernel.h"
 
 namespace marey::detect::markers {
 
-inline constexpr int kMostDiscs = 4;
-
-// Parameters: contrast, background, blur, then x, y, radius of each disc, then half of the path that all of them went, if they did.
-enum { kDiscsContrast, kDiscsBackground, kDiscsBlur, kFirstDisc };
-
-// On the stack, whatever the number of discs.
-inline constexpr int kMostParameters = kFirstDisc + 3 * kMostDiscs + 2;
+// On the stack, whatever the number of discs; their order is that of marker_kernel.h.
 using DiscsParameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostParameters, 1>;
 using DiscsInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters>;
 
@@ -38,6 +33,10 @@ struct DiscsSolution {
   DiscsModel model;
   DiscsNormal normal;
 };
+
+/// The problem at `model`, for the pixels `value` (padded as the window is) at the window's places.
+DiscsNormal linearised(const DiscsModel& model, const MarkerWindow& window, const std::vector<float>& value,
+                       const MarkerKernels& kernels = *marker_kernels().back());
 
 /// Fits a model to the pixels `value` at the window's places by Levenberg-Marquardt. `stiffness` pulls the blur to where it began:
 /// two close discs hardly tell it.

@@ -133,10 +133,11 @@ MarkerShape fit_disc(const MarkerWindow& window, const MarkerBlob& blob, const M
   Matrix6 information = fit.last.information;
   information.diagonal() += prior.weight;
   const double left = std::max(0.0, fit.last.squares) / std::max(1, window.count - kDiscParameters);
-  const Matrix6 spread = information.llt().solve(Matrix6::Identity()) * std::max(left, 1.0 / 12 / (window.scale * window.scale));
+  const Eigen::Matrix<double, 6, 2> spread =
+      information.llt().solve(Eigen::Matrix<double, 6, 2>::Identity()) * std::max(left, 1.0 / 12 / (window.scale * window.scale));
   shape.fitted = true;
   shape.centre = window.origin + centre;
-  shape.covariance = spread.topLeftCorner<2, 2>() + Matrix<2>::Identity() * (kFloorDeviation * kFloorDeviation);
+  shape.covariance = spread.topRows<2>() + Matrix<2>::Identity() * (kFloorDeviation * kFloorDeviation);
   shape.radius = fit.parameters[kRadius];
   shape.blur = fit.parameters[kBlur];
   shape.contrast = fit.parameters[kContrast] * window.scale;

@@ -40,6 +40,29 @@ struct DiscSums {
   float sum[28];
 };
 
+inline constexpr int kMostDiscs = 4;
+/// Parameters of several discs, in this order everywhere: these three, then x, y, radius of each disc, then half of the path that
+/// all of them went, if they did.
+enum { kDiscsContrast, kDiscsBackground, kDiscsBlur, kFirstDisc };
+inline constexpr int kMostParameters = kFirstDisc + 3 * kMostDiscs + 2;
+
+/// One to four discs. Where they hide each other a pixel's share is 1 − Π (1 − sᵢ); where their light adds up it is Σ sᵢ, at most
+/// `most`, as far as the sensor goes. A disc that moved while it was seen is as near as its segment.
+struct DiscsAt {
+  const float* parameters = nullptr;
+  int discs = 1;
+  bool swept = false;  ///< one or two discs only
+  bool adds = false;
+  float most = 0;
+};
+
+/// The same sums as DiscSums for so many parameters as there are: the upper triangle of JᵀJ row by row, Jᵀr, r².
+struct DiscsSums {
+  float information[kMostParameters * (kMostParameters + 1) / 2];
+  float gradient[kMostParameters];
+  float squares;
+};
+
 /// The loops that most of the time goes to, compiled for one level of the processor. Every level gives the same bits.
 struct MarkerKernels {
   const char* name;
@@ -48,6 +71,8 @@ struct MarkerKernels {
   int (*scan_16)(const MarkerBand& band, MarkerHit* hits);
   /// The disc model background + contrast · Φ((radius − d) / blur), with d² = dx² + dy² + 1/12, linearised at `parameters`.
   DiscSums (*linearise_disc)(const MarkerSamples& samples, const float* parameters);
+  /// The same of several discs.
+  void (*linearise_discs)(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& sums);
 };
 
 /// Those that this machine can run, the fastest last; never empty.

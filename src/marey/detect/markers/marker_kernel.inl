@@ -181,6 +181,31 @@ MAREY_INLINE Floats power_of_two(Floats x) {
   return rest * reinterpret_cast<Floats>((whole + 127) << 23);
 }
 
+/// A blurred edge, `distance` from a centre: the share of what lies within it, and its density, for u = (distance − radius) / blur.
+struct Edge {
+  Floats share, density;
+};
+
+MAREY_INLINE Edge edge_at(Floats u) {
+  Floats exponent = u * u * -0.72134752f;  // −u²/2 · log₂ e
+  exponent = exponent < -120.0f ? Floats{} - 120.0f : exponent;
+  const Floats density = power_of_two(exponent) * 0.39894228f;
+  const Floats size = u < 0.0f ? -u : u;
+  const Floats t = 1.0f / (1.0f + 0.2316419f * size);
+  const Floats tail = density * t * (0.31938153f + t * (-0.35656378f + t * (1.78147794f + t * (-1.82125598f + t * 1.33027443f))));
+  return {u < 0.0f ? 1.0f - tail : tail, density};
+}
+
+MAREY_INLINE float sum_of(Floats s) {
+  return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+MAREY_INLINE bool any(Integers mask) {
+  std::uint64_t parts[4];
+  __builtin_memcpy(parts, &mask, sizeof parts);
+  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
+}
+
 DiscSums linearise_disc(const MarkerSamples& samples, const float* p) {
   const float cx = p[0], cy = p[1], radius = p[2], contrast = p[4], background = p[5];
   const float inverse_blur = 1.0f / p[3];
@@ -190,13 +215,7 @@ DiscSums linearise_disc(const MarkerSamples& samples, const float* p) {
     const Floats dy = load(samples.y + i) - cy;
     const Floats distance = square_root(dx * dx + dy * dy + 1.0f / 12);
     const Floats u = (distance - radius) * inverse_blur;
-    Floats exponent = u * u * -0.72134752f;  // −u²/2 · log₂ e
-    exponent = exponent < -120.0f ? Floats{} - 120.0f : exponent;
-    const Floats density = power_of_two(exponent) * 0.39894228f;
-    const Floats size = u < 0.0f ? -u : u;
-    const Floats t = 1.0f / (1.0f + 0.2316419f * size);
-    const Floats tail = density * t * (0.31938153f + t * (-0.35656378f + t * (1.78147794f + t * (-1.82125598f + t * 1.33027443f))));
-    const Floats share = u < 0.0f ? 1.0f - tail : tail;
+    const auto [share, density] = edge_at(u);
     const Floats weight = load(samples.weight + i);
     const Floats slope = contrast * inverse_blur * density;
     const Floats along = slope / distance;
@@ -212,16 +231,135 @@ DiscSums linearise_disc(const MarkerSamples& samples, const float* p) {
     sums[27] += weight * residual * residual;
   }
   DiscSums result;
-  for (int k = 0; k < 28; ++k) {
-    const Floats s = sums[k];
-    result.sum[k] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
-  }
+  for (int k = 0; k < 28; ++k) result.sum[k] = sum_of(sums[k]);
   return result;
+}
+
+constexpr float kFlat = 4.5f;  // blurs from the edge beyond which it is not felt
+
+/// Eight pixels as one disc sees them.
+struct Seen {
+  Floats away_x, away_y, distance;  ///< px, from the disc's centre or the nearest of its segment
+  Floats u;                         ///< blurs outside its edge
+  Floats way;                       ///< along the sweep: −1 at one end, 1 at the other
+  Edge edge;
+};
+
+/// Several discs as parameters in vectors' reach.
+template <int discs, bool swept>
+struct Discs {
+  static constexpr int n = kFirstDisc + 3 * discs + (swept ? 2 : 0);
+  const float* p;
+  float contrast = p[kDiscsContrast], background = p[kDiscsBackground], inverse_blur = 1.0f / p[kDiscsBlur];
+  float half_x = swept ? p[n - 2] : 0, half_y = swept ? p[n - 1] : 0;
+  float length = half_x * half_x + half_y * half_y, along = length > 1e-9f ? 1.0f / length : 0;
+  bool adds;
+  float most;
+
+  /// Whether any of the pixels is near enough to the edge to feel it.
+  MAREY_INLINE Integers see(int disc, Floats x, Floats y, Seen& seen) const {
+    const float* at = p + kFirstDisc + 3 * disc;
+    seen.away_x = x - at[0];
+    seen.away_y = y - at[1];
+    if (swept) {
+      Floats t = (seen.away_x * half_x + seen.away_y * half_y) * along;
+      t = t < -1.0f ? Floats{} - 1.0f : t;
+      seen.way = t > 1.0f ? Floats{} + 1.0f : t;
+      seen.away_x -= seen.way * half_x;
+      seen.away_y -= seen.way * half_y;
+    }
+    seen.distance = square_root(seen.away_x * seen.away_x + seen.away_y * seen.away_y + 1.0f / 12);
+    seen.u = (seen.distance - at[2]) * inverse_blur;
+    return (seen.u < kFlat) & (seen.u > -kFlat);
+  }
+
+  /// The pixels' share of all discs; `edges` says that some pixel feels one.
+  MAREY_INLINE Floats share(Seen* seen, bool edges) const {
+    Floats outside = Floats{} + 1.0f, sum = {};
+    for (int d = 0; d < discs; ++d) {
+      const Floats within = seen[d].u < 0.0f ? Floats{} + 1.0f : Floats{};
+      seen[d].edge = edges ? edge_at(seen[d].u) : Edge{within, Floats{}};
+      outside *= 1.0f - seen[d].edge.share;
+      sum += seen[d].edge.share;
+    }
+    return adds ? (sum > most ? Floats{} + most : sum) : 1.0f - outside;
+  }
+
+  /// Derivatives of the pixels' levels by all parameters.
+  MAREY_INLINE void slopes(const Seen* seen, Floats share, Floats* slope) const {
+    for (int a = kDiscsBlur; a < n; ++a) slope[a] = Floats{};
+    slope[kDiscsContrast] = share;
+    slope[kDiscsBackground] = Floats{} + 1.0f;
+    for (int d = 0; d < discs; ++d) {
+      Floats others = Floats{} + 1.0f;
+      for (int other = 0; other < discs; ++other) others *= other == d ? Floats{} + 1.0f : 1.0f - seen[other].edge.share;
+      if (adds) others = share < most ? Floats{} + 1.0f : Floats{};
+      const Floats outwards = contrast * inverse_blur * seen[d].edge.density * others;
+      const Floats by_x = outwards / seen[d].distance * seen[d].away_x, by_y = outwards / seen[d].distance * seen[d].away_y;
+      slope[kFirstDisc + 3 * d] = by_x;
+      slope[kFirstDisc + 3 * d + 1] = by_y;
+      slope[kFirstDisc + 3 * d + 2] = outwards;
+      slope[kDiscsBlur] += outwards * seen[d].u;
+      if (!swept) continue;
+      slope[n - 2] += seen[d].way * by_x;
+      slope[n - 1] += seen[d].way * by_y;
+    }
+  }
+};
+
+/// Eight pixels that lie beyond every edge tell of contrast and background alone.
+template <int discs, bool swept>
+void linearise_many(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& result) {
+  const Discs<discs, swept> model{.p = at.parameters, .adds = at.adds, .most = at.most};
+  constexpr int n = Discs<discs, swept>::n;
+  Floats information[n * (n + 1) / 2] = {}, gradient[n] = {}, squares = {};
+  for (int i = 0; i < samples.count; i += 8) {
+    const Floats x = load(samples.x + i), y = load(samples.y + i), weight = load(samples.weight + i);
+    Seen seen[discs];
+    Integers felt = {};
+    for (int d = 0; d < discs; ++d) felt |= model.see(d, x, y, seen[d]);
+    const bool edges = any(felt);
+    const Floats share = model.share(seen, edges);
+    const Floats residual = load(samples.value + i) - model.background - model.contrast * share;
+    squares += weight * residual * residual;
+    if (!edges) {
+      information[0] += weight * share * share;
+      information[1] += weight * share;
+      information[n] += weight;
+      gradient[0] += weight * share * residual;
+      gradient[1] += weight * residual;
+      continue;
+    }
+    Floats slope[n];
+    model.slopes(seen, share, slope);
+    int k = 0;
+    for (int a = 0; a < n; ++a) {
+      const Floats weighted = weight * slope[a];
+      for (int b = a; b < n; ++b) information[k++] += weighted * slope[b];
+      gradient[a] += weighted * residual;
+    }
+  }
+  for (int k = 0; k < n * (n + 1) / 2; ++k) result.information[k] = sum_of(information[k]);
+  for (int a = 0; a < n; ++a) result.gradient[a] = sum_of(gradient[a]);
+  result.squares = sum_of(squares);
+}
+
+void linearise_discs(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& sums) {
+  switch (at.discs) {
+    case 1:
+      return at.swept ? linearise_many<1, true>(samples, at, sums) : linearise_many<1, false>(samples, at, sums);
+    case 2:
+      return at.swept ? linearise_many<2, true>(samples, at, sums) : linearise_many<2, false>(samples, at, sums);
+    case 3:
+      return linearise_many<3, false>(samples, at, sums);
+    default:
+      return linearise_many<4, false>(samples, at, sums);
+  }
 }
 
 }  // namespace
 
 extern const MarkerKernels MAREY_KERNEL_LEVEL;
-const MarkerKernels MAREY_KERNEL_LEVEL{MAREY_KERNEL_NAME, scan<std::uint8_t>, scan<std::uint16_t>, linearise_disc};
+const MarkerKernels MAREY_KERNEL_LEVEL{MAREY_KERNEL_NAME, scan<std::uint8_t>, scan<std::uint16_t>, linearise_disc, linearise_discs};
 
 }  // namespace marey::detect::markers

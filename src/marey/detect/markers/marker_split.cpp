@@ -157,7 +157,7 @@ SplitTask task_of(const MarkerWindow& window, const MarkerBlob& blob, const Mark
   task.stiffness = task.noise * task.noise / 0.01;
   task.blur = around.blur.value_or(0.65);
   task.floor = window.count * (1.5 * task.noise * task.noise + kModelError * kModelError);  // what right models leave
-  task.whole.assign(window.value.begin(), window.value.begin() + window.count);
+  task.whole = window.value;
   task.value = task.whole;
   task.overlap = level_below_overlap(task.whole, task.noise);
   if (task.overlap) {
