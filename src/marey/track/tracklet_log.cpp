@@ -55,7 +55,9 @@ void TrackletLog::add(std::int64_t frame, Timestamp time, std::span<const Track<
 }
 
 void TrackletLog::close(Open& open) {
-  if (open.confirmed) closed_.push_back(std::move(open.rows));
+  if (!open.confirmed) return;
+  open.rows.shrink_to_fit();  // in a match of 90 minutes, tens of megabytes
+  closed_.push_back(std::move(open.rows));
 }
 
 Timestamp TrackletLog::time_of(std::int32_t frame) const {

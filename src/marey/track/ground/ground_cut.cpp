@@ -152,7 +152,43 @@ void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end,
   cuts.push_back(static_cast<std::size_t>(next - samples.begin()));
 }
 
+/// Whether what both show at the same instants may be one person: near, and seen by different cameras.
+bool may_be_one(std::span<const GroundSample> earlier, std::span<const GroundSample> later, double together) {
+  for (const GroundSample& last : earlier) {
+    const auto same =
+        std::find_if(later.begin(), later.end(), [&](const GroundSample& one) { return one.instant >= last.instant; });
+    if (same == later.end() || same->instant != last.instant) continue;
+    const double unsure = 2 * (last.spread().trace() + same->spread().trace());
+    if ((last.cameras & same->cameras) != 0 || (last.at() - same->at()).squaredNorm() > together * together + unsure) return false;
+  }
+  return true;
+}
+
+/// From which sample of `tracklet` on `next` shows the same person, who then goes on in it.
+std::optional<std::size_t> handed_over(const GroundTracklet& tracklet, const GroundTracklet& next, std::span<const Timestamp> times,
+                                       const GroundCutOptions& options) {
+  const std::int32_t last = tracklet.samples.back().instant, begin = next.samples.front().instant;
+  if (begin > last || begin <= tracklet.samples.front().instant || next.samples.back().instant <= last) return std::nullopt;
+  if (seconds(times[last] - times[begin]) > options.overlap) return std::nullopt;
+  const auto from = std::find_if(tracklet.samples.begin(), tracklet.samples.end(),
+                                 [&](const GroundSample& sample) { return sample.instant >= begin; });
+  if (!may_be_one({from, tracklet.samples.end()}, next.samples, options.together)) return std::nullopt;
+  return static_cast<std::size_t>(from - tracklet.samples.begin());
+}
+
 }  // namespace
+
+std::vector<GroundTracklet> end_before_successors(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                                  const GroundCutOptions& options) {
+  for (GroundTracklet& tracklet : tracklets) {
+    for (const GroundTracklet& next : tracklets) {
+      if (&next == &tracklet) continue;
+      const auto from = handed_over(tracklet, next, times, options);
+      if (from) split(tracklet, *from);
+    }
+  }
+  return tracklets;
+}
 
 std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                       const GroundCutOptions& options) {

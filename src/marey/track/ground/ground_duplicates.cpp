@@ -1,6 +1,7 @@
 #include "marey/track/ground/ground_duplicates.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include <Eigen/LU>
@@ -46,7 +47,8 @@ const std::vector<std::pair<TrackId, TrackId>>& GroundDuplicates::find(Timestamp
   std::erase_if(pairs_, [&](const auto& entry) { return entry.second.latest != now; });
   std::vector<TrackId> gone;
   for (const auto& [ids, pair] : pairs_) {
-    if (seconds(now - pair.since) < long_enough || pair.first == 0 || pair.second == 0 || pair.first == pair.second) continue;
+    if (seconds(now - pair.since) < long_enough || pair.first == 0 || pair.second == 0) continue;
+    if (std::popcount(pair.first | pair.second) < 2) continue;
     if (std::find(gone.begin(), gone.end(), ids.first) != gone.end()) continue;
     if (std::find(gone.begin(), gone.end(), ids.second) != gone.end()) continue;
     merges_.push_back(ids);

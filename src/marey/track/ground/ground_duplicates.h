@@ -13,7 +13,7 @@ namespace marey::track::ground {
 
 /// Finds targets that are one person: cameras that disagree about the place of a person may each feed a target of its own. Two
 /// that one camera saw in one frame are two people. Two that stay together for a while, each seen, and never both by one camera,
-/// are one. With one camera nothing is ever merged.
+/// are one, whether each is fed by a camera of its own or all feed both by turns. With one camera nothing is ever merged.
 /// Cost: targets · neighbours an instant.
 class GroundDuplicates {
  public:

@@ -44,6 +44,27 @@ TEST(GroundDuplicates, WhoIsNotSeenIsNotMerged) {
   EXPECT_TRUE(merged(0.1, 0, by_right).empty());
 }
 
+/// How often two targets half a metre apart are merged that cameras see by turns: at each instant the next of `masks`.
+std::size_t merged_by_turns(const std::vector<std::pair<CameraMask, CameraMask>>& masks) {
+  GroundDuplicates duplicates;
+  std::size_t merges = 0;
+  for (std::size_t i = 0; i < 50 && merges == 0; ++i) {
+    const auto& [first, second] = masks[i % masks.size()];
+    const std::vector members = {member(1, 0, first), member(2, 0.5, second)};
+    merges = duplicates.find(timestamp_from_seconds(static_cast<double>(i) / 25.0), members, 0.3).size();
+  }
+  return merges;
+}
+
+TEST(GroundDuplicates, TwoThatCamerasFeedByTurnsAreOne) {
+  EXPECT_EQ(merged_by_turns({{by_left, by_right}, {by_right, by_left}, {by_left | by_right, 0}}), 1U);
+  EXPECT_EQ(merged_by_turns({{by_left | by_right, 0}, {0, by_left | by_right}}), 1U);
+}
+
+TEST(GroundDuplicates, TwoWhoHideOneAnotherByTurnsInOneCameraAreTwo) {
+  EXPECT_EQ(merged_by_turns({{by_left, 0}, {0, by_left}}), 0U);
+}
+
 TEST(GroundDuplicates, OfThreeEachGoesOnce) {
   GroundDuplicates duplicates;
   for (int i = 0; i < 50; ++i) {

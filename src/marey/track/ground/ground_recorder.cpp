@@ -136,6 +136,7 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   std::vector<GroundTracklet> whole = std::move(*this).tracklets();
   repair_swaps(whole, times_, {.max_speed = options.max_speed, .motion = options.motion});
   std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(whole), times_);
+  tracklets = end_before_successors(std::move(tracklets), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_, {.near = kNear * options.motion.acceleration});
   GroundMotion unseen = options.motion;
   unseen.acceleration *= kUnseenPush;
