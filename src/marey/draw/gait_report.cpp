@@ -28,7 +28,8 @@ struct PanelScale {
   double low = 0, high = 1;
   std::size_t points = 1;
   double x(std::size_t i) const {
-    return kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * static_cast<double>(i) / static_cast<double>(points);
+    return kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * static_cast<double>(i) /
+                            static_cast<double>(std::max<std::size_t>(points, 2) - 1);
   }
   double y(double value) const {
     return kPanelHeight - kPanelBottom - (kPanelHeight - kPanelTop - kPanelBottom) * (value - low) / (high - low);
@@ -106,7 +107,10 @@ std::string to_html(const GaitReport& report) {
   for (const GaitReport::Figure& figure : report.figures)
     fmt::format_to(out, "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", escaped(figure.name), figure_cell(figure, 0),
                    figure_cell(figure, 1), escaped(figure.unit));
-  html += "</table>\n<p>\n";
+  html += "</table>\n";
+  if (!report.notes.empty()) html += "<ul>\n";
+  for (const std::string& note : report.notes) fmt::format_to(out, "<li>{}</li>\n", escaped(note));
+  html += report.notes.empty() ? "<p>\n" : "</ul>\n<p>\n";
   for (const GaitReport::Panel& panel : report.panels) html += panel_svg(panel);
   html += "</p>\n<h2>Events</h2>\n<table><tr><th>time, s</th><th>side</th><th>event</th><th>deviation, ms</th></tr>\n";
   for (const GaitReport::Event& event : report.events)

@@ -79,7 +79,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   codec->thread_count = kThreads;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   // Fast enough that the film is not what one waits for.
-  av_opt_set(codec->priv_data, "preset", "superfast", 0);
+  av_opt_set(codec->priv_data, "preset", quality == Quality::to_record ? "ultrafast" : "superfast", 0);
   av_opt_set(codec->priv_data, "crf", quality == Quality::to_view ? "22" : "8", 0);
   if (const int code = avcodec_open2(codec.get(), encoder, nullptr); code < 0) {
     throw Error("{}: the H.264 encoder ({}) cannot encode {} x {} pixels ({})", path, encoder->name, size.width, size.height,

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "marey/geometry/decompositions.h"
@@ -120,18 +118,18 @@ class Regression {
       : feature_mean_(features.colwise().mean()), place_mean_(places.colwise().mean()) {
     const Dense centred = features.rowwise() - feature_mean_.transpose();
     const double frames = static_cast<double>(features.rows());
-    const Eigen::SelfAdjointEigenSolver<Dense> principal(centred.transpose() * centred / frames);
-    const Eigen::VectorXd& variance = principal.eigenvalues();  // growing
+    const auto principal = geometry::eigenpairs<Eigen::Dynamic>(centred.transpose() * centred / frames);
+    const Eigen::VectorXd& variance = principal.values;  // growing
     Eigen::Index components = 0;
     const double enough = 1e-4 * variance.sum();
     for (double left = variance.sum(); components < variance.size() && left > enough; ++components)
       left -= variance[variance.size() - 1 - components];
     components = std::min<Eigen::Index>(components, features.rows() / 8 + 1);
-    basis_ = principal.eigenvectors().rightCols(components);
+    basis_ = principal.vectors.rightCols(components);
     const Dense scores = centred * basis_;
     Dense normal = scores.transpose() * scores;
     normal.diagonal().array() += frames * kNoise * kNoise;
-    map_ = normal.ldlt().solve(scores.transpose() * (places.rowwise() - place_mean_.transpose()));
+    map_ = geometry::solve_symmetric(normal, scores.transpose() * (places.rowwise() - place_mean_.transpose()));
   }
 
   Vector<3> operator()(const Eigen::VectorXd& features) const {
@@ -179,7 +177,7 @@ Dense fitted(const std::vector<double>& t, const Path& path, int degree) {
     for (int k = 0; k <= degree; ++k, power *= t[static_cast<std::size_t>(i)]) powers(i, k) = power;
     values.row(i) = path[static_cast<std::size_t>(i)].transpose();
   }
-  return (powers.transpose() * powers).ldlt().solve(powers.transpose() * values);
+  return geometry::solve_symmetric(powers.transpose() * powers, powers.transpose() * values);
 }
 
 Vector<3> value_of(const Dense& polynomial, double t) {

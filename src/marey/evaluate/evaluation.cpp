@@ -8,7 +8,7 @@
 namespace marey::evaluate {
 namespace {
 
-[[maybe_unused]] bool by_frame(const LabelledBox& a, const LabelledBox& b) {
+[[maybe_unused]] bool boxes_by_frame(const LabelledBox& a, const LabelledBox& b) {
   return a.frame < b.frame;
 }
 
@@ -33,8 +33,8 @@ Closeness closeness(const LabelledBox& a, const LabelledBox& b) {
 
 Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap,
                     const Limits& limits) {
-  assert(std::is_sorted(truth.begin(), truth.end(), by_frame) && "truth is ordered by frame");
-  assert(std::is_sorted(tracks.begin(), tracks.end(), by_frame) && "tracks are ordered by frame");
+  assert(std::is_sorted(truth.begin(), truth.end(), boxes_by_frame) && "truth is ordered by frame");
+  assert(std::is_sorted(tracks.begin(), tracks.end(), boxes_by_frame) && "tracks are ordered by frame");
   assert(least_overlap > 0 && least_overlap <= 1 && "an overlap from which a box counts as found");
   // The threshold is written as the reference has it: its rounding decides draws.
   return judge(truth, tracks, 1 - least_overlap, closeness, [](const auto&, const ClearCounter&) {}, limits).scores;

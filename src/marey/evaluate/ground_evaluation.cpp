@@ -10,7 +10,7 @@
 namespace marey::evaluate {
 namespace {
 
-[[maybe_unused]] bool by_frame(const TargetPlace& a, const TargetPlace& b) {
+[[maybe_unused]] bool places_by_frame(const TargetPlace& a, const TargetPlace& b) {
   return a.frame < b.frame;
 }
 
@@ -32,8 +32,8 @@ std::optional<ErrorSpread> spread_of(std::vector<double>& errors) {
 }  // namespace
 
 GroundEvaluation evaluate_ground(std::span<const TargetPlace> truth, std::span<const TargetPlace> tracks, double farthest) {
-  assert(std::is_sorted(truth.begin(), truth.end(), by_frame) && "truth is ordered by frame");
-  assert(std::is_sorted(tracks.begin(), tracks.end(), by_frame) && "tracks are ordered by frame");
+  assert(std::is_sorted(truth.begin(), truth.end(), places_by_frame) && "truth is ordered by frame");
+  assert(std::is_sorted(tracks.begin(), tracks.end(), places_by_frame) && "tracks are ordered by frame");
   assert(farthest > 0 && "a distance up to which someone counts as found");
   std::vector<double> position, speed, velocity;
   const auto close = [farthest](const TargetPlace& a, const TargetPlace& b) {

@@ -143,8 +143,11 @@ FollowBodiesSummary follow_bodies(const std::string& recording, const std::strin
   summary.instants = instants;
   summary.stopped = stopped;
   for (std::string& warning : reader->warnings()) summary.warnings.push_back(std::move(warning));
+  if (auto sentence = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*sentence));
   return summary;
 }
+
+constexpr double kBends = 0.004;  // m; skin and cloth on a limb, and noise, stay below
 
 std::vector<std::string> doubts_of(const solve::bodies::DefinedBody& defined) {
   std::vector<std::string> doubts;
@@ -153,6 +156,13 @@ std::vector<std::string> doubts_of(const solve::bodies::DefinedBody& defined) {
       doubts.push_back(
           fmt::format("{} is loose: it varies by {:.1f} mm to the others, and is left out", marker.label, 1000 * marker.deviation));
   }
+  const solve::bodies::DefinedMarker* bends = nullptr;
+  for (const auto& marker : defined.markers) {
+    if (!marker.loose && marker.deviation > kBends && (bends == nullptr || marker.deviation > bends->deviation)) bends = &marker;
+  }
+  if (bends != nullptr)
+    doubts.push_back(
+        fmt::format("{} varies by {:.1f} mm to the others: is this one rigid thing?", bends->label, 1000 * bends->deviation));
   if (!defined.symmetries.empty()) {
     const auto& first = defined.symmetries.front();
     const std::size_t others = defined.symmetries.size() - 1;

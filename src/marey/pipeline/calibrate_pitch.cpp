@@ -107,10 +107,6 @@ void compare_lens(const RigCamera& before, const Camera& found, std::vector<std:
                   before.name, worst));
 }
 
-std::string joined(const std::string& folder, const std::string& name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
 void draw(const PitchRun& run, const PitchRunOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.pictures, error);
@@ -127,16 +123,16 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
     const calibrate::pitch::PitchView& view = run.views[i];
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     const GroundView ground(found.camera, run.calibration.fit.ground);
+    const PitchPictures files(options.pictures, view.name);
     if (!view.empty_ground.empty()) {
       std::vector<Vector<2>> paint;
       for (const calibrate::pitch::LineSighting& seen : found.lines) paint.push_back(seen.pixel);
       std::vector<draw::DrawnClick> clicks;
       for (std::size_t k = 0; k < view.points.size(); ++k)
         clicks.push_back({view.points[k].pixel, found.inlier[k] != 0, view.points[k].name});
-      draw::write_picture(joined(options.pictures, view.name + ".jpg"),
-                          draw::draw_pitch(Picture(view.empty_ground), ground, lines, paint, clicks));
+      draw::write_picture(files.overlay, draw::draw_pitch(Picture(view.empty_ground), ground, lines, paint, clicks));
     }
-    WholeFile map(joined(options.pictures, view.name + "_accuracy.svg"));
+    WholeFile map(files.accuracy);
     map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
                                   [&](const Vector<2>& pitch) -> std::optional<double> {
                                     const auto pixel = ground.pixel(to_world(pitch));
@@ -204,6 +200,10 @@ void enter(PitchRun& run) {
 }
 
 }  // namespace
+
+PitchPictures::PitchPictures(const std::string& folder, const std::string& camera)
+    : overlay((std::filesystem::path(folder) / (camera + ".jpg")).string()),
+      accuracy((std::filesystem::path(folder) / (camera + "_accuracy.svg")).string()) {}
 
 PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string>& clicks, const PitchRunOptions& options,
                          const Hooks& hooks) {

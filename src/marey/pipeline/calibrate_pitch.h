@@ -25,6 +25,13 @@ struct PitchRunOptions {
   std::string pictures;                             ///< a folder for overlays and the accuracy maps; empty for none
 };
 
+/// What is drawn of one camera into a folder: the pitch over its picture, and a map of what a pixel is on the ground.
+struct PitchPictures {
+  std::string overlay, accuracy;
+
+  PitchPictures(const std::string& folder, const std::string& camera);
+};
+
 /// Calibrates the rig's cameras over a pitch, all over one ground, which is the rig's where others of its cameras were calibrated
 /// over that already: for each camera a file of clicks (`read_pitch_clicks`), by the camera's name. Where
 /// the camera has pictures, the empty ground is learned from them and its white lines refine what the clicks began. Where the rig

@@ -115,6 +115,7 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
     if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);
   }
+  if (auto sentence = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*sentence));
   const auto reader = format::open_recording(from, in, how);
   const auto sink = format::create_recording(to, out, plan);
   sink->begin(plan.info.header);

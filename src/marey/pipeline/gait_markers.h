@@ -35,6 +35,10 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
 gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
 
+/// Where the static trial is of another person, or the markers were put on anew: the pair of one segment's markers that lies most
+/// differently far apart in the walk. Nothing where all pairs agree.
+std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk);
+
 /// What Vicon keeps of a person in its C3D files, where `subject` does not have it.
 void take_measures(const std::string& path, gait::GaitSubject& subject);
 

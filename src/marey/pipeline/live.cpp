@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/pipeline/camera_films.h"
 #include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/preview.h"
 
@@ -74,6 +75,7 @@ std::unique_ptr<Stage> stage_of(LiveJob job, const std::vector<Feed>& feeds, con
 Sinks sinks_of(LiveOptions& options) {
   Sinks sinks(Sinks::Slow::passed_over);
   if (!options.take.empty()) sinks.add(std::make_unique<Recorder>(options.take, options.recording, options.preroll_s));
+  if (!options.pictures.empty()) sinks.add(std::make_unique<CameraFilms>(options.pictures, options.recording));
   for (std::unique_ptr<Sink>& sink : options.sinks) sinks.add(std::move(sink));
   return sinks;
 }
@@ -85,6 +87,24 @@ std::string nothing_came(const LiveStatus& status) {
     if (!camera.trouble.empty()) why += fmt::format("\n  camera \"{}\": {}", camera.name, camera.trouble);
   }
   return why;
+}
+
+/// What a user would not like to find out later: that much of what cameras saw was never looked at.
+void warn_of_losses(LiveSummary& summary) {
+  constexpr double kMuch = 0.2;
+  for (const LiveStatus::Camera& camera : summary.last.cameras) {
+    const std::int64_t gone = camera.lost + camera.damaged + camera.overrun, all = camera.frames + camera.lost + camera.damaged;
+    if (static_cast<double>(gone) <= kMuch * static_cast<double>(all)) continue;
+    summary.warnings.push_back(fmt::format(
+        "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller picture, a lower rate or "
+        "fewer cameras",
+        camera.name, 100.0 * static_cast<double>(gone) / static_cast<double>(all)));
+  }
+  const std::int64_t gone = summary.last.drops.overtaken + summary.last.drops.incomplete, all = summary.last.instants + gone;
+  if (static_cast<double>(gone) > kMuch * static_cast<double>(all))
+    summary.warnings.push_back(
+        fmt::format("{:.0f} % of the moments were let go: cameras are faster than what looks at their pictures",
+                    100.0 * static_cast<double>(gone) / static_cast<double>(all)));
 }
 
 void report_cameras_live(LiveSummary& summary, const Clock& clock, const LiveMonitor& monitor) {
@@ -166,6 +186,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   std::error_code ignored;
   summary.recorded = !options.take.empty() && std::filesystem::exists(options.take, ignored);
   report_cameras_live(summary, clock, monitor);
+  warn_of_losses(summary);
   return summary;
 }
 

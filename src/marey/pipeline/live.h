@@ -35,6 +35,7 @@ struct LiveOptions {
   double patience_s = 3;  ///< that is waited at the beginning for cameras that are not there
 
   std::string take;                         ///< what is recorded into, NAME.marey; empty: nothing
+  std::string pictures;                     ///< a folder for what each camera saw while it was recorded; empty: not kept
   std::shared_ptr<RecordSwitch> recording;  ///< null: all is recorded
   double preroll_s = 5;                     ///< of what came before recording was switched on
 

@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/pipeline/live_simulation.h"
+#include "marey/pipeline/live_take.h"
 #include "marey/source/live/live_camera.h"
 
 namespace marey::pipeline {
@@ -68,6 +69,9 @@ void wait_for(const std::vector<std::unique_ptr<LiveSource>>& sources, double pa
 
 std::vector<source::live::Kind> live_kinds() {
   std::vector<source::live::Kind> kinds = source::live::camera_kinds();
+  for (source::live::Kind& kind : kinds) {
+    if (kind.schemes.front() == "play") kind = with_takes(std::move(kind));
+  }
   kinds.push_back(simulation_kind());
   return kinds;
 }
@@ -77,7 +81,8 @@ Rig rig_of_sources(std::span<const std::string> sources) {
   std::set<std::string> names;
   for (const std::string& given : sources) {
     const auto sign = given.find('=');
-    const bool named = scheme_of(given).empty() && sign != std::string::npos && sign > 0;
+    const bool named = scheme_of(given).empty() && sign != std::string::npos && sign > 0 &&
+                       std::none_of(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(sign), unfit_for_camera_name);
     Rig some = cameras_of(source::live::parse_address(live_name(named ? given.substr(sign + 1) : given)));
     for (RigCamera& camera : some.cameras) {
       camera.name = named ? given.substr(0, sign) : fmt::format("cam{}", rig.cameras.size() + 1);

@@ -28,8 +28,6 @@ using source::live::Kind;
 using source::live::Opening;
 using source::live::Shot;
 
-constexpr double kBehind = 2;  // periods after which a frame is left out
-
 /// How a room's cameras behave beside what they see.
 struct RoomBehaviour {
   double drawn_s = 0;        ///< so much is drawn before it begins, and shown to and fro: it costs no time later
@@ -122,7 +120,7 @@ class RoomCamera final : public Connection {
       shot.taken = begin_ + duration_from_seconds(exposed(next_));
     }
     ++next_;
-    if (late > kBehind) next_ += static_cast<std::int64_t>(late);
+    if (late > source::live::kMostBehind) next_ += static_cast<std::int64_t>(late);
     return Came::frame;
   }
 

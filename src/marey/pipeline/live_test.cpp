@@ -193,6 +193,9 @@ TEST(Live, SourcesAreNamedOrCounted) {
   EXPECT_EQ(rig.cameras[2].source, "sim://room?cameras=3&camera=3");
   EXPECT_EQ(rig.cameras[3].name, "left");
   EXPECT_EQ(rig.cameras[4].name, "cam5");
+  const std::vector<std::string> path{"out/a=b.mp4"};  // no camera may be called so: its name names files
+  EXPECT_EQ(rig_of_sources(path).cameras.at(0).name, "cam1");
+  EXPECT_EQ(rig_of_sources(path).cameras.at(0).source, "play:out/a=b.mp4");
   const std::vector<std::string> twice{"a=sim://people", "a=sim://people"};
   EXPECT_THROW(rig_of_sources(twice), Error);
   const std::vector<std::string> unknown{"node:left"};

@@ -90,6 +90,10 @@ void write_angles(const std::string& path, const GaitMeasure& measure) {
 void write_gait_report(const std::string& path, const std::string& recording, const GaitMeasure& measure) {
   draw::GaitReport report;
   report.title = std::filesystem::path(recording).filename().string();
+  for (const std::string& warning : measure.warnings) {  // "walks/a.c3d: …": the page names the file, not its folder
+    const std::size_t end = std::min(warning.find(": "), warning.size());
+    report.notes.push_back(std::filesystem::path(warning.substr(0, end)).filename().string() + warning.substr(end));
+  }
   for (const gait::CycleCurve& curve : measure.cycles.curves) {
     if (curve.cycles.empty()) continue;
     const bool left = curve.name.starts_with("left_");
@@ -111,6 +115,66 @@ void write_gait_report(const std::string& path, const std::string& recording, co
   file.finish();
 }
 
+/// "left shoulder plane, left shoulder rotation", and how many more.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNamed = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) text.append(i == 0 ? "" : ", ").append(names[i]);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return names.size() > kMostNamed ? fmt::format("{} and {} more", text, names.size() - kMostNamed) : text;
+}
+
+/// Rows in which an arm hangs down: it is known how far it is raised, and not in which plane.
+std::int64_t hanging_rows(const GaitMeasure& measure, const gait::AngleCurve& curve) {
+  const std::size_t shoulder = curve.name.find("shoulder_");
+  if (shoulder == std::string::npos) return 0;
+  const std::string raised = curve.name.substr(0, shoulder) + "shoulder_elevation";
+  const auto elevation =
+      std::find_if(measure.angles.begin(), measure.angles.end(), [&](const auto& c) { return c.name == raised; });
+  std::int64_t rows = 0;
+  for (std::size_t r = 0; elevation != measure.angles.end() && r < curve.values.size(); ++r)
+    rows += !curve.values[r] && elevation->values[r] ? 1 : 0;
+  return rows;
+}
+
+/// Which angles are not known at some time, or left out of the cycles' mean; those that share their reason in one sentence.
+void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
+  std::map<std::string, std::vector<std::string>> names_by_reason;
+  for (std::size_t a = 0; a < measure.angles.size(); ++a) {
+    const gait::AngleCurve& curve = measure.angles[a];
+    const gait::CycleCurve& over_cycle = measure.cycles.curves[a];
+    const auto unknown = std::count(curve.values.begin(), curve.values.end(), std::nullopt);
+    std::string reason;
+    if (unknown == std::ssize(curve.values)) {
+      reason = "never known: markers are missing";
+    } else if (unknown > 0) {
+      const std::int64_t hanging = hanging_rows(measure, curve);
+      const char* why = hanging == 0         ? "markers are missing"
+                        : hanging == unknown ? "an arm that hangs down has no plane"
+                                             : "markers are missing, or the arm hangs down and has no plane";
+      reason = fmt::format("not known for {:.2f} of {:.2f} s ({})", static_cast<double>(unknown) / measure.rate_hz,
+                           static_cast<double>(measure.frames) / measure.rate_hz, why);
+    }
+    if (over_cycle.jumping > 0) reason.append(reason.empty() ? "" : ", ").append("jumps by more than 90° between two frames");
+    const std::size_t left_out = over_cycle.unknown + over_cycle.jumping;
+    if (left_out > 0 && unknown < std::ssize(curve.values))
+      reason += fmt::format("; left out of the mean: {} of {} cycles", left_out, left_out + over_cycle.cycles.size());
+    if (!reason.empty()) names_by_reason[reason].push_back(curve.name);
+  }
+  for (const auto& [reason, names] : names_by_reason)
+    measure.warnings.push_back(fmt::format("{}: {}: {}", recording, listed(names), reason));
+}
+
+void need_a_cycle(const std::string& recording, const GaitMeasure& measure) {
+  if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
+    return;
+  if (!measure.cycles.cycles.empty()) throw Error("{}: no angle is known over a whole gait cycle: markers are missing", recording);
+  throw Error(
+      "{}: no gait cycle was found, from a foot's strike to its next within 0.4 to 3 s: HEE and TOE of a side are needed, and a "
+      "walk",
+      recording);
+}
+
 }  // namespace
 
 GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks) {
@@ -124,7 +188,11 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   take_measures(recording, measure.subject);
   if (!options.static_trial.empty()) {
     take_measures(options.static_trial, measure.subject);
-    measure.subject.learn_from(standing_places(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial));
+    const auto standing = standing_places(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
+    if (const auto pair = other_person(standing, markers))
+      measure.warnings.push_back(
+          fmt::format("{}: {}: another person's static trial, or markers that were put on anew?", options.static_trial, *pair));
+    measure.subject.learn_from(standing);
   } else {
     if (!measure.subject.leg_length[0] && !markers.rows.empty()) measure.subject.learn_from(markers.rows.front());
     measure.warnings.push_back(
@@ -146,13 +214,15 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   if (measure.events.empty())
     measure.warnings.push_back(fmt::format("{}: no steps were found: HEE and TOE of a side are needed, and a walk", recording));
   measure.cycles = gait::gait_cycles(measure.events, measure.angles, feet, measure.rate_hz);
+  warn_of_gaps(recording, measure);
   return measure;
 }
 
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
   GaitMeasure measure = measure_gait(recording, options, hooks);
-  if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
   if (!output.angles.empty()) write_angles(output.angles, measure);
+  if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure);
+  if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
   if (!output.report.empty()) write_gait_report(output.report, recording, measure);
   return measure;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -43,6 +44,33 @@ Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInS
   return Clock(std::move(feeds), {.pace = ClockOptions::Pace::even, .interpolate = !options.live});
 }
 
+/// The names that a take gave its markers, and how they lay at the moment of its first second that has most of them: for who solves
+/// it again. Empty where `observations` is no take, or has no names.
+MarkerSet named_in_take(const std::string& observations) {
+  constexpr double kBeginning = 1;  // s
+  MarkerSet set;
+  if (observations.empty() || !format::take::is_take(observations)) return set;
+  format::take::TakeReader take(observations);
+  std::map<TrackId, std::string> labels;
+  for (TrackName& track : take.tracks()) {
+    if (!track.label.empty()) labels.emplace(track.id, std::move(track.label));
+  }
+  std::optional<Timestamp> begin;
+  while (const auto instant = labels.empty() ? std::nullopt : take.next()) {
+    if (!begin) begin = instant->time;
+    if (seconds(instant->time - *begin) > kBeginning) break;
+    MarkerSet now;
+    for (const Sample& sample : instant->samples) {
+      const auto label = labels.find(sample.track);
+      if (label == labels.end()) continue;
+      now.labels.push_back(label->second);
+      now.places.push_back(sample.position);
+    }
+    if (now.labels.size() > set.labels.size()) set = std::move(now);
+  }
+  return set;
+}
+
 void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const std::string& name = rig.cameras[c].name;
@@ -69,7 +97,9 @@ Summary reconstruct(const Rig& rig, const std::string& observations, Sinks& sink
   if (clock.rate_hz() <= 0) throw Error("{}", "not one frame could be read from any camera");
   Rig fitted = rig;
   for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
-  const auto stage = markers_in_space(fitted, clock.rate_hz(), options);
+  MarkersInSpaceOptions named = options;
+  if (named.set.labels.empty()) named.set = named_in_take(observations);
+  const auto stage = markers_in_space(fitted, clock.rate_hz(), named);
   Summary summary = run(*stage, clock, sinks, hooks);
   report_cameras(clock, fitted, summary);
   return summary;

@@ -72,9 +72,12 @@ using SinksFor = std::function<Sinks&(const Rig& rig, const std::vector<Feed>& f
 GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
   std::vector<Feed> feeds = open_feeds(rig, {.rate_hz = options.rate_hz});
   Sinks& sinks = sinks_for(rig, feeds);
+  const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const Feed& feed) { return feed.has_pictures(); });
   const auto stage = people_on_ground(feeds, rig, options);
   Clock clock(std::move(feeds));
   GroundSummary summary{run(*stage, clock, sinks, hooks), stage->teams()};
+  if (!options.teams.names.empty() && !pictures)
+    summary.warnings.push_back("teams are told by their clothes, and there are no pictures: nobody has a team");
   return summary;
 }
 

@@ -27,9 +27,8 @@ struct Cut {
 
 class Placer {
  public:
-  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options,
-         std::span<const std::optional<PersonRows>> rows)
-      : detections_(detections), view_(view), options_(options), rows_(rows) {}
+  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options)
+      : detections_(detections), view_(view), options_(options) {}
 
   std::optional<Placement> place(std::size_t index) const {
     const Detection& one = detections_[index];
@@ -53,17 +52,8 @@ class Placer {
             .top = box.top<at_border - 0.5, .bottom = box.bottom()> size.height + 0.5 - at_border};
   }
 
-  /// The rows of who is seen alone and whole, where they are known.
-  const PersonRows* rows_of(std::size_t index) const {
-    return index < rows_.size() && rows_[index] && !detections_[index].group ? &*rows_[index] : nullptr;
-  }
-
-  double edge_variance(double height, double noise) const {
-    return options_.pixel_noise * options_.pixel_noise + std::pow(noise * height, 2);
-  }
-  double edge_variance(const Box& box) const { return edge_variance(box.height, options_.edge_noise); }
-  double row_variance(std::size_t index) const {
-    return edge_variance(detections_[index].box.height, rows_of(index) != nullptr ? options_.row_noise : options_.edge_noise);
+  double edge_variance(const Box& box) const {
+    return options_.pixel_noise * options_.pixel_noise + std::pow(options_.edge_noise * box.height, 2);
   }
 
   /// Of a box's middle: two edges give it, unless the border or other people hide one.
@@ -75,10 +65,9 @@ class Placer {
 
   std::optional<Placement> by_foot(std::size_t index, const Cut& cut) const {
     const Detection& one = detections_[index];
-    const PersonRows* rows = rows_of(index);
-    const auto place = view_.place({one.box.foot().x(), rows != nullptr ? rows->stand : one.box.foot().y()});
+    const auto place = view_.place(one.box.foot());
     if (!place) return std::nullopt;
-    double along = row_variance(index);
+    double along = edge_variance(one.box);
     if (one.group) along += std::pow(group_along * one.box.height, 2);
     if (cut.bottom) along += std::pow(one.box.height / 2, 2);
     const Vector<2> away = -place->by_pixel.col(1).normalized();
@@ -92,8 +81,7 @@ class Placer {
 
   Vector<2> head_of(std::size_t index) const {
     const Box& box = detections_[index].box;
-    const PersonRows* rows = rows_of(index);
-    return {box.left + (box.width - 1) / 2, rows != nullptr ? rows->head : box.top - 0.5};
+    return {box.left + (box.width - 1) / 2, box.top - 0.5};
   }
 
   /// A camera below the ground is one whose world has z down (GroundView).
@@ -121,7 +109,7 @@ class Placer {
     if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
     const Vector<2> by_height = ray->direction.head<2>() / std::abs(ray->direction.z()) * options_.height_spread;
     const Matrix<2> by_pixel = by_ground.inverse();
-    return Placement{place, on_ground(by_pixel, across_variance(detections_[index], cut), row_variance(index)) +
+    return Placement{place, on_ground(by_pixel, across_variance(detections_[index], cut), edge_variance(detections_[index].box)) +
                                 by_height * by_height.transpose()};
   }
 
@@ -133,10 +121,9 @@ class Placer {
       const auto head = camera.project_with_jacobian({both.place.x(), both.place.y(), head_height(camera, both.place)});
       if (!head) return foot;
       const Vector<2> slope = head->by_world.row(1).head<2>();
-      const double spread =
-          head->by_world(1, 2) * (rows_of(index) != nullptr ? options_.row_height_spread : options_.height_spread);
+      const double spread = head->by_world(1, 2) * options_.height_spread;
       const double residual = row - head->pixel.y() - slope.dot(foot.place - both.place);
-      const double S = slope.dot(foot.covariance * slope) + row_variance(index) + spread * spread;
+      const double S = slope.dot(foot.covariance * slope) + edge_variance(detections_[index].box) + spread * spread;
       if (residual * residual > inconsistent * S) {
         if (residual < 0 || !legs_hidden(index)) return foot;
         return by_head(camera, index, cut);
@@ -161,14 +148,13 @@ class Placer {
   std::span<const Detection> detections_;
   const GroundView& view_;
   const PlacePeopleOptions& options_;
-  std::span<const std::optional<PersonRows>> rows_;
 };
 
 }  // namespace
 
 PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
-                          const PlacePeopleOptions& options, std::span<const std::optional<PersonRows>> rows) {
-  const Placer placer(detections, view, options, rows);
+                          const PlacePeopleOptions& options) {
+  const Placer placer(detections, view, options);
   PlacedPeople placed;
   placed.seen.reserve(detections.size());
   placed.detection.reserve(detections.size());

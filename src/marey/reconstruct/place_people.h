@@ -9,7 +9,6 @@
 // Cost: two projections and a ray a person, about a microsecond; looking for who hides whom is quadratic in a frame's boxes.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,18 +23,10 @@ namespace marey::reconstruct {
 struct PlacePeopleOptions {
   double pixel_noise = 0.5;    ///< px, of each edge of a box,
   double edge_noise = 0.04;    ///< and so much of the box's height more
-  double row_noise = 0.02;     ///< the same of rows that are known (PersonRows)
   double stride = 0.12;        ///< m; feet are in a stride before or behind where the body is
   double toe = 0;              ///< m; a box ends at the foot's nearest point, so far before the body's middle, seen along the view
   double height = 1.75;        ///< m, of a person from the ground to the crown
   double height_spread = 0.1;  ///< m, over people
-  double row_height_spread = 0.25;  ///< m, of those whose rows are known: what is seen of their feet is better than any guess
-};
-
-/// In which rows a person is seen, px, where that is known better than by its box.
-struct PersonRows {
-  double head = 0;   ///< the upper edge of the head
-  double stand = 0;  ///< where the person stands, less the toe
 };
 
 /// Who of a frame could be placed, in the order of the detections.
@@ -45,9 +36,8 @@ struct PlacedPeople {
 };
 
 /// Who stands at or above the horizon, or has an empty box, is left out. Whose region is shared with others is placed in its
-/// middle, with a covariance that covers the region. `rows`: of each detection, or empty; they count for who is not in a shared
-/// region.
+/// middle, with a covariance that covers the region.
 PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
-                          const PlacePeopleOptions& options = {}, std::span<const std::optional<PersonRows>> rows = {});
+                          const PlacePeopleOptions& options = {});
 
 }  // namespace marey::reconstruct

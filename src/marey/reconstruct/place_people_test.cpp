@@ -106,27 +106,6 @@ TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
   }
 }
 
-TEST(PlacePeople, KnownRowsCountInPlaceOfTheBox) {
-  const Camera camera = beside_the_pitch();
-  const GroundView view(camera);
-  for (const double y : {8.0, 40.0, 65.0}) {
-    const Vector<2> place(y / 4, y);
-    Detection one;
-    one.box = box_of(camera, place);
-    const std::optional<PersonRows> rows = PersonRows{one.box.top - 0.5, one.box.foot().y()};
-    one.box.top -= 3, one.box.height += 8;  // its halo, and the shadow below the feet
-    const auto by_box = place_people({&one, 1}, view, CameraId{0});
-    const auto by_rows = place_people({&one, 1}, view, CameraId{0}, {}, {&rows, 1});
-    EXPECT_LT((by_rows.seen.front().value - place).norm(), 0.05) << y;
-    EXPECT_GT((by_box.seen.front().value - place).norm(), 2 * (by_rows.seen.front().value - place).norm()) << y;
-    EXPECT_LT(by_rows.seen.front().covariance.trace(), by_box.seen.front().covariance.trace()) << y;
-    one.group = 0;
-    EXPECT_EQ(place_people({&one, 1}, view, CameraId{0}, {}, {&rows, 1}).seen.front().value,
-              place_people({&one, 1}, view, CameraId{0}).seen.front().value)
-        << "in a shared region rows are anybody's";
-  }
-}
-
 TEST(PlacePeople, SaysHowFarItMayBeWrong) {
   const PlacePeopleOptions options;
   const Camera bent = beside_the_pitch();

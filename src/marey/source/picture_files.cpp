@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/natural_order.h"
 #include "marey/source/decoder.h"
 
 namespace marey::source {
@@ -20,30 +21,6 @@ constexpr std::array kEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", 
 
 bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-/// Numbers within names compare by value, everything else by character.
-bool naturally_less(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!is_digit(a[i]) || !is_digit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
-      continue;
-    }
-    const auto number = [](const std::string& text, std::size_t& at) {
-      while (at < text.size() && text[at] == '0') ++at;
-      const std::size_t begin = at;
-      while (at < text.size() && is_digit(text[at])) ++at;
-      return text.substr(begin, at - begin);
-    };
-    const std::string x = number(a, i);
-    const std::string y = number(b, j);
-    if (x.size() != y.size()) return x.size() < y.size();
-    if (x != y) return x < y;
-  }
-  const std::size_t left_of_a = a.size() - i, left_of_b = b.size() - j;
-  return left_of_a != left_of_b ? left_of_a < left_of_b : a < b;
 }
 
 /// Length of a `%d`, `%4d` or `%04d` that begins at `at`; 0 where there is none.
@@ -167,7 +144,7 @@ std::vector<std::string> find_pictures(const std::string& path) {
     if (!entry.is_regular_file(error) || (folder && (!is_picture_name(name) || name.starts_with('.')))) continue;
     if (matches(wanted, 0, name, 0)) found.push_back(entry.path().string());
   }
-  std::sort(found.begin(), found.end(), naturally_less);
+  std::sort(found.begin(), found.end(), NaturalOrder());
   return found;
 }
 

@@ -8,8 +8,8 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kHipTheta = 0.5, kHipBeta = 0.314;                                    // rad: Davis 1991
-constexpr double kShoulderOffset = 0.045, kElbowWidth = 0.07, kHandThickness = 0.025;  // m, of an adult
+constexpr double kHipTheta = 0.5, kHipBeta = 0.314;  // rad: Davis 1991
+constexpr double kNearlyStraight = 0.087;            // sine of 5°: 2 cm of a forearm
 
 std::optional<Vector<3>> place(const MarkerPlaces& markers, std::string_view label) {
   const auto found = markers.find(label);
@@ -61,6 +61,20 @@ double knee_width(const GaitSubject& subject, Side side) {
 }
 double ankle_width(const GaitSubject& subject, Side side) {
   return subject.ankle_width[static_cast<std::size_t>(side)].value_or(0.083 * leg_length(subject, side));
+}
+
+/// An arm's measures likewise, left and right alike.
+double shoulder_offset(const GaitSubject& subject, Side side) {
+  return subject.shoulder_offset[static_cast<std::size_t>(side)].value_or(0.059 * leg_length(subject, side));
+}
+double elbow_width(const GaitSubject& subject, Side side) {
+  return subject.elbow_width[static_cast<std::size_t>(side)].value_or(0.091 * leg_length(subject, side));
+}
+double wrist_width(const GaitSubject& subject, Side side) {
+  return subject.wrist_width[static_cast<std::size_t>(side)].value_or(0.064 * leg_length(subject, side));
+}
+double hand_thickness(const GaitSubject& subject, Side side) {
+  return subject.hand_thickness[static_cast<std::size_t>(side)].value_or(0.037 * leg_length(subject, side));
 }
 
 struct Hips {
@@ -127,30 +141,65 @@ void add_trunk(const MarkerPlaces& markers, GaitPose& pose) {
     pose[SegmentId::head] = Rigid3{*axes, 0.25 * (*lf + *rf + *lb + *rb)};
 }
 
-void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
-  const auto shoulder_marker = place(markers, side, "SHO"), elbow_marker = place(markers, side, "ELB");
-  const auto thumb = place(markers, side, "WRA"), little = place(markers, side, "WRB");
-  const auto& trunk = pose[SegmentId::trunk];
-  if (!shoulder_marker || !elbow_marker || !thumb || !little || !trunk) return;
-  const double size = leg_length(subject, side) / 0.9;  // of an adult
-  const Vector<3> shoulder = *shoulder_marker - (kShoulderOffset * size + subject.marker_radius) * trunk->rotation.col(2);
-  const Vector<3> wrist = 0.5 * (*thumb + *little);
-  // The elbow's centre is inwards of its marker: beside the plane of shoulder, marker and wrist.
-  Vector<3> inwards = (*elbow_marker - shoulder).cross(wrist - *elbow_marker);
-  if (inwards.norm() < 1e-4) inwards = trunk->rotation.col(1);
-  if (inwards.dot(trunk->rotation.col(1)) * (side == Side::left ? 1 : -1) > 0) inwards = -inwards;
-  const Vector<3> elbow = *elbow_marker + (0.5 * kElbowWidth * size + subject.marker_radius) * inwards.normalized();
+/// Where a forearm bends to, seen from the upper arm that runs along `down`: a direction across it. Of an elbow that is nearly
+/// straight it would be noise, and turn over with it: there it passes to where the thumb's side points.
+Vector<3> bends_to(const Vector<3>& down, const Vector<3>& forearm, const Vector<3>& thumb_side) {
+  const Vector<3> d = down.normalized(), f = forearm.normalized();
+  const Vector<3> across = f - d * d.dot(f), thumb = thumb_side - d * d.dot(thumb_side);
+  const double straight = d.dot(f) > 0 ? std::max(0.0, 1 - across.norm() / kNearlyStraight) : 0;
+  return (1 - straight) * across.normalized() + straight * thumb.normalized();
+}
+
+/// A shoulder's centre below its marker: with a right angle there, in the plane of the trunk's origin, the marker and what is up
+/// across the trunk's x.
+std::optional<Vector<3>> shoulder_of(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
+  const auto marker = place(markers, side, "SHO"), clavicle = place(markers, "CLAV");
+  if (!marker || !clavicle) return std::nullopt;
+  const Vector<3> origin = *clavicle - subject.marker_radius * trunk.rotation.col(0);
+  Vector<3> up = (*marker - origin).cross(trunk.rotation.col(0));
+  if (up.dot(trunk.rotation.col(2)) < 0) up = -up;
+  return chord(origin, *marker + up.normalized(), *marker, shoulder_offset(subject, side) + subject.marker_radius);
+}
+
+struct Arm {
+  Vector<3> shoulder, elbow, wrist, thumb_side, bar;  ///< the bar's middle, between the wrist's two markers
+};
+
+/// The elbow lies beside the plane of shoulder, elbow's marker and wrist, the wrist's centre on the palm's side of its markers.
+std::optional<Arm> arm_of(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
+  const auto shoulder = shoulder_of(markers, subject, side, trunk);
+  const auto marker = place(markers, side, "ELB"), thumb = place(markers, side, "WRA"), little = place(markers, side, "WRB");
+  if (!shoulder || !marker || !thumb || !little) return std::nullopt;
+  Arm arm{.shoulder = *shoulder, .elbow = {}, .wrist = {}, .thumb_side = *thumb - *little, .bar = 0.5 * (*thumb + *little)};
   const double outwards = side == Side::left ? 1 : -1;
-  if (const auto axes = axes_from(2, shoulder - elbow, 1, -outwards * inwards))
-    pose[of_side(SegmentId::left_upper_arm, side)] = Rigid3{*axes, shoulder};
-  const auto forearm = axes_from(2, elbow - wrist, 0, *thumb - *little);
+  const Vector<3> down = *marker - arm.shoulder, ahead = bends_to(down, arm.bar - *marker, arm.thumb_side);
+  const auto elbow = chord(arm.shoulder, *marker + outwards * ahead.cross(down).normalized(), *marker,
+                           0.5 * elbow_width(subject, side) + subject.marker_radius);
+  if (!elbow) return std::nullopt;
+  arm.elbow = *elbow;
+  const Vector<3> to_palm = outwards * arm.thumb_side.cross(arm.elbow - arm.bar);
+  arm.wrist = arm.bar + (0.5 * wrist_width(subject, side) + subject.marker_radius) * to_palm.normalized();
+  return arm.wrist.allFinite() ? std::optional(arm) : std::nullopt;
+}
+
+/// Of one arm: upper arm, forearm, hand. The elbow is a hinge: the upper arm's y is across the plane that it bends in, so that its
+/// flexion is the angle between the two and has no sign to choose.
+void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
+  const auto& trunk = pose[SegmentId::trunk];
+  const auto arm = trunk ? arm_of(markers, subject, side, *trunk) : std::nullopt;
+  if (!arm) return;
+  const Vector<3> ahead = bends_to(arm->elbow - arm->shoulder, arm->wrist - arm->elbow, arm->thumb_side);
+  if (const auto axes = axes_from(2, arm->shoulder - arm->elbow, 0, ahead))
+    pose[of_side(SegmentId::left_upper_arm, side)] = Rigid3{*axes, arm->shoulder};
+  const auto forearm = axes_from(2, arm->elbow - arm->wrist, 0, arm->thumb_side);
   if (!forearm) return;
-  pose[of_side(SegmentId::left_forearm, side)] = Rigid3{*forearm, elbow};
+  pose[of_side(SegmentId::left_forearm, side)] = Rigid3{*forearm, arm->elbow};
   const auto finger = place(markers, side, "FIN");
   if (!finger) return;
-  const Vector<3> hand = *finger - 0.5 * kHandThickness * size * forearm->col(1) * outwards;
-  if (const auto axes = axes_from(2, wrist - hand, 0, *thumb - *little))
-    pose[of_side(SegmentId::left_hand, side)] = Rigid3{*axes, wrist};
+  const auto hand = chord(arm->wrist, arm->bar, *finger, 0.5 * hand_thickness(subject, side) + subject.marker_radius);
+  if (!hand) return;
+  if (const auto axes = axes_from(2, arm->wrist - *hand, 0, arm->thumb_side))
+    pose[of_side(SegmentId::left_hand, side)] = Rigid3{*axes, arm->wrist};
 }
 
 constexpr std::array<std::pair<std::string_view, SegmentId>, 39> kMarkers = {{

@@ -1,8 +1,8 @@
 // The conventional gait model (Davis, Õunpuu, Tyburski, Gage 1991; Kadaba, Ramakrishnan, Wootten 1990), as Plug-in Gait has it: of
 // the markers of one instant, where the joints' centres are and how the segments stand. Hips by regression on leg length and pelvis
 // (Davis, equations 1 to 3); knees and ankles where a right angle stands over the marker, half a joint's width away in the plane of
-// the marker above or below (the chord function); feet by the line from ankle to toe, put right by what a static trial says of the
-// sole.
+// the marker above or below (the chord function); shoulders, elbows, wrists and hands likewise; feet by the line from ankle to toe,
+// put right by what a static trial says of the sole.
 #pragma once
 
 #include <array>
@@ -52,6 +52,7 @@ using MarkerPlaces = std::map<std::string, Vector<3>, std::less<>>;
 /// A person's measures, m, left and right. What is not given is taken from the leg's length, as people mostly are.
 struct GaitSubject {
   std::array<std::optional<double>, 2> leg_length, knee_width, ankle_width;
+  std::array<std::optional<double>, 2> shoulder_offset, elbow_width, wrist_width, hand_thickness;  ///< offset: centre below skin
   std::optional<double> asis_distance;  ///< between the hips' front spines; else between their markers, instant by instant
   double marker_radius = 0.007;
   std::array<Matrix<3>, 2> sole_from_ankle_toe = {Matrix<3>::Identity(), Matrix<3>::Identity()};  ///< of a static trial

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 namespace marey::analyse::gait {
 namespace {
 
 constexpr double kShortestS = 0.4, kLongestS = 3;
+constexpr double kJump = 0.5 * std::numbers::pi;  // between two frames
 
 /// Between rows, straight; nothing where one of them is not known.
 template <typename T>
 std::optional<T> value_at(const std::vector<std::optional<T>>& values, double row) {
-  if (row < 0 || row > static_cast<double>(values.size()) - 1) return std::nullopt;
-  const auto i = static_cast<std::size_t>(row);
+  if (row < 0 || row > static_cast<double>(values.size()) - 1 + 1e-6) return std::nullopt;
+  const auto i = std::min(static_cast<std::size_t>(row + 1e-6), values.size() - 1);
   const double share = row - static_cast<double>(i);
-  if (share < 1e-9) return values[i];
+  if (share < 1e-6) return values[i];
   if (!values[i] || !values[i + 1]) return std::nullopt;
   return T((1 - share) * *values[i] + share * *values[i + 1]);
 }
@@ -42,20 +45,49 @@ std::vector<GaitCycles::Cycle> find_cycles(std::span<const GaitEvent> events) {
   return cycles;
 }
 
+/// From row to row by more than a joint can turn.
+bool jumps(const AngleCurve& angle, const GaitCycles::Cycle& cycle, double rate_hz) {
+  const auto last = static_cast<std::size_t>(std::ceil(cycle.end_s * rate_hz));
+  for (auto r = static_cast<std::size_t>(std::floor(cycle.begin_s * rate_hz)) + 1; r <= last && r < angle.values.size(); ++r) {
+    if (angle.values[r] && angle.values[r - 1] && std::abs(*angle.values[r] - *angle.values[r - 1]) > kJump) return true;
+  }
+  return false;
+}
+
+std::optional<std::array<double, kCyclePoints>> points_of(const AngleCurve& angle, const GaitCycles::Cycle& cycle, double rate_hz) {
+  std::array<double, kCyclePoints> points{};
+  for (std::size_t p = 0; p < kCyclePoints; ++p) {
+    const double time = cycle.begin_s + (cycle.end_s - cycle.begin_s) * static_cast<double>(p) / (kCyclePoints - 1);
+    const auto value = value_at(angle.values, time * rate_hz);
+    if (!value) return std::nullopt;
+    points[p] = *value;
+  }
+  return points;
+}
+
+/// An angle that went on over half a turn between two cycles is whole turns off in the second.
+void take_turns_off(std::span<std::array<double, kCyclePoints>> cycles) {
+  const auto mean = [](const auto& points) { return std::accumulate(points.begin(), points.end(), 0.0) / kCyclePoints; };
+  for (auto& points : cycles) {
+    const double turn = 2 * std::numbers::pi, turns = turn * std::round((mean(cycles.front()) - mean(points)) / turn);
+    for (double& point : points) point += turns;
+  }
+}
+
 CycleCurve curve_of(const AngleCurve& angle, std::span<const GaitCycles::Cycle> cycles, double rate_hz) {
   CycleCurve curve{.name = angle.name, .cycles = {}};
   for (const GaitCycles::Cycle& cycle : cycles) {
     if (cycle.side != side_of(angle.name)) continue;
-    std::array<double, kCyclePoints> points{};
-    bool known = true;
-    for (std::size_t p = 0; p < kCyclePoints && known; ++p) {
-      const double time = cycle.begin_s + (cycle.end_s - cycle.begin_s) * static_cast<double>(p) / kCyclePoints;
-      const auto value = value_at(angle.values, time * rate_hz);
-      known = value.has_value();
-      points[p] = value.value_or(0);
+    const auto points = points_of(angle, cycle, rate_hz);
+    if (!points) {
+      ++curve.unknown;
+    } else if (jumps(angle, cycle, rate_hz)) {
+      ++curve.jumping;
+    } else {
+      curve.cycles.push_back(*points);
     }
-    if (known) curve.cycles.push_back(points);
   }
+  take_turns_off(curve.cycles);
   const auto count = static_cast<double>(curve.cycles.size());
   for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
     double sum = 0, squares = 0;

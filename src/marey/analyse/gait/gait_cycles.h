@@ -1,4 +1,4 @@
-// Gait cycles: from a foot's strike to its next, every angle at 100 points of it, and what a walk is told by: lengths, times,
+// Gait cycles: from a foot's strike to its next, every angle at 101 points of it, and what a walk is told by: lengths, times,
 // shares.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace marey::analyse::gait {
 
-inline constexpr std::size_t kCyclePoints = 100;  ///< at 0 %, 1 %, … 99 %: the next cycle begins at 100 %
+inline constexpr std::size_t kCyclePoints = 101;  ///< at 0 %, 1 %, … 100 %, which is the next strike
 
 /// One angle over time, rad, at the rate of the recording.
 struct AngleCurve {
@@ -23,8 +23,9 @@ struct AngleCurve {
 /// One angle over the cycles of its side.
 struct CycleCurve {
   std::string name;
-  std::vector<std::array<double, kCyclePoints>> cycles;  ///< rad; of a cycle in which it is known throughout
+  std::vector<std::array<double, kCyclePoints>> cycles;  ///< rad; of a cycle in which it is known throughout, and does not jump
   std::array<double, kCyclePoints> mean{}, deviation{};  ///< over the cycles
+  std::size_t unknown = 0, jumping = 0;                  ///< cycles of its side that are left out
 };
 
 /// A figure of the walk, over its cycles.

@@ -61,6 +61,46 @@ TEST(JointAngles, ShouldersHavePlaneAndElevation) {
   EXPECT_NEAR(angle(pose, "right_shoulder_plane"), 90, 1e-9);
 }
 
+/// Trunk and left arm that hangs down: the forearm bends by `bend` degrees at the elbow's marker, ahead where the arm is turned
+/// outwards by 0°. Palms face the body.
+MarkerPlaces arm_markers(double bend, double turned) {
+  const Matrix<3> turn = about(Vector<3>::UnitZ(), turned), forearm = turn * about(Vector<3>::UnitY(), -bend);
+  const Vector<3> shoulder(0, 0.17, 1.42), elbow = shoulder + turn * Vector<3>(0, 0.05, -0.28);
+  MarkerPlaces markers = {{"C7", {-0.07, 0, 1.45}},  {"T10", {-0.1, 0, 1.2}}, {"CLAV", {0.05, 0, 1.4}},
+                          {"STRN", {0.08, 0, 1.25}}, {"LSHO", shoulder},      {"LELB", elbow}};
+  markers["LWRA"] = elbow + forearm * Vector<3>(0.03, 0, -0.24);
+  markers["LWRB"] = elbow + forearm * Vector<3>(-0.03, 0, -0.24);
+  markers["LFIN"] = elbow + forearm * Vector<3>(0, 0, -0.31);
+  return markers;
+}
+
+TEST(JointAngles, AnElbowGoesOnWhereverItsArmTurns) {
+  std::optional<double> before, flexion_ahead;
+  for (double turned = 0; turned >= -150; turned -= 2) {
+    const GaitPose pose = pose_of(arm_markers(30, turned), {});
+    const double flexion = angle(pose, "left_elbow_flexion"), pronation = angle(pose, "left_elbow_pronation");
+    EXPECT_GT(flexion, 25) << turned;
+    if (!flexion_ahead) flexion_ahead = flexion;
+    EXPECT_NEAR(flexion, *flexion_ahead, 8) << turned;
+    EXPECT_NEAR(pronation, before.value_or(pronation), 3) << turned;
+    before = pronation;
+  }
+}
+
+TEST(JointAngles, AnElbowGoesOnWhereItIsStraight) {
+  std::optional<double> flexion_before, pronation_before;
+  for (double bend = 40; bend >= -2; bend -= 0.5) {
+    const GaitPose pose = pose_of(arm_markers(bend, -20), {});
+    const double flexion = angle(pose, "left_elbow_flexion"), pronation = angle(pose, "left_elbow_pronation");
+    if (flexion_before) {
+      EXPECT_NEAR(flexion, *flexion_before, 2) << bend;
+      EXPECT_NEAR(pronation, *pronation_before, 20) << bend;
+    }
+    flexion_before = flexion;
+    pronation_before = pronation;
+  }
+}
+
 TEST(JointAngles, GoOnOverHalfATurn) {
   std::vector<std::optional<double>> angles = {3.0, std::nullopt, -3.0, -2.9};
   unwrap(angles);
@@ -129,6 +169,40 @@ TEST(GaitCycles, MeasureTheWalk) {
   EXPECT_NEAR(figure("speed"), 1.2, 0.01);
   EXPECT_NEAR(figure("step width"), 0.2, 0.01);
   EXPECT_NEAR(figure("step length"), 0.6, 0.05);
+}
+
+TEST(GaitCycles, LeaveOutWhatJumpsOrIsNotKnownAndSaySo) {
+  const FeetPaths feet = walker(100, 6, 0);
+  const auto events = gait_events(feet, 100);
+  std::vector<AngleCurve> angles = {{"left_elbow_pronation", {}}, {"left_shoulder_plane", {}}, {"left_hip_rotation", {}}};
+  for (int i = 0; i < 600; ++i) {
+    angles[0].values.emplace_back(i == 250 ? 3.0 : 0.1);
+    angles[1].values.emplace_back(i == 250 ? std::nullopt : std::optional(0.1));
+    angles[2].values.emplace_back(i < 200 ? 0.1 : 0.1 + 2 * std::numbers::pi);
+  }
+  const GaitCycles cycles = gait_cycles(events, angles, feet, 100);
+  const auto count = [&](std::size_t curve) { return cycles.curves.at(curve).cycles.size(); };
+  ASSERT_GE(count(0), 2U);
+  EXPECT_EQ(cycles.curves[0].jumping, 1U);
+  EXPECT_EQ(cycles.curves[0].unknown, 0U);
+  EXPECT_EQ(cycles.curves[1].jumping, 0U);
+  EXPECT_EQ(cycles.curves[1].unknown, 1U);
+  for (std::size_t p = 0; p < kCyclePoints; ++p) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(cycles.curves[c].mean[p], 0.1, 1e-9) << c;
+      EXPECT_NEAR(cycles.curves[c].deviation[p], 0, 1e-9) << c;
+    }
+  }
+}
+
+TEST(GaitCycles, EndWithTheNextStrike) {
+  const FeetPaths feet = walker(100, 6, 0);
+  std::vector<AngleCurve> angles = {{"left_knee_flexion", {}}};
+  for (int i = 0; i < 600; ++i) angles[0].values.emplace_back(0.001 * i);
+  const GaitCycles cycles = gait_cycles(gait_events(feet, 100), angles, feet, 100);
+  EXPECT_EQ(kCyclePoints, 101U);
+  EXPECT_NEAR(cycles.curves.at(0).cycles.at(0).front(), 0.1 * cycles.cycles.at(0).begin_s, 1e-9);
+  EXPECT_NEAR(cycles.curves[0].cycles[0].back(), 0.1 * cycles.cycles[0].end_s, 1e-9);
 }
 
 TEST(LowPass, KeepsWhatIsSlowAndItsPlace) {

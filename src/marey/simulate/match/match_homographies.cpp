@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "marey/geometry/camera.h"
+#include "marey/geometry/decompositions.h"
 #include "marey/simulate/random.h"
 
 namespace marey::simulate::match {
@@ -34,7 +34,7 @@ Matrix<3> fitted(const std::vector<SeenGround>& seen, const cv::Size& size) {
   Matrix<3> scale = Matrix<3>::Identity();
   scale(0, 0) = scale(1, 1) = 2.0 / size.width;
   scale(0, 2) = scale(1, 2) = -1;
-  Eigen::Matrix<double, 9, 9> sum = Eigen::Matrix<double, 9, 9>::Zero();
+  Matrix<9> sum = Matrix<9>::Zero();
   for (const SeenGround& one : seen) {
     const Vector<3> p = scale * one.pixel.homogeneous();
     Eigen::Matrix<double, 2, 9> rows;
@@ -42,8 +42,7 @@ Matrix<3> fitted(const std::vector<SeenGround>& seen, const cv::Size& size) {
         p.transpose(), -one.ground.y() * p.transpose();
     sum += rows.transpose() * rows;
   }
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd(sum, Eigen::ComputeFullV);
-  const Eigen::Matrix<double, 9, 1> h = svd.matrixV().col(8);
+  const Vector<9> h = geometry::eigenpairs(sum).vectors.col(0);
   Matrix<3> H;
   H << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(), h.segment<3>(6).transpose();
   return H * scale;

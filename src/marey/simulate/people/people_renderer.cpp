@@ -46,11 +46,11 @@ std::uint8_t clamp_level(float level) {
   return static_cast<std::uint8_t>(std::clamp(level + 0.5F, 0.0F, 255.0F));
 }
 
-/// `level` + (`level` − zero) · (factor − 1), for all levels.
-cv::Mat gain_table(double factor, double zero) {
+/// Each level becomes zero + factor (level − zero).
+void scale_levels(cv::Mat& plane, double factor, double zero) {
   cv::Mat table(1, 256, CV_8UC1);
   for (int i = 0; i < 256; ++i) table.at<std::uint8_t>(i) = clamp_level(static_cast<float>(zero + factor * (i - zero)));
-  return table;
+  cv::LUT(plane, table, plane);
 }
 
 /// Points on the rim of a ball's shadow on the ground, as seen.
@@ -338,6 +338,15 @@ void PeopleRenderer::add_noise(Planes& planes, std::uint64_t seed) const {
   add(planes.cr, options_.noise / 2);
 }
 
+/// What others, who stand nearer, and the picture's border leave of `truth`, whose sprite is `own`.
+void PeopleRenderer::see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const {
+  for (const Sprite& other : sprites) {
+    if (&other != &own && other.depth < own.depth) take_away(truth.visible, other.shape);
+  }
+  crop(truth.visible, size());
+  truth.visible_share = truth.visible.area() / truth.whole.area();
+}
+
 RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const FrameConditions& conditions) const {
   Planes planes = ground(conditions);
   std::vector<Silhouette> shadows;
@@ -363,15 +372,7 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     if (options_.shadows) keep_shadow(shadow_of(post, conditions.shift));
     if (auto sprite = sprite_of(post, conditions.shift)) sprites.push_back(std::move(*sprite));
   }
-  for (std::size_t i = 0; i < frame.people.size(); ++i) {
-    TrueFigure& truth = frame.people[i];
-    const Sprite& own = sprites[sprite_of_person[i]];
-    for (const Sprite& other : sprites) {
-      if (&other != &own && other.depth < own.depth) take_away(truth.visible, other.shape);
-    }
-    crop(truth.visible, size());
-    truth.visible_share = truth.visible.area() / truth.whole.area();
-  }
+  for (std::size_t i = 0; i < frame.people.size(); ++i) see_past(sprites, sprites[sprite_of_person[i]], frame.people[i]);
   darken(planes, shadows);
   for (const PosedFigure& person : people) {
     if (options_.contact > 0)
@@ -381,10 +382,9 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
   std::stable_sort(sprites.begin(), sprites.end(), [](const Sprite& a, const Sprite& b) { return a.depth > b.depth; });
   for (const Sprite& sprite : sprites) sprite.lay(planes);
   if (conditions.light != 1) {
-    const cv::Mat luma_gain = gain_table(conditions.light, 16), chroma_gain = gain_table(conditions.light, 128);
-    cv::LUT(planes.luma, luma_gain, planes.luma);
-    cv::LUT(planes.cb, chroma_gain, planes.cb);
-    cv::LUT(planes.cr, chroma_gain, planes.cr);
+    scale_levels(planes.luma, conditions.light, 16);
+    scale_levels(planes.cb, conditions.light, 128);
+    scale_levels(planes.cr, conditions.light, 128);
   }
   add_noise(planes, conditions.seed);
   apply(options_.look, planes.luma, planes.cb, planes.cr);

@@ -92,6 +92,7 @@ class PeopleRenderer {
   std::optional<Silhouette> shadow_of(std::span<const Limb> limbs, const Vector<2>& shift) const;
   std::optional<Silhouette> shadow_of(const Post& post, const Vector<2>& shift) const;
   Planes ground(const FrameConditions& conditions) const;
+  void see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const;
   void darken(Planes& planes, std::span<const Silhouette> shadows) const;
   void add_noise(Planes& planes, std::uint64_t seed) const;
 

@@ -12,9 +12,7 @@
 namespace marey::source::live {
 namespace {
 
-constexpr int kAhead = 8;      // frames, decoded on another thread
-constexpr double kBehind = 2;  // periods after which a frame is left out
-
+constexpr int kAhead = 8;  // frames, decoded on another thread
 class Played final : public Connection {
  public:
   Played(std::function<std::unique_ptr<Source>()> open, const PlayOptions& options, LiveTime& time, std::stop_token stop)
@@ -39,7 +37,7 @@ class Played final : public Connection {
     shot.sequence = count_++;
     shot.taken = due;
     shot.given.frame = std::move(*std::exchange(pending_, std::nullopt));
-    const bool too_late = seconds(time_.now() - due) > kBehind * period;
+    const bool too_late = seconds(time_.now() - due) > kMostBehind * period;
     if (too_late && given_ > 0) return Came::nothing;  // its number is missing in those that follow
     ++given_;
     return Came::frame;

@@ -19,6 +19,9 @@ struct PlayOptions {
 
 Connect play(std::function<std::unique_ptr<Source>()> open, const PlayOptions& options);
 
+/// Periods: what comes later than its time by more is left out.
+inline constexpr double kMostBehind = 2;
+
 /// Waits until `due` or for kStopSlice, whichever is sooner; whether it is due.
 bool wait_until_due(Timestamp due, LiveTime& time, const std::stop_token& stop);
 

@@ -1,0 +1,48 @@
+// What every camera of a live run saw, kept, so that it can be done again from files.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/core/sink.h"
+#include "marey/draw/movie_writer.h"
+#include "marey/pipeline/recorder.h"
+
+namespace marey::pipeline {
+
+/// Writes FOLDER/CAMERA.mp4 of each camera, good enough to measure in, of the moments at which `wanted` is on, and FOLDER/rig.toml:
+/// the rig with these films as its sources, and when each began. What is not finished leaves nothing behind.
+class CameraFilms final : public Sink {
+ public:
+  CameraFilms(std::string folder, std::shared_ptr<const RecordSwitch> wanted);
+  ~CameraFilms() override;
+
+  /// What it writes into the folder for this rig.
+  static std::vector<std::string> files_of(const std::string& folder, const Rig& rig);
+
+  std::string name() const override { return folder_.string(); }
+  /// Throws Error where the folder cannot be made.
+  Wants begin(const RecordingHeader& header) override;
+  void write(const Instant& instant) override;
+  void finish() override;
+
+ private:
+  struct Film {
+    std::unique_ptr<draw::MovieWriter> movie;
+    Timestamp begin{}, last{};
+  };
+
+  std::string file_of(CameraId camera) const;
+  Film open(const Frame& frame) const;
+
+  std::filesystem::path folder_;
+  std::shared_ptr<const RecordSwitch> wanted_;
+  Rig rig_;
+  bool made_ = false;  // the folder was not there before
+  std::map<CameraId, Film> films_;
+};
+
+}  // namespace marey::pipeline
