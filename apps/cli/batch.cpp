@@ -10,8 +10,8 @@
 #include "marey/core/error.h"
 #include "marey/core/stop.h"
 #include "marey/core/whole_file.h"
-#include "marey/draw/page.h"
 
+#include "batch_page.h"
 #include "batch_plan.h"
 #include "batch_reduce.h"
 #include "batch_run.h"
@@ -44,7 +44,7 @@ std::string program_name() {
 }
 
 void print_lines(const BatchPlan& plan) {
-  const BatchLines lines = lines_of(plan, program_name(), 1);
+  const BatchLines lines = lines_of(plan, program_name(), 1, usual_array_jobs(plan));
   fmt::print(
       "here, one after the other:\n  {}\nhere, side by side (GNU parallel):\n  {}\non a cluster (Slurm), ARRAY is what the first "
       "line prints:\n  {}\n  {}\n",
@@ -68,9 +68,9 @@ void plan_batch(const PlanCommand& command) {
   check_files(its_files, {&written, 1});
   write_plan(plan);
   int memory = 0;
-  for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.memory_mb);
+  for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.costs.memory_mb);
   if (command.json) {
-    const BatchLines lines = lines_of(plan, program_name(), 1);
+    const BatchLines lines = lines_of(plan, program_name(), 1, usual_array_jobs(plan));
     print({{"plan", plan.path},
            {"tasks", plan.tasks.size()},
            {"memory_mb", memory},
@@ -164,27 +164,7 @@ struct ReduceCommand : Reporting {
   std::string plan, out, report;
 };
 
-draw::PageTable table_of(const Season& season) {
-  draw::PageTable table{.title = "Everybody", .head = season.columns, .rows = season.rows};
-  return table;
-}
-
-std::string page_of(const Season& season, const std::string& title, std::size_t planned) {
-  draw::Page page(title);
-  page.add_sentence(
-      fmt::format("{} of {} recordings are done, {:.0f} core-seconds of {:.2f} s each on average; the largest took {} MB.",
-                  season.done, planned, season.seconds, season.done > 0 ? season.seconds / season.done : 0.0, season.peak_mb));
-  if (!season.failures.empty()) {
-    draw::PageTable failures{.title = "What is missing, and why", .head = {"task", "recording", "why"}, .rows = {}};
-    for (const Season::Failure& failure : season.failures)
-      failures.rows.push_back({std::to_string(failure.number), failure.name, failure.why});
-    page.add(failures);
-  }
-  page.add(table_of(season));
-  return page.html();
-}
-
-std::string season_page(const ReduceCommand& command) {
+std::string page_file(const ReduceCommand& command) {
   return (fs::path(command.report) / "report.html").string();
 }
 
@@ -197,8 +177,8 @@ void reduce_batch(const ReduceCommand& command) {
     std::error_code error;
     fs::create_directories(command.report, error);
     if (error) throw Error("{}: this folder cannot be made ({})", command.report, error.message());
-    WholeFile page(season_page(command));
-    page.write(page_of(season, fs::path(plan.path).stem().string(), plan.tasks.size()));
+    WholeFile page(page_file(command));
+    page.write(season_page(season, fs::path(plan.path).stem().string(), plan.tasks.size()));
     page.finish();
   }
   file.finish();
@@ -220,7 +200,7 @@ void reduce_batch(const ReduceCommand& command) {
                  season.planned_mb);
     for (const Season::Failure& failure : season.failures)
       fmt::print("not done: {} ({}): {}\n", failure.number, failure.name, failure.why);
-    if (!command.report.empty()) fmt::print("report: {}\n", season_page(command));
+    if (!command.report.empty()) fmt::print("report: {}\n", page_file(command));
   }
   if (!season.failures.empty()) throw EndWith{1};
 }
@@ -234,6 +214,7 @@ struct SubmitCommand : Reporting {
   std::string plan;
   Engine to = Engine::slurm;
   int threads = 1;
+  std::optional<int> jobs;
   bool dry = false;
 };
 
@@ -250,7 +231,7 @@ std::string shell(const std::string& line) {
 
 void submit_batch(const SubmitCommand& command) {
   const BatchPlan plan = read_plan(command.plan);
-  BatchLines lines = lines_of(plan, program_name(), command.threads);
+  BatchLines lines = lines_of(plan, program_name(), command.threads, command.jobs.value_or(usual_array_jobs(plan)));
   const auto give_job = [&](const std::string& job) {
     const std::string before = "afterany:ARRAY";
     lines.slurm_reduce.replace(lines.slurm_reduce.find(before), before.size(), "afterany:" + job);
@@ -316,10 +297,10 @@ void add_reduce(Command& batch) {
   Command command = batch.subcommand("reduce", "One table of everybody in every recording, and what is missing and why");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
   command.output_file("-o,--output", options->out, "CSV with a row a person and recording").required().ends_in({".csv"});
-  command.output_folder("--report", options->report, "folder for a page with the tables");
+  command.output_folder("--report", options->report, "folder for a page with totals, curves over the season and the tables");
   command.also_reads([options] { return read_plan(options->plan).files(); });
   command.also_writes(
-      [options] { return options->report.empty() ? std::vector<std::string>{} : std::vector{season_page(*options)}; });
+      [options] { return options->report.empty() ? std::vector<std::string>{} : std::vector{page_file(*options)}; });
   command.reports(options->json, options->quiet, "summary");
   command.runs([options] { reduce_batch(*options); });
 }
@@ -330,6 +311,8 @@ void add_submit(Command& batch) {
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
   command.choice("--to", options->to, kEngines, "who runs it");
   command.whole("--cpus", options->threads, "N", 1, 1024, "of each task");
+  command.whole("--jobs", options->jobs, "N", 1, kMostArrayJobs,
+                "of Slurm's array at most (default: so many that each works a minute, because it takes seconds to start one)");
   command.flag("--dry", options->dry, "print the lines alone");
   command.reports(options->json, options->quiet, "jobs");
   command.runs([options] { submit_batch(*options); });

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPlanHead = "task\tname\tdo\tinputs\tstates\toptions\toutput\tmemory_mb";
+constexpr const char* kPlanHead = "task\tname\tdo\tinputs\tstates\toptions\toutput\tmemory_mb\tseconds";
 
 /// Tabs, newlines and the separators of lists within a field.
 std::string in_field(const std::string& text) {
@@ -106,7 +106,7 @@ double seconds_of(const std::string& text) {
 
 BatchTask task_of(const std::string& line) {
   const std::vector<std::string> fields = split_fields(line, '\t');
-  if (fields.size() != 8) throw Error("{} columns in place of 8", fields.size());
+  if (fields.size() != 9) throw Error("{} columns in place of 9", fields.size());
   BatchTask task;
   task.number = count_of(fields[0]);
   task.name = out_of_field(fields[1]);
@@ -122,7 +122,7 @@ BatchTask task_of(const std::string& line) {
   }
   task.options = parts_of(fields[5]);
   task.output = out_of_field(fields[6]);
-  task.memory_mb = count_of(fields[7]);
+  task.costs = {count_of(fields[7]), seconds_of(fields[8])};
   return task;
 }
 
@@ -161,12 +161,24 @@ std::string BatchPlan::results() const {
   return path + ".results";
 }
 
-void BatchPlan::check_output(const BatchTask& task) const {
+OutputCheck::OutputCheck(std::string results) : results_(std::move(results)) {}
+
+bool OutputCheck::is_within(const std::string& path) const {
   std::error_code error;
-  const fs::path folder = fs::weakly_canonical(fs::absolute(results()), error);
-  const fs::path below = fs::weakly_canonical(fs::absolute(task.output), error).lexically_relative(folder);
-  if (error || below.empty() || below == "." || *below.begin() == "..")
-    throw Error("\"{}\" would be written to {}, outside of {}", plain_text(task.name), plain_text(task.output), results());
+  const fs::path allowed = fs::weakly_canonical(fs::absolute(results_), error);
+  const fs::path below = fs::weakly_canonical(fs::absolute(path), error).lexically_relative(allowed);
+  return !error && !below.empty() && *below.begin() != "..";
+}
+
+void OutputCheck::check(const BatchTask& task) {
+  const std::size_t slash = task.output.rfind('/');
+  const std::string name = task.output.substr(slash + 1);  // of a path without one: all of it
+  const auto [folder, is_new] = folders_.try_emplace(slash == std::string::npos ? "." : task.output.substr(0, slash + 1), false);
+  if (is_new) folder->second = is_within(folder->first);
+  const bool is_name = !name.empty() && name != "." && name != "..";
+  std::error_code error;
+  if (!folder->second || !is_name || (fs::is_symlink(task.output, error) && !is_within(task.output)))
+    throw Error("\"{}\" would be written to {}, outside of {}", plain_text(task.name), plain_text(task.output), results_);
 }
 
 std::vector<std::string> BatchPlan::files() const {
@@ -186,13 +198,14 @@ BatchPlan read_plan(const std::string& path) {
   InputStream file(path);
   if (!file) throw Error("{}: cannot be read; `marey batch plan` makes a plan", path);
   BatchPlan plan{path, {}};
+  OutputCheck outputs(plan.results());
   std::string line;
   if (!std::getline(file, line) || line != kPlanHead) throw Error("{}:1: this is no plan; `marey batch plan` makes one", path);
   for (int number = 2; std::getline(file, line); ++number) {
     try {
       plan.tasks.push_back(task_of(line));
       if (plan.tasks.back().number != std::ssize(plan.tasks)) throw Error("{}", "tasks are numbered from 1, one a line");
-      plan.check_output(plan.tasks.back());
+      outputs.check(plan.tasks.back());
     } catch (const Error& error) {
       throw Error("{}:{}: {}; make the plan anew with `marey batch plan`", path, number, error.what());
     }
@@ -205,11 +218,11 @@ void write_plan(const BatchPlan& plan) {
   const auto same = [](const std::string& word) { return word; };
   for (const BatchTask& task : plan.tasks) {
     text += fmt::format(
-        "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", task.number, in_field(task.name), task.job,
+        "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.3g}\n", task.number, in_field(task.name), task.job,
         list_of(task.inputs, [](const PlannedInput& input) { return input.path; }),
         list_of(task.inputs,
                 [](const PlannedInput& input) { return fmt::format("{}:{}:{}", input.size, input.mtime_ns, input.hash); }),
-        list_of(task.options, same), in_field(task.output), task.memory_mb);
+        list_of(task.options, same), in_field(task.output), task.costs.memory_mb, task.costs.seconds);
   }
   WholeFile file(plan.path);
   file.write(text);

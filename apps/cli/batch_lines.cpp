@@ -8,8 +8,6 @@
 namespace marey::cli {
 namespace {
 
-constexpr std::size_t kMostArrayTasks = 1000;  // Slurm takes 1001 of them where nobody has changed it
-
 /// A word as a shell takes it.
 std::string quoted(const std::string& word) {
   const bool plain =
@@ -23,10 +21,18 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads) {
+int usual_array_jobs(const BatchPlan& plan) {
+  constexpr double kWorth = 60;  // s of work: Slurm starts jobs every 3 s
+  constexpr int kFewest = 8;
+  double seconds = 0;
+  for (const BatchTask& task : plan.tasks) seconds += task.costs.seconds;
+  return static_cast<int>(std::clamp(seconds / kWorth, double{kFewest}, double{kMostArrayJobs}));
+}
+
+BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs) {
   int memory = 0;
-  for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.memory_mb);
-  const std::size_t parts = std::min(plan.tasks.size(), kMostArrayTasks);
+  for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.costs.memory_mb);
+  const std::size_t parts = std::min(plan.tasks.size(), static_cast<std::size_t>(jobs));
   const std::string run = fmt::format("{} batch run {} -q --task-threads {}", quoted(program), quoted(plan.path), threads);
   const std::string reduce =
       fmt::format("{} batch reduce {} -o {}", quoted(program), quoted(plan.path), quoted(plan.path + ".csv"));
@@ -36,9 +42,10 @@ BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threa
   lines.loop = run;
   lines.parallel = fmt::format("parallel --joblog {} --resume-failed {} --part {{}}/{} ::: $(seq {})",
                                quoted(plan.results() + "/jobs.log"), run, plan.tasks.size(), plan.tasks.size());
-  lines.slurm_array = fmt::format(
-      "sbatch --parsable --job-name=marey --array=1-{} --requeue --cpus-per-task={} --mem={}M --output={} --wrap={}", parts,
-      threads, static_cast<int>(kSpare * memory), log, quoted(fmt::format("exec {} --part $SLURM_ARRAY_TASK_ID/{}", run, parts)));
+  lines.slurm_array =
+      fmt::format("sbatch --parsable --job-name=marey --array=1-{} --requeue --cpus-per-task={} --mem={}M --output={} --wrap={}",
+                  parts, threads, static_cast<int>(kSpare * memory_with_threads(memory, threads)), log,
+                  quoted(fmt::format("exec {} --part $SLURM_ARRAY_TASK_ID/{}", run, parts)));
   lines.slurm_reduce = fmt::format("sbatch --parsable --job-name=marey-reduce --dependency=afterany:ARRAY --output={} --wrap={}",
                                    quoted(plan.results() + "/log/reduce.txt"), quoted("exec " + reduce));
   return lines;

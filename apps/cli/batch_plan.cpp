@@ -11,10 +11,10 @@
 
 #include "marey/core/error.h"
 #include "marey/core/input_file.h"
+#include "marey/core/natural_order.h"
 #include "marey/core/stop.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/register.h"
-#include "marey/source/open_source.h"
 
 #include "batch_fields.h"
 #include "rig_inputs.h"
@@ -30,14 +30,6 @@ std::optional<PlannedInput> state_of(const std::string& path) {
   if (stat(path.c_str(), &status) != 0) return std::nullopt;
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
   return PlannedInput{path, status.st_size, status.st_mtim.tv_sec * kNanoseconds + status.st_mtim.tv_nsec, {}};
-}
-
-bool is_film(const fs::path& path) {
-  static const std::set<std::string> endings{".mp4",  ".avi",  ".mov", ".mkv", ".m4v", ".mpg",
-                                             ".mpeg", ".webm", ".ts",  ".mts", ".wmv", ".mxf"};
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return endings.contains(ending);
 }
 
 /// Whether the job is done with such a file.
@@ -67,7 +59,7 @@ std::vector<Found> in_folder(const PlanRequest& request, const std::string& resu
     if (fs::equivalent(entry->path(), request.plan, ignored) || !is_input_of(request.job, entry->path())) continue;
     found.push_back({entry->path().string(), stem_of(entry->path().lexically_relative(folder)), {}});
   }
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.input < b.input; });
+  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return NaturalOrder()(a.input, b.input); });
   if (found.empty()) throw Error("{}: holds nothing that {} reads", request.from, request.job);
   return found;
 }
@@ -151,16 +143,17 @@ std::vector<std::string> words_of_job(const std::string& job) {
 BatchPlan make_plan(const PlanRequest& request) {
   BatchPlan plan{request.plan, {}};
   std::map<std::string, PlannedInput> before;
-  std::map<std::string, int> memory_before;  // by the input's hash and the job: to ask a film for its size takes a while
+  std::map<std::string, TaskCosts> costs_before;  // by the input's hash and the job: to ask a film for its size takes a while
   std::error_code error;
   if (fs::is_regular_file(request.plan, error)) {
     for (const BatchTask& task : read_plan(request.plan).tasks) {
       for (const PlannedInput& input : task.inputs) before[input.path] = input;
-      memory_before[task.job + task.inputs.front().hash] = task.memory_mb;
+      costs_before[task.job + task.inputs.front().hash] = task.costs;
     }
   }
   const std::string ending = request.ending.empty() ? usual_ending(request.job) : request.ending;
   std::set<std::string> names;
+  OutputCheck outputs(plan.results());
   for (const Found& found : fs::is_directory(request.from, error) ? in_folder(request, plan.results()) : in_table(request)) {
     stop_point();
     BatchTask& task = plan.tasks.emplace_back();
@@ -174,10 +167,10 @@ BatchPlan make_plan(const PlanRequest& request) {
     const std::vector<std::string> inputs = inputs_of(request.job, found.input);
     for (const std::string& path : inputs) task.inputs.push_back(planned(path, before));
     task.output = (fs::path(plan.results()) / (task.name + ending)).string();
-    plan.check_output(task);
-    const auto [known, is_new] = memory_before.try_emplace(task.job + task.inputs.front().hash, 0);
-    if (is_new) known->second = expected_memory_mb(request.job, inputs);
-    task.memory_mb = known->second;
+    outputs.check(task);
+    const auto [known, is_new] = costs_before.try_emplace(task.job + task.inputs.front().hash);
+    if (is_new) known->second = expected_costs(request.job, inputs);
+    task.costs = known->second;
   }
   return plan;
 }
@@ -191,26 +184,6 @@ std::string changed_input(const BatchTask& task) {
       return fmt::format("{}: is another file than when the plan was made; make the plan anew", input.path);
   }
   return {};
-}
-
-int expected_memory_mb(const std::string& job, const std::vector<std::string>& inputs) {
-  // What the program takes before its first frame, and what a pixel of a camera's pictures takes: frames that are read ahead, the
-  // background model, the samples that it learns from (docs/batch.md has the measurements).
-  constexpr double kProgramMb = 56, kPixelBytes = 47;
-  double mb = kProgramMb;
-  for (const std::string& path : inputs) {
-    try {
-      if (!is_film(path)) continue;
-      const cv::Size size = source::open_source(path)->info().size;
-      mb += kPixelBytes * size.area() / 1e6;
-    } catch (const Error&) {
-      continue;  // the task will say what is wrong with it
-    }
-  }
-  // Figures of a whole match are held while it is measured: a row of text of some 60 bytes becomes about as many.
-  std::error_code error;
-  if (job == "measure") mb += 3.0 * static_cast<double>(fs::file_size(inputs.front(), error)) / 1e6;
-  return static_cast<int>(mb);
 }
 
 }  // namespace marey::cli

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +22,12 @@ struct PlannedInput {
   bool operator==(const PlannedInput&) const = default;
 };
 
+/// Of a task with one thread.
+struct TaskCosts {
+  int memory_mb = 0;   ///< at most at once
+  double seconds = 0;  ///< roughly: machines differ
+};
+
 struct BatchTask {
   int number = 0;                    ///< from 1
   std::string name;                  ///< of the recording: unique in the plan
@@ -27,7 +35,7 @@ struct BatchTask {
   std::vector<PlannedInput> inputs;  ///< the first is the recording; those of a rig follow
   std::vector<std::string> options;  ///< further words of the command
   std::string output;                ///< a path
-  int memory_mb = 0;                 ///< that it is expected to take at most at once
+  TaskCosts costs;                   ///< that are expected
 
   /// What it comes out the same by: the program's version, the job, its options and its inputs' bytes.
   std::string hash() const;
@@ -39,10 +47,23 @@ struct BatchPlan {
 
   std::string results() const;  ///< the folder beside it: PLAN.results
   std::string record_of(const BatchTask& task) const;
-  /// Throws Error where the task would write outside of `results`: plans and tables may come from strangers.
-  void check_output(const BatchTask& task) const;
   /// All that tasks read and write.
   std::vector<std::string> files() const;
+};
+
+/// Keeps tasks from writing outside of a folder of results: plans and tables may come from strangers. It follows the links of each
+/// folder once, which takes longer than all else that a plan of thousands is looked through for.
+class OutputCheck {
+ public:
+  explicit OutputCheck(std::string results);
+  /// Throws Error.
+  void check(const BatchTask& task);
+
+ private:
+  bool is_within(const std::string& path) const;
+
+  std::string results_;
+  std::map<std::string, bool> folders_;  // whether they are within
 };
 
 /// What came of a task that was run.
@@ -85,13 +106,21 @@ BatchPlan make_plan(const PlanRequest& request);
 /// reads only where they differ. Empty where all is as planned.
 std::string changed_input(const BatchTask& task);
 
-/// MB that the job will take with such an input, from what was measured (docs/batch.md).
-int expected_memory_mb(const std::string& job, const std::vector<std::string>& inputs);
+bool is_film(const std::filesystem::path& path);
+
+/// What the job will take with such inputs, from what was measured (docs/batch.md).
+TaskCosts expected_costs(const std::string& job, const std::vector<std::string>& inputs);
+int memory_with_threads(int mb, int threads);
+
+constexpr int kMostArrayJobs = 1000;  // Slurm takes 1001 of them where nobody has changed it
 
 /// The command lines that do all of a plan.
 struct BatchLines {
   std::string loop, parallel, slurm_array, slurm_reduce;
 };
-BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads);
+/// `jobs`: of the array; each does as many of the tasks as it takes.
+BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs);
+/// So many jobs that each works a minute or more, because a cluster takes seconds to start one; but not fewer than eight.
+int usual_array_jobs(const BatchPlan& plan);
 
 }  // namespace marey::cli

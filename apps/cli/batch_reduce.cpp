@@ -100,7 +100,7 @@ Season reduce(const BatchPlan& plan) {
         task.job == "measure" ? add_measured(task, table) : add_counted(task, table);
         ++season.done;
         season.seconds += record->seconds;
-        if (record->peak_mb > season.peak_mb) season.peak_mb = record->peak_mb, season.planned_mb = task.memory_mb;
+        if (record->peak_mb > season.peak_mb) season.peak_mb = record->peak_mb, season.planned_mb = task.costs.memory_mb;
       } else {
         season.failures.push_back({task.number, task.name, std::move(why)});
       }

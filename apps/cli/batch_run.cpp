@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -19,6 +20,7 @@
 #include "marey/core/file_lock.h"
 #include "marey/core/stop.h"
 
+#include "commands.h"
 #include "run_hooks.h"
 
 namespace marey::cli {
@@ -26,14 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string own_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? "marey" : program.string();
-}
-
 std::vector<std::string> command_of(const BatchTask& task, std::optional<int> threads) {
-  std::vector<std::string> words{own_program()};
+  std::vector<std::string> words{"marey"};
   for (const std::string& word : words_of_job(task.job)) words.push_back(word);
   words.push_back(task.inputs.front().path);
   words.insert(words.end(), {"-o", task.output, "-q"});
@@ -49,24 +45,46 @@ struct Ended {
   std::string said;
 };
 
-/// Its standard error comes back, the last of it; it ends when this program does, however that ends.
+/// What the process that was forked off does: this program once more, without the time that loading it takes.
+[[noreturn]] void run_words(std::vector<std::string> words, int said, const sigset_t& signals) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    // Until it catches them itself: the other's handlers would ask nobody here to end. What nohup set stays.
+    if (std::signal(number, SIG_DFL) == SIG_IGN) std::signal(number, SIG_IGN);
+  }
+  pthread_sigmask(SIG_SETMASK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when nobody reads what it says any more
+  const int nowhere = open("/dev/null", O_RDWR);
+  dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(said, STDERR_FILENO);
+  close(said);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  _exit(run_program(static_cast<int>(words.size()), arguments.data()));
+}
+
+/// A process that does the words and says on `pipe` what goes wrong; it ends when this one does, however that ends.
+pid_t start_process(const std::vector<std::string>& words, const std::array<int, 2>& pipe) {
+  std::fflush(nullptr);  // else both would write what waits
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t process = fork();
+  if (process == 0) {
+    close(pipe[0]);
+    run_words(words, pipe[1], before);
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (process < 0) throw Error("no further process can be started: {}", std::strerror(errno));
+  return process;
+}
+
+/// Its standard error comes back, the last of it.
 Ended run_process(const std::vector<std::string>& words) {
   constexpr std::size_t kMostSaid = 4000;  // bytes
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Error("no pipe: {}", std::strerror(errno));
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  const pid_t process = fork();
-  if (process < 0) throw Error("no further process can be started: {}", std::strerror(errno));
-  if (process == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when nobody reads what it says any more
-    const int nowhere = open("/dev/null", O_RDWR);
-    dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(ends[1], STDERR_FILENO);
-    execv(arguments[0], arguments.data());
-    _exit(127);
-  }
+  const pid_t process = start_process(words, ends);
   close(ends[1]);
   const std::stop_callback<std::function<void()>> passed_on(StopScope::current(), [process] { kill(process, SIGTERM); });
   Ended ended;
@@ -111,12 +129,14 @@ TaskOutcome do_task(const BatchPlan& plan, const BatchTask& task, std::optional<
   const Ended ended = run_process(command_of(task, threads));
   if (StopScope::current().stop_requested())
     throw Stopped("stopped; the task that ran is not done, and is done again by the next run");
+  rusage own{};
+  getrusage(RUSAGE_SELF, &own);  // whoever counts a job's memory counts who waits too
   TaskRecord record;
   record.hash = task.hash();
   record.exit_code = WIFEXITED(ended.status) ? WEXITSTATUS(ended.status) : 128 + WTERMSIG(ended.status);
   record.done = record.exit_code == 0;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  record.peak_mb = static_cast<int>(ended.used.ru_maxrss / 1024);
+  record.peak_mb = static_cast<int>((ended.used.ru_maxrss + own.ru_maxrss) / 1024);
   record.host = host_name();
   record.sentence = sentence_of(ended);
   write_record(plan.record_of(task), record);

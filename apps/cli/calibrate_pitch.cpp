@@ -197,6 +197,17 @@ void run(const CalibratePitch& command) {
   }
 }
 
+/// What goes into the folder of pictures.
+std::vector<std::string> pictures_of(const CalibratePitch& command) {
+  if (command.pictures.empty()) return {};
+  std::vector<std::string> files;
+  for (const RigCamera& camera : rig_of(command.inputs).cameras) {
+    const pipeline::PitchPictures pictures(command.pictures, camera.name);
+    files.insert(files.end(), {pictures.overlay, pictures.accuracy});
+  }
+  return files;
+}
+
 }  // namespace
 
 void add_calibrate_pitch(Command& calibrate) {
@@ -222,6 +233,7 @@ void add_calibrate_pitch(Command& calibrate) {
   command.output_file("-o,--output", options->out, "rig file to write").ends_in({".toml"}).may_replace(rig);
   command.output_folder("--pictures", options->pictures,
                         "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
+  command.also_writes([options] { return pictures_of(*options); });
   command.flag(
       "--synced", options->synced,
       "the cameras run on one clock; else when each was started is found from how people move, where the rig does not say");

@@ -6,6 +6,9 @@ namespace marey::cli {
 
 class Command;
 
+/// All that `main` does: parses the words and runs the command that they name. Returns the exit code.
+int run_program(int argc, char** argv);
+
 void add_track(Command& program);
 void add_detect(Command& program);
 void add_evaluate(Command& program);

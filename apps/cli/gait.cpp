@@ -82,7 +82,7 @@ void add_gait(Command& program) {
       .required();
   command.input_file("--static", options->options.static_trial,
                      "the same person, standing: for the feet's neutral position and the legs' lengths");
-  command.output_file("-o,--output", options->output.cycles, "CSV: every angle at 100 points of the cycle, mean and deviation")
+  command.output_file("-o,--output", options->output.cycles, "CSV: every angle at 101 points of the cycle, mean and deviation")
       .ends_in({".csv"});
   command.output_file("--angles", options->output.angles, "CSV: every angle at every frame, degrees").ends_in({".csv"});
   command.output_file("--report", options->output.report, "a page with the curves, the walk's figures and its events")

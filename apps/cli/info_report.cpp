@@ -19,6 +19,13 @@ std::string percent(std::int64_t part, std::int64_t whole) {
   return whole == 0 ? std::string("-") : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
+std::string names_of(const std::vector<Body>& bodies) {
+  constexpr std::size_t kNamed = 8;
+  std::string names = fmt::format("{}:", bodies.size());
+  for (std::size_t i = 0; i < std::min(bodies.size(), kNamed); ++i) names += (i > 0 ? ", " : " ") + bodies[i].label;
+  return bodies.size() > kNamed ? names + ", …" : names;
+}
+
 /// All frames between the first and the last, those that are left out too.
 std::int64_t span_of(const RecordingSummary& summary) {
   return summary.first_index ? *summary.last_index - *summary.first_index + 1 : 0;
@@ -159,6 +166,7 @@ void print_recording(const std::string& path, const format::Format& format, cons
                                   percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
                                   percent(predicted, summary.samples)));
   if (format.z_up) print_row("observations", counted(summary.seen));
+  if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
   print_row("positions", to_string(info.header.frame));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
   for (const Edit& edit : info.edits) print_row("edit", fmt::format("{} {}", edit.operation, edit.payload));
@@ -210,6 +218,8 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
     result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
   }
   result["frame"] = to_string(info.header.frame);
+  for (const Body& body : info.header.bodies)
+    result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = info_json(*info.header.rig);

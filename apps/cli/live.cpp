@@ -14,6 +14,7 @@
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
 #include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/camera_films.h"
 #include "marey/pipeline/live_feeds.h"
 
 #include "blob_options.h"
@@ -23,12 +24,16 @@
 #include "live_outputs.h"
 #include "live_screen.h"
 #include "people_options.h"
+#include "realtime.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
 #include "summary_figures.h"
 
 namespace marey::cli {
 namespace {
+
+enum class Kept { solved, raw };
+constexpr std::array<std::pair<const char*, Kept>, 2> kKept{{{"solved", Kept::solved}, {"raw", Kept::raw}}};
 
 using pipeline::LiveTargets;
 constexpr std::array<std::pair<const char*, LiveTargets>, 2> kLiveTargets{
@@ -39,7 +44,8 @@ struct LiveCommand {
   LiveTargets targets = LiveTargets::markers;
   bool ground = false;
   std::string out, labels;
-  bool armed = false;
+  Kept record = Kept::solved;
+  bool armed = false, realtime = false;
   std::optional<double> for_s;
   double preroll_s = 5, late_s = 0.05, patience_s = 3;
   detect::markers::MarkerOptions markers;
@@ -99,6 +105,22 @@ void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
 }
 
+/// The folder of the pictures beside a take.
+std::string pictures_of(const std::string& take) {
+  return take.substr(0, take.rfind(".marey")) + "_pictures";
+}
+
+std::vector<std::string> played_files(const LiveCommand& command) {
+  std::vector<std::string> files;
+  for (const RigCamera& camera : rig_of(command).cameras) files.push_back(path_of_source(camera.source));
+  return files;
+}
+
+std::vector<std::string> files_beside_take(const LiveCommand& command) {
+  if (command.record != Kept::raw) return {};
+  return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of(command));
+}
+
 pipeline::LiveOptions options_of(const LiveCommand& command) {
   pipeline::LiveOptions options;
   options.targets = command.targets;
@@ -112,6 +134,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.policy.late_s = command.late_s;
   options.patience_s = command.patience_s;
   options.take = command.out;
+  if (command.record == Kept::raw) options.pictures = pictures_of(command.out);
   options.preroll_s = command.preroll_s;
   options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
@@ -125,6 +148,9 @@ struct LiveEnd {
 };
 
 void run(const LiveCommand& command) {
+  if (command.realtime) {
+    if (const auto refused = ask_for_realtime()) warn({*refused});
+  }
   const Rig rig = rig_of(command);
   pipeline::LiveOptions options = options_of(command);
   LiveOutputs outputs(command.outputs, options.policy.time, options.recording, command.quiet);
@@ -175,11 +201,16 @@ void add_live(Command& program) {
   command.choice("--targets", options->targets, kLiveTargets, "what is followed");
   command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
+  command.also_reads([options] { return played_files(*options); });
+  command.also_writes([options] { return files_beside_take(*options); });
+  command.choice("--record", options->record, kKept,
+                 "what is kept: the take alone, or the pictures too, a film of each camera and rig.toml in NAME_pictures");
   command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");
   command.number("--preroll", options->preroll_s, "s", closed(0, 60), "of what came before r was pressed");
   command.number("--for", options->for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C, or q)");
   command.number("--late", options->late_s, "s", closed(0.001, 1), "a moment waits so long for its cameras' frames");
   command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
+  command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
   command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
   add_blob_options(command, options->markers);
   add_live_outputs(command, options->outputs);
@@ -188,6 +219,7 @@ void add_live(Command& program) {
     options->outputs.take = options->out;
     if (options->ground) options->targets = LiveTargets::people;
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
+    if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
     run(*options);
   });
 }

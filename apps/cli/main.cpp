@@ -5,9 +5,10 @@ extern "C" {
 #include "command_line.h"
 #include "commands.h"
 
-int main(int argc, char** argv) {
+namespace marey::cli {
+
+int run_program(int argc, char** argv) {
   av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
-  using namespace marey::cli;
   Program program("marey", "Marey turns what cameras see into motion you can measure.");
   Command root = program.root();
   add_track(root);
@@ -33,4 +34,10 @@ int main(int argc, char** argv) {
   add_gait(root);
   add_experiment(root);
   return program.run(argc, argv);
+}
+
+}  // namespace marey::cli
+
+int main(int argc, char** argv) {
+  return marey::cli::run_program(argc, argv);
 }

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "marey/core/error.h"
+#include "marey/core/overwriting.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/track_in_picture.h"
 
 #include "command_line.h"
 #include "commands.h"
-#include "file_checks.h"
 #include "marker_options.h"
 #include "people_options.h"
 #include "rig_inputs.h"
@@ -70,6 +70,8 @@ pipeline::TrackOutput output_of(const TrackCommand& command) {
 /// Runs `track(hooks)` and reports what came of it.
 template <typename Track>
 void run(const TrackCommand& command, const pipeline::TrackOutput& output, Track&& track) {
+  if (command.people.outline && (output.format == "mot" || output.format == "csv"))
+    warn({fmt::format("{}: holds no outlines; .jsonl and .marey do", output.tracks)});
   run_with_progress(command.quiet, track, [&](const auto& summary, double elapsed) {
     if (command.json) {
       print_json(summary, output, command.targets == Targets::markers, elapsed);

@@ -4,13 +4,13 @@
 #include <filesystem>
 
 #include "marey/core/error.h"
+#include "marey/core/overwriting.h"
 #include "marey/core/rig_sources.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
-#include "file_checks.h"
 #include "ground_summary.h"
 #include "pitch_size.h"
 #include "run_hooks.h"

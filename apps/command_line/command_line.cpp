@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/overwriting.h"
+
 #include "declared.h"
 #include "file_checks.h"
 #include "process_options.h"

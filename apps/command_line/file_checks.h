@@ -17,9 +17,6 @@ struct NamedPath {
 /// a pattern of pictures stands for the pictures in it. What is no file, such as "-", a pipe or /dev/null, is passed over.
 void check_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs);
 
-/// Whether the path is "-", or leads to a pipe or a device.
-bool is_stream(const std::string& path);
-
 /// Makes the folder, and those above it, where they are missing. Throws Error.
 void make_folder(const std::string& path);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -125,13 +126,15 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
   return *at;
 }
 
+const std::set<std::string_view> kOfThisRun{"--threads", "--quiet", "--json"};  // have no part in what comes out
+
 /// What was asked for, by option, but for its files: those are told by name and hash.
 std::map<std::string, std::string> Command::Declared::given() const {
   std::map<std::string, std::string> texts;
   for (const auto& option : options) {
     if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
     const std::string longest = option->name.substr(option->name.find_last_of(',') + 1);
-    if (longest == "--threads") continue;  // has no part in what comes out
+    if (kOfThisRun.contains(longest)) continue;
     texts[longest.substr(longest.find_first_not_of('-'))] = CLI::detail::join(option->parsed->results(), " ");
   }
   return texts;

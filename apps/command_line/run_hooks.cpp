@@ -44,20 +44,25 @@ void catch_signal(int number) {
   sigaction(number, &now, nullptr);
 }
 
+std::stop_source stopped_by_signals() {
+  std::stop_source made;
+  sem_init(&signalled, 0, 0);
+  std::thread([made]() mutable {
+    while (sem_wait(&signalled) != 0) {
+    }
+    made.request_stop();
+  }).detach();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) catch_signal(number);
+  return made;
+}
+
 }  // namespace
 
 std::stop_token stop_by_signals() {
-  static std::stop_source source = [] {
-    std::stop_source made;
-    sem_init(&signalled, 0, 0);
-    std::thread([made]() mutable {
-      while (sem_wait(&signalled) != 0) {
-      }
-      made.request_stop();
-    }).detach();
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) catch_signal(number);
-    return made;
-  }();
+  static std::stop_source source;
+  static pid_t process = 0;  // that it is asked to end by signals
+  if (process != getpid()) source = stopped_by_signals();
+  process = getpid();
   return source.get_token();
 }
 

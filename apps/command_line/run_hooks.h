@@ -19,6 +19,7 @@ namespace marey::cli {
 inline constexpr int kInterrupted = 130;
 
 /// From now on Ctrl-C, SIGTERM and SIGHUP ask what runs to end, by this token; a second Ctrl-C or SIGTERM ends the program as ever.
+/// A process that was forked off has a token of its own.
 std::stop_token stop_by_signals();
 
 /// Hooks that show progress on the bar, which must outlive them, and end by signals.

@@ -16,6 +16,8 @@ import tempfile
 import time
 import unittest
 
+import slurm_nodes
+
 MAREY = ""
 FILMS = 4
 
@@ -47,6 +49,14 @@ class Films(unittest.TestCase):
 
     def plan(self, *more):
         self.marey("batch", "plan", "films", "-o", "plan.tsv", "-q", *more)
+
+    def its_task(self, run):
+        """The process of the task that a run does, as soon as there is one."""
+        children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
+        while not (tasks := children.read_text().split()):
+            self.assertIsNone(run.poll(), "it ended before a task began")
+            time.sleep(0.002)
+        return int(tasks[0])
 
     def results(self):
         root = self.folder / "plan.tsv.results"
@@ -95,6 +105,21 @@ class Batch(Films):
         self.assertIn('no column "input"', self.marey("batch", "plan", "list.csv", "-o", "other.tsv", code=1).stderr)
         self.assertIn("holds nothing that measure reads", self.marey("batch", "plan", "films", "--do", "measure", "-o", "m.tsv", code=1).stderr)
 
+    def test_a_seasons_page(self):
+        (self.folder / "matches").mkdir()
+        for match, speed in ((1, 2.0), (2, 3.0)):
+            rows = [f"{i},{i / 25},7,Seven,white,{speed * i / 25:.3f},20\n" for i in range(250)]
+            (self.folder / "matches" / f"match{match}.csv").write_text("frame,time,id,label,team,x,y\n" + "".join(rows))
+        self.marey("batch", "plan", "matches", "--do", "measure", "-o", "plan.tsv", "-q")
+        self.marey("batch", "run", "plan.tsv", "-q")
+        self.marey("batch", "reduce", "plan.tsv", "-o", "season.csv", "--report", "page", "-q")
+        page = (self.folder / "page" / "report.html").read_text()
+        totals = page[page.index("Totals") : page.index("Everybody")]
+        self.assertIn("Seven, white", totals)
+        self.assertRegex(totals, r">0\.05<")  # km, of 19.9 and 29.9 m
+        self.assertEqual(totals.count("<svg"), 2)
+        self.assertIn("Top speed from recording to recording", totals)
+
     def test_what_fails_is_told(self):
         (self.folder / "films" / "day0" / "broken.mp4").write_bytes(b"no film at all" * 100)
         self.plan()
@@ -128,7 +153,7 @@ class Batch(Films):
         self.plan()
         text = (self.folder / "plan.tsv").read_text()
         (self.folder / "plan.tsv").write_text(text.replace("\ttrack\t", "\t", 1))
-        self.assertIn("plan.tsv:2: 7 columns", self.marey("batch", "run", "plan.tsv", code=1).stderr)
+        self.assertIn("plan.tsv:2: 8 columns", self.marey("batch", "run", "plan.tsv", code=1).stderr)
         self.marey("batch", "run", "missing.tsv", code=1)
 
     def test_plans_of_strangers_write_to_their_results_alone(self):
@@ -176,7 +201,7 @@ class Batch(Films):
     def test_killed_in_the_middle(self):
         self.plan()
         run = subprocess.Popen([MAREY, "batch", "run", "plan.tsv", "-q"], cwd=self.folder)
-        time.sleep(0.3)
+        self.its_task(run)
         run.send_signal(signal.SIGKILL)
         run.wait()
         time.sleep(0.5)
@@ -190,12 +215,52 @@ class Batch(Films):
     def test_stopped_by_ctrl_c(self):
         self.plan()
         run = subprocess.Popen([MAREY, "batch", "run", "plan.tsv", "-q"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        time.sleep(0.25)
+        self.its_task(run)
         run.send_signal(signal.SIGINT)
         said = run.communicate(timeout=60)[1]
         self.assertIn(run.returncode, (0, 130), said)
         self.marey("batch", "run", "plan.tsv", "-q")
         self.assertEqual(len(self.results()), FILMS)
+
+    def test_a_task_is_killed(self):
+        """The task alone, not who waits for it: that is what the kernel does when memory is short."""
+        self.plan()
+        run = subprocess.Popen([MAREY, "batch", "run", "plan.tsv", "-q", "--task", "1"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        os.kill(self.its_task(run), signal.SIGKILL)
+        self.assertIn("ended by signal 9", run.communicate(timeout=60)[1])
+        self.assertEqual((run.returncode, self.results()), (1, {}))
+        reduced = json.loads(self.marey("batch", "reduce", "plan.tsv", "-o", "season.csv", "--json", code=1).stdout)
+        self.assertIn("signal 9", reduced["failures"][0]["why"])
+        self.marey("batch", "run", "plan.tsv", "-q")
+        self.assertEqual(len(self.results()), FILMS)
+
+    def test_a_folder_that_cannot_be_written(self):
+        if os.geteuid() != 0:
+            self.skipTest("a folder that is read-only also for root is made by mounting one, as root")
+        self.plan()
+        results = self.folder / "plan.tsv.results"
+        results.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "none", results], capture_output=True).returncode:
+            self.skipTest("nothing can be mounted here")
+        try:
+            said = self.marey("batch", "run", "plan.tsv", code=1)
+            self.assertIn("0 done, 0 were done before, 4 failed", said.stdout)
+            self.assertRegex(said.stderr, "task 1 .*plan.tsv.results/.*[Rr]ead-only")
+            reduced = json.loads(self.marey("batch", "reduce", "plan.tsv", "-o", "season.csv", "--json", code=1).stdout)
+            self.assertEqual(len(reduced["failures"]), FILMS)
+        finally:
+            subprocess.run(["umount", results], check=True)
+        self.marey("batch", "run", "plan.tsv", "-q")
+        self.assertEqual(len(self.results()), FILMS)
+
+    def test_memory_is_said_beforehand(self):
+        self.plan()
+        self.marey("batch", "run", "plan.tsv", "--task", 1, "-q", "--task-threads", 1)
+        said = int((self.folder / "plan.tsv").read_text().splitlines()[1].split("\t")[-2])
+        record = dict(line.split("\t", 1) for line in (self.folder / "plan.tsv.results/tasks/000001.tsv").read_text().splitlines())
+        print(f"\nmemory: {said} MB said, {record['peak_mb']} MB taken", file=sys.stderr)
+        if not os.environ.get("MAREY_SANITIZE"):  # sanitizers take several times as much
+            self.assertLess(abs(said / int(record["peak_mb"]) - 1), 0.3)
 
     def test_full_disk(self):
         if os.geteuid() != 0:
@@ -250,110 +315,20 @@ class Batch(Films):
         self.assertLess(elapsed, 10)
 
 
-SLURM = """
-ClusterName=test
-SlurmctldHost={host}(127.0.0.1)
-SlurmUser=root
-AuthType=auth/munge
-AuthInfo=socket={run}/munge/sock
-CryptoType=crypto/munge
-ProctrackType=proctrack/linuxproc
-TaskPlugin=task/none
-JobAcctGatherType=jobacct_gather/none
-SelectType=select/cons_tres
-SelectTypeParameters=CR_Core
-ReturnToService=2
-SlurmctldPort={port0}
-SlurmctldTimeout=10
-SlurmdTimeout=10
-StateSaveLocation={run}/ctld
-SlurmdSpoolDir={run}/%n
-SlurmctldPidFile={run}/ctld.pid
-SlurmdPidFile={run}/%n.pid
-SlurmctldLogFile={run}/log/ctld
-SlurmdLogFile={run}/log/%n
-MailProg=/bin/true
-SwitchType=switch/none
-MpiDefault=none
-NodeName=d1 NodeHostname={host} NodeAddr=127.0.0.1 Port={port1} CPUs=2 RealMemory=4000 State=UNKNOWN
-NodeName=d2 NodeHostname={host} NodeAddr=127.0.0.1 Port={port2} CPUs=2 RealMemory=4000 State=UNKNOWN
-PartitionName=main Nodes=d1,d2 Default=YES MaxTime=INFINITE State=UP
-"""
-
-
-@unittest.skipUnless(
-    os.geteuid() == 0 and all(shutil.which(p, path=os.environ["PATH"] + ":/usr/sbin") for p in ("slurmctld", "slurmd", "sbatch", "munged")),
-    "Slurm is not installed, or this is not root: apt install slurmctld slurmd slurm-client munge",
-)
+@unittest.skipUnless(slurm_nodes.available(), "Slurm is not installed, or this is not root: apt install slurmctld slurmd slurm-client munge")
 class Slurm(Films):
-    """Two nodes on this host, with daemons, ports and a key of their own."""
+    """Two nodes on this host."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.place = pathlib.Path(tempfile.mkdtemp(prefix="marey_slurm_", dir="/var/tmp"))
-        cls.addClassCleanup(shutil.rmtree, cls.place, ignore_errors=True)
-        for name in ("munge", "ctld", "d1", "d2", "log"):
-            (cls.place / name).mkdir()
-        os.chmod(cls.place, 0o755)
-        os.chmod(cls.place / "munge", 0o711)
-        key = cls.place / "munge" / "key"
-        key.write_bytes(os.urandom(128))
-        os.chmod(key, 0o400)
-        base = 20000 + os.getpid() % 20000
-        host = os.uname().nodename.split(".")[0]
-        (cls.place / "slurm.conf").write_text(SLURM.format(host=host, run=cls.place, port0=base, port1=base + 1, port2=base + 2))
-        cls.environment = os.environ | {"SLURM_CONF": str(cls.place / "slurm.conf"), "PATH": os.environ["PATH"] + ":/usr/sbin"}
-        cls.daemons = {}
-        cls.addClassCleanup(cls.stop_all)
-        cls.start("munged", "-F", f"--key-file={key}", f"--socket={cls.place}/munge/sock", f"--pid-file={cls.place}/munge/pid",
-                  f"--log-file={cls.place}/munge/log", f"--seed-file={cls.place}/munge/seed", "--force", "--num-threads=1")
-        cls.start("slurmctld", "-D")
-        for node in ("d1", "d2"):
-            cls.start_node(node)
-        cls.wait_for(lambda: cls.slurm("sinfo", "-h", "-o", "%D %t") == "2 idle", 60)
-
-    @classmethod
-    def start(cls, *words, name=None):
-        with (cls.place / "log" / f"{name or words[0]}.out").open("ab") as log:
-            cls.daemons[name or words[0]] = subprocess.Popen(words, env=cls.environment, stdout=log, stderr=log)
-
-    @classmethod
-    def start_node(cls, node):
-        cls.start("slurmd", "-D", "-N", node, name=node)
-
-    @classmethod
-    def stop_all(cls):
-        for daemon in reversed(cls.daemons.values()):
-            daemon.terminate()
-        for daemon in cls.daemons.values():
-            try:
-                daemon.wait(15)
-            except subprocess.TimeoutExpired:
-                daemon.kill()
-                daemon.wait()
-
-    @classmethod
-    def slurm(cls, *words):
-        return subprocess.run(words, env=cls.environment, capture_output=True, text=True, timeout=60).stdout.strip()
-
-    @classmethod
-    def wait_for(cls, true, seconds):
-        end = time.monotonic() + seconds
-        while not true():
-            if time.monotonic() > end:
-                log = cls.place / "log" / "ctld"
-                raise AssertionError("Slurm does not come to it:\n" + (log.read_text()[-3000:] if log.exists() else ""))
-            time.sleep(0.25)
+        cls.slurm = cls.enterClassContext(slurm_nodes.SlurmNodes())
 
     def submit(self):
         done = subprocess.run([MAREY, "batch", "submit", "plan.tsv", "--to", "slurm", "--json"], capture_output=True, text=True,
-                              cwd=self.folder, env=self.environment, timeout=60)
+                              cwd=self.folder, env=self.slurm.environment, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
-
-    def ended(self, jobs):
-        self.wait_for(lambda: self.slurm("squeue", "-h", "-o", "%i") == "", 240)
 
     def test_array_and_reduce(self):
         (self.folder / "films" / "day0" / "broken.mp4").write_bytes(b"no film at all" * 100)
@@ -363,7 +338,8 @@ class Slurm(Films):
         shutil.rmtree(self.folder / "plan.tsv.results")
         self.plan()
         begin = time.monotonic()
-        self.ended(self.submit())
+        self.submit()
+        self.slurm.wait_until_empty()
         print(f"\n{FILMS + 1} tasks by Slurm: {time.monotonic() - begin:.1f} s", file=sys.stderr)
         self.assertEqual(self.results(), expected)
         table = list(csv.DictReader((self.folder / "plan.tsv.csv").read_text().splitlines()))  # the dependent job's, although a task failed
@@ -373,15 +349,12 @@ class Slurm(Films):
 
     def test_a_node_is_lost(self):
         self.plan("--options", "--threads 1")
-        jobs = self.submit()
-        self.wait_for(lambda: "d2" in self.slurm("squeue", "-h", "-t", "R", "-o", "%N") or self.slurm("squeue", "-h") == "", 30)
-        self.daemons["d2"].kill()  # as if the machine went down: its tasks with it
-        self.daemons["d2"].wait()
+        self.submit()
+        self.slurm.wait_for(lambda: "d2" in self.slurm.ask("squeue", "-h", "-t", "R", "-o", "%N") or self.slurm.ask("squeue", "-h") == "", 30)
+        self.slurm.lose("d2")
         time.sleep(1)
-        self.slurm("scontrol", "update", "NodeName=d2", "State=DOWN", "Reason=lost")
-        self.start_node("d2")
-        self.slurm("scontrol", "update", "NodeName=d2", "State=RESUME")
-        self.ended(jobs)
+        self.slurm.restore("d2")
+        self.slurm.wait_until_empty()
         counts = json.loads(self.marey("batch", "run", "plan.tsv", "--json").stdout)
         self.assertEqual(counts["failed"], 0)
         self.assertEqual(len(self.results()), FILMS)

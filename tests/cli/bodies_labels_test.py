@@ -57,6 +57,21 @@ class BodiesAndLabels(unittest.TestCase):
         for body in (1, 2):
             (count,) = database.execute("SELECT sum(rows) FROM poses WHERE id & 0xffffffff = ?", [body]).fetchone()
             self.assertGreater(count, 0.9 * 600, labels[body - 1])
+        database.close()
+        self.assertIn("bodies        2: head, chest", self.marey("info", "bodies.marey").stdout)
+        # Poses leave the take as a table, and other tables say that they hold none.
+        self.marey("convert", "bodies.marey", "poses.csv", "--format", "poses")
+        poses = self.rows("poses.csv")
+        self.assertEqual({row["body"] for row in poses}, {"head", "chest"})
+        for row in poses[::50]:
+            turn = [float(row[name]) for name in ("qw", "qx", "qy", "qz")]
+            self.assertAlmostEqual(sum(part * part for part in turn), 1, places=7)
+            self.assertTrue(0 < float(row["z"]) < 3, row)
+        self.assertIn("holds points alone, not the poses of the 2 bodies", self.marey("convert", "bodies.marey", "points.csv").stderr)
+        bent = self.marey("body", "define", "walk/truth.csv", "--markers", "head1,left_hand1,right_foot1", "--name", "bent", "-o", "bent.toml")
+        self.assertIn("is this one rigid thing?", bent.stderr)
+        self.assertIn("holds no bodies", self.marey("convert", "walk.marey", "none.csv", "--format", "poses", code=1).stderr)
+        self.assertFalse((self.folder / "none.csv").exists())
 
     def test_labels_as_the_page_says(self):
         self.run_page("labels.md")

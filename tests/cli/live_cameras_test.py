@@ -129,6 +129,92 @@ class LiveCameras(unittest.TestCase):
         self.assertEqual((self.folder / "take.marey").read_bytes(), before)
         self.assertFalse((self.folder / "new.marey").exists())
 
+    def test_a_full_disk_ends_the_take_and_nothing_else(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", disk], capture_output=True, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"a small disk cannot be made here: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        done = self.marey("live", "sim://room?cameras=4&rate=60&markers=40&blobs", "--for", 8, "-o", "disk/take.marey", "--json", "-q", code=1)
+        told = json.loads(done.stdout)
+        said = "disk/take.marey: cannot be written, the disk is full; what was written before is kept"
+        self.assertIn(said, told["warnings"])
+        self.assertEqual(done.stderr.count(said), 1)
+        self.assertGreater(told["seconds"], 6)
+        kept = json.loads(self.marey("info", "disk/take.marey", "--json").stdout)
+        self.assertTrue(0 < kept["frames"] < told["instants"], kept)
+
+    def test_real_time_is_asked_for(self):
+        run = subprocess.Popen([MAREY, "live", ROOM, "--for", "20", "--realtime", "-q"], stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        self.addCleanup(run.stderr.close)
+        time.sleep(2)
+        policies = [os.sched_getscheduler(int(task.name)) for task in pathlib.Path(f"/proc/{run.pid}/task").iterdir()]
+        run.send_signal(signal.SIGINT)
+        said = run.communicate(timeout=30)[1]
+        if "marey: warning: --realtime was refused (" not in said:
+            self.assertGreater(policies.count(os.SCHED_RR), 4, policies)  # the run, and its cameras
+        refused = subprocess.run(["setpriv", "--reuid", "65534", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all", MAREY, "live", ROOM, "--for", "0.5", "--realtime", "-q"],
+                                 capture_output=True, text=True, timeout=60)
+        if os.geteuid() == 0 and "Permission denied" not in refused.stderr:
+            self.assertEqual(refused.returncode, 0, refused.stderr)
+            self.assertIn("--realtime was refused (Operation not permitted); it goes on at the usual priority", refused.stderr)
+
+    def test_the_pictures_are_kept_to_do_it_again(self):
+        room = "sim://room?cameras=3&rate=15&markers=20&size=320x240&drawn=1"
+        told = self.live(room, "--for", 4, "-o", "walk.marey", "--record", "raw")
+        pictures = self.folder / "walk_pictures"
+        self.assertEqual(sorted(path.name for path in pictures.iterdir()), ["cam1.mp4", "cam2.mp4", "cam3.mp4", "rig.toml"])
+        again = json.loads(self.marey("reconstruct", "walk_pictures/rig.toml", "-o", "again.marey", "--json", "-q").stdout)
+        self.assertGreater(told["instants"], 5)
+        self.assertLessEqual(abs(again["frames"] - told["instants"]), 3)
+        live, anew = (json.loads(self.marey("info", take, "--json").stdout) for take in ("walk.marey", "again.marey"))
+        self.assertGreater(live["observations"], 50)
+        self.assertLess(abs(live["observations"] - anew["observations"]), 0.1 * live["observations"])
+        self.live(room, "--for", 0.5, "-o", "none.marey", "--record", "raw", "--armed")
+        self.assertFalse((self.folder / "none_pictures").exists())
+        self.assertIn("--record raw: name the take with -o", self.marey("live", room, "--record", "raw", code=2).stderr)
+        (self.folder / "file_pictures").write_text("a file")
+        self.assertIn("file_pictures", self.marey("live", room, "--for", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
+
+    def test_what_is_played_is_not_recorded_over(self):
+        self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--for", 1, "-o", "walk.marey", "--record", "raw")
+        pictures = self.folder / "walk_pictures"
+        before = {path.name: path.read_bytes() for path in pictures.iterdir()}
+        for played in (["walk_pictures/rig.toml"], ["cam1=walk_pictures/cam1.mp4"], ["play:walk_pictures/cam1.mp4?loop"],
+                       ["./walk_pictures/../walk_pictures/cam1.mp4"]):
+            said = self.marey("live", *played, "-o", "walk.marey", "--record", "raw", "--for", 0.5, code=2).stderr
+            self.assertIn("is an input too", said)
+            self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before, played)
+        taken = (self.folder / "walk.marey").read_bytes()
+        self.assertIn("is an input too", self.marey("live", "play:walk.marey", "-o", "walk.marey", "--for", 0.5, code=2).stderr)
+        self.assertEqual((self.folder / "walk.marey").read_bytes(), taken)
+        self.marey("live", "walk_pictures/rig.toml", "-o", "again.marey", "--record", "raw", "--for", 0.5, "-q")
+        self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before)
+
+    def test_a_take_is_played_as_its_cameras(self):
+        self.marey("simulate", "room", "-o", "room", "--cameras", 4, "--markers", 20, "--frames", 100, "--rate", 50, "--size", 640, 480, "-q")
+        self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "-o", "walk.marey", "-q")
+        begin = time.monotonic()
+        told = self.live("play:walk.marey", "-o", "again.marey")
+        self.assertGreater(time.monotonic() - begin, 1.9)  # s, as long as it is
+        self.assertEqual(told["job"], "markers in space")
+        cameras = told["cameras"]
+        self.assertEqual(sorted(cameras), ["cam1", "cam2", "cam3", "cam4"])
+        self.assertEqual({camera["state"] for camera in cameras.values()}, {"ended"})
+        self.assertEqual({camera["frames"] + camera["lost"] for camera in cameras.values()}, {100})
+        if told["instants"] == 100:  # nothing was let go: what the live run made of films and of the take is one thing
+            self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "--live", "-o", "offline.marey", "-q")
+            infos = [json.loads(self.marey("info", take, "--json").stdout) for take in ("again.marey", "offline.marey")]
+            self.assertEqual(*(info["observations"] for info in infos))
+            self.assertEqual(*(len(info["tracks"]) for info in infos))
+        looped = self.live("play:walk.marey?loop", "--for", 4)
+        self.assertGreater(min(camera["frames"] for camera in looped["cameras"].values()), 110)
+        alone = self.live("play:walk.marey?camera=2", "--for", 1)
+        self.assertEqual(alone["job"], "markers in a picture")
+        for name, said in (("play:walk.marey?camera=5", "has 4 cameras"), ("play:none.marey", "none.marey"), ("play:walk.marey?rate=5", "no option")):
+            self.assertIn(said, self.marey("live", name, "--for", 0.5, code=1).stderr)
+
     def test_a_film_is_played_in_real_time_and_ends(self):
         self.marey("simulate", "people", "-o", "film", "--frames", 30, "--size", 192, 144, "-q")
         begin = time.monotonic()
@@ -161,6 +247,9 @@ class LiveCameras(unittest.TestCase):
         for number in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen([MAREY, "live", ROOM, "-o", "take.marey", "--json", "-q"], cwd=self.folder, stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True) as running:
+                end = time.monotonic() + 60  # on a busy machine it begins late
+                while not (self.folder / "take.marey").exists() and time.monotonic() < end:
+                    time.sleep(0.05)
                 time.sleep(2)
                 running.send_signal(number)
                 told, problems = running.communicate(timeout=30)
@@ -175,10 +264,12 @@ class LiveCameras(unittest.TestCase):
                                    stdout=there, stderr=there, start_new_session=True, preexec_fn=functools.partial(take_terminal, there))
         os.close(there)
         said = b""
-        plan = [(1.5, b"r"), (3.0, b"q")]
-        begin = time.monotonic()
-        while time.monotonic() - begin < 60:
-            if plan and time.monotonic() - begin > plan[0][0]:
+        plan = [(0.5, b"r"), (2.0, b"q")]  # s after its first line
+        begin, end = None, time.monotonic() + 60
+        while time.monotonic() < end:
+            if begin is None and b"targets |" in said:
+                begin = time.monotonic()
+            if begin is not None and plan and time.monotonic() - begin > plan[0][0]:
                 os.write(here, plan.pop(0)[1])
             ready, _, _ = select.select([here], [], [], 0.1)
             try:

@@ -65,6 +65,15 @@ class Reconstruct(unittest.TestCase):
         self.marey("convert", "walk.c3d", "bare.marey", "-q")
         self.assertIn("cameras", self.refused("bare.marey"))
 
+    def test_names_are_kept_when_a_take_is_solved_again(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 20, "--frames", 100, "-o", "named", "-q")
+        self.marey("reconstruct", "named/rig.toml", "--observations", "named/observations.csv", "--labels", "named/labels.csv", "-o", "named.marey", "-q")
+        for again in (("named.marey",), ("named/rig.toml", "--observations", "named.marey")):
+            told = json.loads(self.marey("reconstruct", *again, "-o", "again.marey", "--json", "-q").stdout)
+            self.assertEqual(told["labelled"], 20)
+        first, second = (json.loads(self.marey("info", take, "--json").stdout) for take in ("named.marey", "again.marey"))
+        self.assertEqual({t["label"] for t in first["tracks"]}, {t["label"] for t in second["tracks"]})
+
     def test_other_formats(self):
         for ending in ("c3d", "trc", "csv"):
             self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "-o", f"walk.{ending}", "-q")

@@ -25,6 +25,8 @@ FILES = {
     "walk.c3d": "gait_children/HC002D/straight_HC002D06.c3d",
     "run.c3d": "gait_children/HC002D/turn_HC002D25.c3d",
     "standing.c3d": "gait_children/HC002D/static_HC002D02.c3d",
+    "other.c3d": "gait_children/HC044A/static_HC044A01.c3d",
+    "punches.c3d": "cmu_02_05/cmu_02_05.c3d",
     "figure.bvh": "bvh_dialects/openmocap/default.bvh",
 }
 
@@ -75,8 +77,18 @@ class Skeleton(unittest.TestCase):
         self.assertEqual(len([e for e in said["events"] if e["event"] == "strike"]), 6)
         with open(self.folder / "cycles.csv", newline="") as file:
             rows = [row for row in csv.DictReader(file) if row["angle"] == "left_knee_flexion"]
-        self.assertEqual(len(rows), 100)
+        self.assertEqual([int(row["percent"]) for row in rows], list(range(101)))
         self.assertGreater(max(float(row["mean_deg"]) for row in rows), 45)
+        self.assertTrue(any("left shoulder plane" in warning for warning in said["warnings"]), said["warnings"])
+
+    def test_gait_of_who_does_not_walk_is_refused(self):
+        done = self.marey("gait", "punches.c3d", "-o", "none.csv", code=1)
+        self.assertIn("no gait cycle", done.stderr)
+        self.assertFalse((self.folder / "none.csv").exists())
+
+    def test_gait_warns_of_another_persons_static_trial(self):
+        done = self.marey("gait", "run.c3d", "--static", "other.c3d", "-o", "cycles.csv", "-q")
+        self.assertIn("LASI and RASI are 33 mm farther apart", done.stderr)
 
     def test_what_cannot_be_is_refused(self):
         def says(code, words, *arguments):

@@ -1,0 +1,163 @@
+#include "batch_page.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "marey/core/natural_order.h"
+#include "marey/draw/chart.h"
+#include "marey/draw/page.h"
+
+namespace marey::cli {
+namespace {
+
+constexpr std::size_t kMostLines = 8;  // of a chart, so that they can be told apart
+
+/// The season's rows by what their columns are called.
+class SeasonTable {
+ public:
+  explicit SeasonTable(const Season& season) {
+    for (std::size_t i = 0; i < season.columns.size(); ++i) column_.emplace(season.columns[i], i);
+    for (const auto& row : season.rows) {
+      if (recordings_.empty() || recordings_.back() != row.front()) recordings_.push_back(row.front());
+    }
+  }
+
+  bool has(const std::string& column) const { return column_.contains(column); }
+  const std::vector<std::string>& recordings() const { return recordings_; }
+
+  std::string text(const std::vector<std::string>& row, const std::string& column) const {
+    const auto found = column_.find(column);
+    return found == column_.end() ? std::string() : row[found->second];
+  }
+  double number(const std::vector<std::string>& row, const std::string& column) const {
+    const std::string field = text(row, column);
+    double value = 0;
+    std::from_chars(field.data(), field.data() + field.size(), value);
+    return value;
+  }
+
+  /// Who it is in every recording: the name, else the team; a number alone is another's in the next recording.
+  std::string who(const std::vector<std::string>& row) const {
+    const std::string label = text(row, "label"), team = text(row, "team");
+    if (label.empty()) return team.empty() ? "nobody by name" : team + ", without a name";
+    return team.empty() ? label : label + ", " + team;
+  }
+
+ private:
+  std::map<std::string, std::size_t> column_;
+  std::vector<std::string> recordings_;  // in the plan's order
+};
+
+struct Total {
+  std::set<std::string> recordings;
+  double distance_m = 0, seconds = 0, top_mps = 0, sprints = 0;
+};
+
+using Totals = std::map<std::string, Total, NaturalOrder>;
+
+Totals totals_of(const Season& season, const SeasonTable& table) {
+  Totals totals;
+  for (const auto& row : season.rows) {
+    Total& total = totals[table.who(row)];
+    total.recordings.insert(row.front());
+    total.distance_m += table.number(row, "distance_m");
+    total.seconds += table.number(row, "seconds");
+    total.sprints += table.number(row, "sprints");
+    total.top_mps = std::max(total.top_mps, table.number(row, "top_mps"));
+  }
+  return totals;
+}
+
+draw::PageTable table_of(const Totals& totals) {
+  draw::PageTable table{
+      .title = "Totals", .head = {"who", "recordings", "distance, km", "minutes", "m a minute", "sprints", "top, m/s"}, .rows = {}};
+  for (const auto& [who, total] : totals) {
+    const double minutes = total.seconds / 60;
+    table.rows.push_back({who, std::to_string(total.recordings.size()), fmt::format("{:.2f}", total.distance_m / 1000),
+                          fmt::format("{:.1f}", minutes), fmt::format("{:.0f}", minutes > 0 ? total.distance_m / minutes : 0),
+                          fmt::format("{:.0f}", total.sprints), fmt::format("{:.1f}", total.top_mps)});
+  }
+  return table;
+}
+
+/// The lines whose values are largest in all. A chart of one recording would be points.
+std::string chart_of(std::string title, std::string y, const std::map<std::string, std::map<std::size_t, double>>& values,
+                     std::size_t recordings) {
+  if (recordings < 2 || values.empty()) return {};
+  std::vector<std::pair<double, std::string>> by_size;
+  for (const auto& [name, line] : values) {
+    double sum = 0;
+    for (const auto& [x, value] : line) sum += value;
+    by_size.emplace_back(-sum, name);
+  }
+  std::sort(by_size.begin(), by_size.end());
+  draw::LineChart chart{
+      .title = std::move(title), .x_label = "recording, by the plan's order", .y_label = std::move(y), .lines = {}};
+  for (std::size_t i = 0; i < std::min(by_size.size(), kMostLines); ++i) {
+    draw::LineChart::Line& line = chart.lines.emplace_back();
+    line.name = by_size[i].second;
+    for (const auto& [x, value] : values.at(line.name)) line.points.emplace_back(static_cast<double>(x + 1), value);
+  }
+  return draw::to_svg(chart);
+}
+
+/// `add(row)` of each line's name, put together within a recording by `together`.
+using Values = std::map<std::string, std::map<std::size_t, double>>;
+Values by_recording(const Season& season, const SeasonTable& table,
+                    const std::function<std::string(const std::vector<std::string>&)>& name,
+                    const std::function<double(double before, const std::vector<std::string>&)>& together) {
+  std::map<std::string, std::size_t> place;
+  for (std::size_t i = 0; i < table.recordings().size(); ++i) place.emplace(table.recordings()[i], i);
+  Values values;
+  for (const auto& row : season.rows) {
+    double& value = values[name(row)][place.at(row.front())];
+    value = together(value, row);
+  }
+  return values;
+}
+
+void add_measured(draw::Page& page, const Season& season, const SeasonTable& table) {
+  page.add(table_of(totals_of(season, table)));
+  const auto who = [&](const std::vector<std::string>& row) { return table.who(row); };
+  const auto sum = [&](double before, const std::vector<std::string>& row) {
+    return before + table.number(row, "distance_m") / 1000;
+  };
+  const auto top = [&](double before, const std::vector<std::string>& row) {
+    return std::max(before, table.number(row, "top_mps"));
+  };
+  const std::size_t recordings = table.recordings().size();
+  page.add_html(chart_of("Distance from recording to recording", "km", by_recording(season, table, who, sum), recordings));
+  page.add_html(chart_of("Top speed from recording to recording", "m/s", by_recording(season, table, who, top), recordings));
+}
+
+void add_counted(draw::Page& page, const Season& season, const SeasonTable& table) {
+  const auto tracks = [](const auto&) { return std::string("tracks"); };
+  const auto count = [](double before, const auto&) { return before + 1; };
+  page.add_html(chart_of("Tracks from recording to recording", "tracks", by_recording(season, table, tracks, count),
+                         table.recordings().size()));
+}
+
+}  // namespace
+
+std::string season_page(const Season& season, const std::string& title, std::size_t planned) {
+  draw::Page page(title);
+  page.add_sentence(fmt::format("{} of {} recordings are done, in {:.1f} s of work; the largest took {} MB.", season.done, planned,
+                                season.seconds, season.peak_mb));
+  if (!season.failures.empty()) {
+    draw::PageTable failures{.title = "What is missing, and why", .head = {"task", "recording", "why"}, .rows = {}};
+    for (const Season::Failure& failure : season.failures)
+      failures.rows.push_back({std::to_string(failure.number), failure.name, failure.why});
+    page.add(failures);
+  }
+  const SeasonTable table(season);
+  table.has("distance_m") ? add_measured(page, season, table) : add_counted(page, season, table);
+  page.add({.title = "Everybody", .head = season.columns, .rows = season.rows});
+  return page.html();
+}
+
+}  // namespace marey::cli
