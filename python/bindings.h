@@ -19,6 +19,7 @@
 #include "marey/core/sink.h"
 #include "marey/core/source.h"
 #include "marey/detect/detector.h"
+#include "marey/filter/custom_filter.h"
 
 namespace marey::python {
 
@@ -51,10 +52,14 @@ std::unique_ptr<detect::Detector> detector_of(std::shared_ptr<Held> function);
 /// An object with `begin(header: dict)`, `write(instant: tuple)` and `finish()`.
 std::unique_ptr<Sink> sink_of(std::shared_ptr<Held> object, bool pictures);
 
+/// A `Maker` of python/marey/_filters.py.
+filter::CustomFilterOptions filter_of(const std::shared_ptr<Held>& make);
+
 /// What python/marey/_instant.py takes apart.
 nb::tuple tuple_of(const Instant& instant, int dimensions, bool pictures);
 
 void bind_recording(nb::module_& module);
 void bind_jobs(nb::module_& module);
+void bind_calibrations(nb::module_& module);
 
 }  // namespace marey::python

@@ -27,4 +27,5 @@ NB_MODULE(_core, module) {
   });
   bind_recording(module);
   bind_jobs(module);
+  bind_calibrations(module);
 }

@@ -14,9 +14,11 @@ from . import calibrate
 from ._core import Error, version as __version__
 from ._evaluate import Evaluation, evaluate
 from ._files import formats, read, read_rig
+from ._filters import Filter
 from ._frames import Frames
 from ._instant import Instant
-from ._jobs import Warning, live, reconstruct, threads, track, track_ground
+from ._jobs import Warning, reconstruct, threads, track, track_ground
+from ._live import live
 from ._recording import Recording, Track
 from ._rig import Camera, Rig
 
@@ -27,6 +29,7 @@ __all__ = [
     "Camera",
     "Error",
     "Evaluation",
+    "Filter",
     "Frames",
     "Instant",
     "Recording",

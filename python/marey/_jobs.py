@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-import queue
-import threading
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from . import _core
 from ._core import Error
+from ._filters import MakeFilter, Maker
 from ._frames import Frames
 from ._instant import Instant, Names
 from ._interop import rows_of_detections
@@ -75,6 +74,9 @@ def _finish(result: tuple[_core.Recording, dict[str, Any]]) -> Recording:
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:
     """What was asked for: by name for the core, and in words for the recording, which keeps it as the command line would."""
     chosen = {name: value for name, value in options.items() if value is not None and value is not False}
+    if callable(own := chosen.get("filter")):
+        maker = Maker(own)
+        return _given({**options, "filter": maker.name}) | {"filter": None, "own_filter": maker}
     said = {name.replace("_", "-"): "true" if value is True else str(value) for name, value in chosen.items()}
     return {**chosen, "given": said}
 
@@ -104,7 +106,7 @@ def track(
     targets: str = "people",
     detections: Path | None = None,
     rate: float | None = None,
-    filter: str | None = None,
+    filter: str | MakeFilter | None = None,
     background: str | None = None,
     outline: bool = False,
     seen_only: bool = False,
@@ -126,6 +128,8 @@ def track(
     detections: in place of source, MOT text of another program's boxes. rate: Hz, where the source does not tell it.
     detector: a function from a picture (H×W×3 uint8, blue first) to supervision's Detections or an array N×4 to N×6 (x1, y1, x2, y2 in px, score in
         [0, 1], class), in place of background subtraction; people only. What it raises ends the run and comes out as it is.
+    filter: a motion filter by name (`marey track --help` lists them), or a function (z, R, unit) that begins one of your own (`marey.Filter`) at a
+        target's first measurement. What it raises ends the run and comes out as it is.
     sinks: files to write beside, functions of an `Instant`, or objects with `write(instant)` and, if they like, `begin(header)`, `finish()` and
         `pictures = True`. They are called on threads of the run, one call at a time each.
     labels: of markers, from left to right in the first frame. threshold: grey level that markers pass. colour: their hue in degrees, "120" or
@@ -167,7 +171,7 @@ def track_ground(
     margin: float | None = None,
     teams: str | None = None,
     associate: str | None = None,
-    filter: str | None = None,
+    filter: str | MakeFilter | None = None,
     background: str | None = None,
     live: bool = False,
     sinks: Iterable[Sink] = (),
@@ -210,6 +214,7 @@ def reconstruct(
     predict: float | None = None,
     marker_width: float | None = None,
     max_speed: float | None = None,
+    filter: MakeFilter | None = None,
     threshold: float | None = None,
     dark: bool = False,
     sinks: Iterable[Sink] = (),
@@ -219,6 +224,7 @@ def reconstruct(
 
     rig: a rig file, or a Rig; may be left out where observations name the cameras. observations: blobs that another program found, a CSV with
     camera,frame,x,y[,marker]. labels: CSV label,x,y,z (m), or a name a line. noise: px. fill, predict: s. marker_width: m. max_speed: m/s.
+    filter: a function that begins a motion filter of your own, as in `track`.
 
     Returns a Recording in m, z up. Raises marey.Error where an input cannot be read, KeyboardInterrupt.
     """
@@ -230,6 +236,7 @@ def reconstruct(
             "predict": predict,
             "marker_width": marker_width,
             "max_speed": max_speed,
+            "filter": filter,
             "threshold": threshold,
             "dark": dark,
         }
@@ -238,51 +245,6 @@ def reconstruct(
     options |= {"observations": os.fspath(observations) if observations is not None else None}
     options |= {"labels": os.fspath(labels) if labels is not None else None}
     return _finish(_core.reconstruct(options))
-
-
-def live(source: Path | Frames, **options: Any) -> Iterator[Instant]:
-    """People in what one camera sees, moment by moment, as it comes: `for instant in marey.live("street.mp4")`.
-
-    Takes what `track` takes. The run waits while nobody asks for the next moment, keeps eight of them, and ends when the loop is left.
-    Raises what `track` raises.
-    """
-    waiting: queue.Queue[Instant | None] = queue.Queue(maxsize=8)
-    left = threading.Event()
-    failure: list[BaseException] = []
-
-    class Left(Exception):
-        pass
-
-    def put(item: Instant | None) -> None:
-        while not left.is_set() and threading.main_thread().is_alive():
-            try:
-                return waiting.put(item, timeout=0.1)
-            except queue.Full:
-                continue
-        raise Left
-
-    def run() -> None:
-        try:
-            track(source, live=True, keep=False, sinks=[put, *options.pop("sinks", ())], **options)
-        except Left:
-            return
-        except BaseException as raised:  # handed to who iterates
-            failure.append(raised)
-        try:
-            put(None)
-        except Left:
-            pass
-
-    worker = threading.Thread(target=run, name="marey.live")
-    worker.start()
-    try:
-        while (instant := waiting.get()) is not None:
-            yield instant
-    finally:
-        left.set()
-        worker.join()
-    if failure:
-        raise failure[0]
 
 
 def threads(count: int) -> None:

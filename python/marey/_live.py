@@ -1,0 +1,156 @@
+"""What cameras see, moment by moment, while they see it."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+from . import _core
+from ._core import Error
+from ._frames import Frames
+from ._instant import Instant
+from ._jobs import Path, Sink, Warning, _rig, _sinks, track
+from ._rig import Rig
+
+_KEPT = 8  # moments that wait for who iterates
+
+
+class _Left(Exception):
+    """The loop over the moments was left."""
+
+
+def live(
+    source: Path | Frames | Rig | Sequence[str],
+    *,
+    targets: str | None = None,
+    ground: bool = False,
+    labels: Path | None = None,
+    threshold: float | None = None,
+    dark: bool = False,
+    background: str | None = None,
+    patience: float | None = None,
+    take: Path | None = None,
+    sinks: Iterable[Sink] = (),
+    **options: Any,
+) -> Iterator[Instant]:
+    """Who is where, moment by moment, as it comes: `for instant in marey.live("rig.toml")`. The run ends when the loop is left.
+
+    source: a rig file or Rig whose cameras are live, or live sources alone, each a camera ("v4l2:/dev/video0", "rtsp://…",
+        "sim://room?cameras=4"): `marey live`. The newest moment wins: where the loop is slow, moments are left out, as their `index` shows.
+        Or one film, or Frames: what `track` does with `live=True`, and its options; there nothing is left out, the run waits for the loop.
+    targets: "markers" or "people"; usual are markers of live cameras, people of one film. ground: people, where they stand on the ground that a
+        rig's cameras look at. labels: a file of the markers' names. threshold: grey level that markers pass. dark: markers are dark.
+        background: how people are told from it. patience: s that cameras are waited for at the beginning. take: NAME.marey, written as it grows.
+    sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` says at
+        the end, and the run goes on.
+
+    Raises what `track` raises, and marey.Error where no camera gave anything.
+    """
+    cameras = _live_cameras(source)
+    if cameras is None:
+        chosen = {"labels": labels, "threshold": threshold, "dark": dark or None, "background": background, "targets": targets}
+        if ground or take is not None or patience is not None:
+            raise Error("ground, take and patience are for live cameras: a rig, or sources such as v4l2:/dev/video0")
+        options |= {name: value for name, value in chosen.items() if value is not None}
+        return _moments(lambda put, ends: _follow_film(source, put, sinks, options), waits=True)
+    if options:
+        raise Error(f"live cameras take no {', '.join(sorted(options))}")
+    if targets not in (None, "markers", "people"):
+        raise Error(f'targets is "{targets}"; known are people and markers')
+    given = {
+        "people": ground or targets == "people",
+        "ground": ground,
+        "labels": None if labels is None else os.fspath(labels),
+        "threshold": threshold,
+        "dark": dark,
+        "background": background,
+        "patience": patience,
+        "take": None if take is None else os.fspath(take),
+        "keep": False,
+    }
+    return _moments(lambda put, ends: _follow_cameras(cameras | given, put, ends, sinks), waits=False)
+
+
+def _live_cameras(source: Path | Frames | Rig | Sequence[str]) -> dict[str, Any] | None:
+    """What the core is to open, or None for one film or Frames."""
+    if isinstance(source, Rig):
+        return _rig(source)
+    if isinstance(source, (str, os.PathLike)):
+        name = os.fspath(source)
+        if _core.is_live(name):
+            return {"cameras": [name]}
+        return {"rig": name} if name.endswith(".toml") else None
+    if isinstance(source, Sequence) and source and all(isinstance(each, str) for each in source):
+        return {"cameras": list(source)}
+    return None
+
+
+def _follow_film(source: Any, put: Callable[[Instant | None], None], sinks: Iterable[Sink], options: dict[str, Any]) -> list[str]:
+    track(source, live=True, keep=False, sinks=[put, *sinks], **options)
+    return []
+
+
+def _follow_cameras(
+    options: dict[str, Any], put: Callable[[Instant | None], None], ends: Callable[[], bool], sinks: Iterable[Sink]
+) -> list[str]:
+    given = _sinks([put, *sinks])
+    if given["files"]:
+        raise Error("live cameras write no files but a take: take='walk.marey'")
+    _, summary = _core.live(options | given | {"ends": ends})
+    return list(summary["warnings"])
+
+
+def _moments(follow: Callable[[Callable[[Instant | None], None], Callable[[], bool]], list[str]], *, waits: bool) -> Iterator[Instant]:
+    """What `follow(put, ends)` puts, on a thread of its own. waits: it is held up while nobody asks; else the oldest moments give way."""
+    waiting: queue.Queue[Instant | None] = queue.Queue(maxsize=_KEPT)
+    left = threading.Event()
+    failure: list[BaseException] = []
+    doubts: list[str] = []
+
+    def ends() -> bool:
+        return left.is_set() or not threading.main_thread().is_alive()
+
+    def put(item: Instant | None) -> None:
+        while not ends():
+            try:
+                return waiting.put(item, timeout=0.1 if waits else 0)
+            except queue.Full:
+                if not waits:
+                    _let_go(waiting)
+        raise _Left
+
+    def run() -> None:
+        try:
+            doubts.extend(follow(put, ends))
+        except _Left:
+            return
+        except BaseException as raised:  # handed to who iterates
+            failure.append(raised)
+        try:
+            put(None)
+        except _Left:
+            pass
+
+    worker = threading.Thread(target=run, name="marey.live")
+    worker.start()
+    try:
+        while (instant := waiting.get()) is not None:
+            yield instant
+    finally:
+        left.set()
+        worker.join()
+    for sentence in doubts:
+        warnings.warn(sentence, Warning, stacklevel=2)
+    if failure:
+        raise failure[0]
+
+
+def _let_go(waiting: queue.Queue[Instant | None]) -> None:
+    try:
+        waiting.get_nowait()
+    except queue.Empty:
+        pass

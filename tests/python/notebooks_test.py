@@ -1,0 +1,137 @@
+"""The notebooks of examples/ run from beginning to end, and leave what they promise; they are kept without outputs.
+
+Run by marey_python_shell, which is their kernel too: notebooks_test.py MAREY ROOT [unittest options].
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import cv2
+    import ezc3d
+    import ipykernel  # noqa: F401
+    import kloppy  # noqa: F401
+    import matplotlib
+    import nbformat
+    import numpy as np
+    import pandas
+    from nbclient import NotebookClient
+except ImportError as missing:
+    print(f"the tests' virtual environment lacks {missing.name}; script/setup --tests installs it")
+    sys.exit(77)
+
+import marey
+
+MAREY = pathlib.Path(sys.argv.pop(1))
+ROOT = pathlib.Path(sys.argv.pop(1))
+
+
+def said(cell):
+    """What a cell printed, and the plain text of what it returned."""
+    return "".join(output.get("text", "") or output.get("data", {}).get("text/plain", "") for output in cell.get("outputs", []))
+
+
+class Notebooks(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        sys.executable = os.readlink("/proc/self/exe")  # what jupyter_client starts as the kernel
+        matplotlib.use("agg")
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="marey_notebooks_")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin/marey").symlink_to(MAREY)
+        environment = dict(os.environ)
+        self.addCleanup(lambda: (os.environ.clear(), os.environ.update(environment)))
+        os.environ.pop("MAREY_FILM", None)
+        jupyter = {name: str(self.folder / name.lower()) for name in ("IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR")}
+        os.environ.update(jupyter, PATH=f"{self.folder / 'bin'}:{os.environ['PATH']}")
+
+    def run_notebook(self, name):
+        """All that its cells said, one after the other."""
+        book = nbformat.read(ROOT / f"examples/{name}.ipynb", as_version=4)
+        NotebookClient(book, timeout=300, startup_timeout=180, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
+        self.assertTrue(all(cell.execution_count for cell in book.cells if cell.cell_type == "code"))
+        return "\n".join(said(cell) for cell in book.cells if cell.cell_type == "code")
+
+    def number(self, text, pattern):
+        found = re.search(pattern, text)
+        self.assertTrue(found, f"{pattern!r} is not in:\n{text}")
+        return float(found[1])
+
+    def assert_picture(self, name):
+        picture = cv2.imread(str(self.folder / name))
+        self.assertIsNotNone(picture, name)
+        self.assertGreater(picture.std(), 10, name)
+
+    def test_kept_without_outputs(self):
+        books = sorted((ROOT / "examples").glob("*.ipynb"))
+        self.assertEqual([book.stem for book in books], ["match", "street_video", "wand_to_c3d"])
+        for path in books:
+            book = nbformat.read(path, as_version=4)
+            nbformat.validate(book)
+            self.assertFalse([cell.id for cell in book.cells if cell.get("outputs") or cell.get("execution_count")], path.name)
+
+    def test_types(self):
+        for path in sorted((ROOT / "examples").glob("*.ipynb")):
+            cells = [re.sub(r"^( *)!(\\\n|.)*$", r"\1pass", cell.source, flags=re.M) for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+            program = self.folder / f"{path.stem}.py"
+            program.write_text("\n\n".join(cell for cell in cells if not cell.startswith("%%")))
+            checked = subprocess.run([ROOT / ".venv/bin/python", "-m", "mypy", "--strict", "--no-strict-optional", "--ignore-missing-imports", program],
+                                     capture_output=True, text=True, timeout=300, env={**os.environ, "MYPYPATH": str(ROOT / "python")})
+            self.assertEqual(checked.returncode, 0, f"{path.name}: {checked.stdout}{checked.stderr}")
+
+    def test_street_video(self):
+        text = self.run_notebook("street_video")
+        self.assertGreater(self.number(text, r"found ([\d.]+)%"), 80)
+        self.assertGreater(self.number(text, r"IDF1 ([\d.]+)%"), 80)
+        people = marey.read(self.folder / "street.marey")
+        self.assertTrue(5 <= len(people.tracks) <= 8, people)
+        self.assertEqual(len(pandas.read_csv(self.folder / "street.csv")), sum(map(len, people.tracks)))
+        self.assertEqual(len((self.folder / "street.txt").read_text().splitlines()), sum(map(len, people.tracks)))
+        self.assert_picture("street.png")
+
+    def test_street_video_of_ones_own(self):
+        os.environ["MAREY_FILM"] = "own.mp4"
+        with self.assertRaisesRegex(Exception, "own.mp4: no such file"):
+            self.run_notebook("street_video")
+        self.assertFalse((self.folder / "street").exists())
+
+    def test_wand_to_c3d(self):
+        text = self.run_notebook("wand_to_c3d")
+        self.assertGreater(self.number(text, r"([\d.]+)% of the places"), 99)
+        self.assertLess(self.number(text, r"([\d.]+) mm RMS"), 1)
+        self.assertIn("40 markers, 600 frames at 120 Hz, in mm", text)
+        read = ezc3d.c3d(str(self.folder / "walk.c3d"))
+        names = read["parameters"]["POINT"]["LABELS"]["value"]
+        truth = pandas.read_csv(self.folder / "walk/truth.csv")
+        self.assertEqual(set(names), set(truth.label))
+        for name in ("head1", "left_shank1"):
+            places = read["data"]["points"][:3, names.index(name)].T / 1000
+            true = truth[truth.label == name].sort_values("frame")[["x", "y", "z"]].to_numpy()
+            self.assertLess(np.nanmedian(np.linalg.norm(places - true, axis=1)), 0.002, name)
+        self.assert_picture("walk.png")
+
+    def test_match(self):
+        text = self.run_notebook("match")
+        self.assertGreater(self.number(text, r"([\d.]+)% of the places"), 95)
+        self.assertLess(self.number(text, r"([\d.]+) m RMS"), 0.3)
+        self.assertIn("750 frames at 25", text)
+        figures = pandas.read_csv(self.folder / "figures.csv")
+        self.assertTrue(24 <= len(figures) <= 28, len(figures))
+        self.assertTrue(figures.distance_m.between(0, 30 * 9).all() and 20 < figures.distance_m.median() < 120)
+        self.assertTrue(figures.top_mps.max() < 10)
+        self.assertIn("<svg", (self.folder / "report/report.html").read_text())
+        self.assertEqual(len(marey.read(self.folder / "match.dat").tracks), len(figures))
+        self.assert_picture("match.png")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
