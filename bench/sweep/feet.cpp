@@ -17,7 +17,6 @@
 #include <fmt/core.h>
 
 #include "marey/detect/detectors.h"
-#include "marey/detect/people/body_rows.h"
 #include "marey/detect/people/person_size_map.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
@@ -132,29 +131,14 @@ class Film {
     found_ = detector_->detect(frame_, expected);
   }
 
-  std::vector<std::optional<reconstruct::PersonRows>> rows(const detect::people::BodyRowsOptions& options) const {
-    std::vector<std::optional<reconstruct::PersonRows>> all;
-    for (const Detection& one : found_.detections) {
-      auto& row = all.emplace_back();
-      const auto place = view_.place(one.box.foot());
-      if (one.group || !place) continue;
-      const double steepness =
-          camera_.centre().z() / (camera_.centre() - Vector<3>(place->ground.x(), place->ground.y(), 0)).norm();
-      const auto found = detect::people::find_body_rows(frame_.picture, found_.foreground.mask, one.box, steepness, options);
-      if (found) row = {found->head, found->stand};
-    }
-    return all;
-  }
-
   void judge_lowest(Method& method) const {
     for (const Detection& one : found_.detections) {
       if (const auto place = view_.place(one.box.foot()); place && !one.group) judge(one.box, place->ground, method);
     }
   }
 
-  void judge(const reconstruct::PlacePeopleOptions& options, std::span<const std::optional<reconstruct::PersonRows>> rows,
-             Method& method) const {
-    const auto placed = reconstruct::place_people(found_.detections, view_, CameraId{0}, options, rows);
+  void judge(const reconstruct::PlacePeopleOptions& options, Method& method) const {
+    const auto placed = reconstruct::place_people(found_.detections, view_, CameraId{0}, options);
     for (std::size_t i = 0; i < placed.seen.size(); ++i) {
       if (!placed.seen[i].shared) judge(*placed.seen[i].box, placed.seen[i].value, method);
     }
@@ -225,38 +209,29 @@ void print(const Method& method) {
   fmt::print("{}\n", line);
 }
 
-/// What is compared: how rows are found and counted.
+/// What is compared: how boxes are placed.
 struct Variant {
-  std::string name;
-  detect::people::BodyRowsOptions rows = {};
-  reconstruct::PlacePeopleOptions placing = {};
+  Method method;
+  reconstruct::PlacePeopleOptions placing = {.toe = kToe};
 };
 
 std::vector<Variant> variants(bool sweep) {
-  std::vector<Variant> all{{"rows of the body"}};
+  std::vector<Variant> all{{{"box, toe and head", {}}}};
   if (!sweep) return all;
-  const auto add = [&](const std::string& name, double value, auto&& set) {
-    Variant one{fmt::format("{} {:g}", name, value)};
-    set(one, value);
-    all.push_back(one);
+  const auto add = [&](const std::string& name, double value, auto option) {
+    Variant& one = all.emplace_back();
+    one.method.name = fmt::format("{} {:g}", name, value);
+    one.placing.*option = value;
   };
-  for (const double v : {0.3, 0.35, 0.45, 0.5, 0.55}) add("edge", v, [](Variant& one, double x) { one.rows.edge = x; });
-  for (const double v : {0.0, 0.5, 1.0}) add("chroma", v, [](Variant& one, double x) { one.rows.chroma = x; });
-  for (const double v : {8.0, 25.0}) add("least contrast", v, [](Variant& one, double x) { one.rows.least_contrast = x; });
-  for (const double v : {0.0, 0.3, 0.6, 0.8}) add("stride", v, [](Variant& one, double x) { one.rows.stride = x; });
-  for (const double v : {0.01, 0.03, 0.04, 0.06}) add("row noise", v, [](Variant& one, double x) { one.placing.row_noise = x; });
-  for (const double v : {0.08, 0.12, 0.15}) add("toe", v, [](Variant& one, double x) { one.placing.toe = x; });
+  for (const double v : {0.02, 0.03, 0.06}) add("edge noise", v, &reconstruct::PlacePeopleOptions::edge_noise);
+  for (const double v : {0.0, 0.05, 0.15}) add("toe", v, &reconstruct::PlacePeopleOptions::toe);
+  for (const double v : {0.06, 0.15, 0.25}) add("height spread", v, &reconstruct::PlacePeopleOptions::height_spread);
   return all;
 }
 
 void run(const simulate::people::CameraLook& look, int frames, int seeds, bool sweep) {
-  Method lowest{"lowest pixel", {}}, box{"box, toe and head", {}};
+  Method lowest{"lowest pixel", {}};
   std::vector<Variant> all = variants(sweep);
-  std::vector<Method> methods;
-  for (Variant& one : all) {
-    if (one.placing.toe == 0) one.placing.toe = kToe;
-    methods.push_back({one.name, {}});
-  }
   const std::array kScenes{Scene{look, {3072, 1728}, 40, 200}, Scene{look, {1280, 720}, 20, 40}};
   for (const Scene& scene : kScenes) {
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -264,8 +239,7 @@ void run(const simulate::people::CameraLook& look, int frames, int seeds, bool s
       for (int i = 0; i < frames; ++i) {
         film.step();
         film.judge_lowest(lowest);
-        film.judge({.toe = kToe}, {}, box);
-        for (std::size_t k = 0; k < all.size(); ++k) film.judge(all[k].placing, film.rows(all[k].rows), methods[k]);
+        for (Variant& one : all) film.judge(one.placing, one.method);
       }
     }
   }
@@ -274,8 +248,7 @@ void run(const simulate::people::CameraLook& look, int frames, int seeds, bool s
              kNoise);
   fmt::print("{:<24} |  20-40 px: n, mean, median of rows too low | 40-80 | 80-120 | 120-200 | at 20 m: n, m | 40 m | 65 m\n", "");
   print(lowest);
-  print(box);
-  for (const Method& method : methods) print(method);
+  for (const Variant& one : all) print(one.method);
 }
 
 }  // namespace
