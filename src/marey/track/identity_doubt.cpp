@@ -26,7 +26,7 @@ struct Doubt {
 
 class DoubtFinder {
  public:
-  DoubtFinder(std::vector<Tracklet>& tracklets, const TrackletLog& log, const DoubtOptions& options)
+  DoubtFinder(std::span<Tracklet> tracklets, const TrackletLog& log, const DoubtOptions& options)
       : tracklets_(tracklets), log_(log), options_(options), nearest_(tracklets.size()) {
     for (int t = 0; t < std::ssize(tracklets_); ++t) {
       nearest_[t].assign(tracklets_[t].size(), -1);
@@ -42,14 +42,14 @@ class DoubtFinder {
     });
   }
 
-  std::vector<TrackletPiece> pieces() {
+  std::vector<TrackletPart> parts() {
     find_overlaps();
     for (int t = 0; t < std::ssize(tracklets_); ++t) find_close_to_ends(t);
     for (Tracklet& tracklet : tracklets_) mark_unseen(tracklet);
     for (int t = 0; t < std::ssize(tracklets_); ++t) list_doubts(t);
     name_meetings();
-    std::vector<TrackletPiece> all;
-    for (int t = 0; t < std::ssize(tracklets_); ++t) cut(t, all);
+    std::vector<TrackletPart> all;
+    for (int t = 0; t < std::ssize(tracklets_); ++t) part(t, all);
     return all;
   }
 
@@ -164,27 +164,26 @@ class DoubtFinder {
       meetings_.join(node_of_row_[contact.a][contact.row_a], node_of_row_[contact.b][contact.row_b]);
   }
 
-  void cut(int t, std::vector<TrackletPiece>& all) {
+  void part(int t, std::vector<TrackletPart>& all) {
     const Tracklet& rows = tracklets_[t];
-    TrackletPiece piece{.rows = {}, .tracklet = t, .head_meeting = {}, .tail_meeting = {}};
-    int begin = 0, done = 0;
+    const auto count = static_cast<int>(rows.size());
+    TrackletPart part{.tracklet = t, .first = 0, .end = count, .head_meeting = {}, .tail_meeting = {}};
+    int done = 0;
     for (int d = first_doubt_[t]; d < first_doubt_[t + 1]; ++d) {
       const Doubt& doubt = doubts_[d];
       const bool at_begin = sure_between(rows, done, doubt.first) < kFewestSure;
-      const bool at_end = sure_between(rows, doubt.last + 1, static_cast<int>(rows.size())) < kFewestSure;
+      const bool at_end = sure_between(rows, doubt.last + 1, count) < kFewestSure;
       const int meeting = meetings_.find(d);
       done = doubt.last + 1;
-      if (at_end) piece.tail_meeting = meeting;
-      if (at_begin) piece.head_meeting = meeting;
+      if (at_end) part.tail_meeting = meeting;
+      if (at_begin) part.head_meeting = meeting;
       if (at_begin || at_end) continue;
-      piece.tail_meeting = meeting;
-      piece.rows.assign(rows.begin() + begin, rows.begin() + doubt.strongest);
-      all.push_back(std::move(piece));
-      begin = doubt.strongest;
-      piece = {.rows = {}, .tracklet = t, .head_meeting = meeting, .tail_meeting = {}};
+      part.tail_meeting = meeting;
+      part.end = doubt.strongest;
+      all.push_back(part);
+      part = {.tracklet = t, .first = doubt.strongest, .end = count, .head_meeting = meeting, .tail_meeting = {}};
     }
-    piece.rows.assign(rows.begin() + begin, rows.end());
-    all.push_back(std::move(piece));
+    all.push_back(part);
   }
 
   static int sure_between(const Tracklet& rows, int first, int last) {
@@ -192,7 +191,7 @@ class DoubtFinder {
                                           [](const TrackRow& row) { return row.observed() && !row.doubtful; }));
   }
 
-  std::vector<Tracklet>& tracklets_;
+  std::span<Tracklet> tracklets_;
   const TrackletLog& log_;
   const DoubtOptions& options_;
   std::vector<Entry> entries_;                ///< by frame, then from left to right
@@ -206,9 +205,25 @@ class DoubtFinder {
 
 }  // namespace
 
+std::vector<TrackletPart> find_parts_between_doubts(std::span<Tracklet> tracklets, const TrackletLog& log,
+                                                    const DoubtOptions& options) {
+  return DoubtFinder(tracklets, log, options).parts();
+}
+
 std::vector<TrackletPiece> cut_where_in_doubt(std::vector<Tracklet> tracklets, const TrackletLog& log,
                                               const DoubtOptions& options) {
-  return DoubtFinder(tracklets, log, options).pieces();
+  std::vector<TrackletPiece> pieces;
+  for (const TrackletPart& part : find_parts_between_doubts(tracklets, log, options)) {
+    Tracklet& rows = tracklets[part.tracklet];
+    TrackletPiece& piece = pieces.emplace_back(TrackletPiece{{}, part.tracklet, part.head_meeting, part.tail_meeting});
+    const bool last = part.end == std::ssize(rows);
+    if (last && part.first == 0)
+      piece.rows = std::move(rows);
+    else
+      piece.rows.assign(rows.begin() + part.first, rows.begin() + part.end);
+    if (last) Tracklet().swap(rows);
+  }
+  return pieces;
 }
 
 }  // namespace marey::track

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "marey/track/tracklet_log.h"
@@ -24,14 +25,26 @@ struct DoubtOptions {
 };
 
 /// A part of a tracklet between two doubts.
-struct TrackletPiece {
-  TrackletLog::Tracklet rows;
-  int tracklet = 0;                 ///< of which it is a part; a tracklet's pieces follow one another
+struct TrackletPart {
+  int tracklet = 0;                 ///< of which it is a part; a tracklet's parts follow one another
+  int first = 0, end = 0;           ///< its rows, without `end`
   std::optional<int> head_meeting;  ///< out of which it comes
   std::optional<int> tail_meeting;  ///< into which it goes
 };
 
-/// All pieces, in the order of the tracklets and of time. Rows in doubt are marked so, all others not.
+/// All parts, in the order of the tracklets and of time; every row is in one. Rows in doubt are marked so, all others not.
+std::vector<TrackletPart> find_parts_between_doubts(std::span<TrackletLog::Tracklet> tracklets, const TrackletLog& log,
+                                                    const DoubtOptions& options = {});
+
+/// The same with rows of its own.
+struct TrackletPiece {
+  TrackletLog::Tracklet rows;
+  int tracklet = 0;
+  std::optional<int> head_meeting, tail_meeting;
+};
+
+/// All parts as pieces. The rows are never held twice, but for one tracklet's: in a match of 90 minutes they are a hundred
+/// megabytes.
 std::vector<TrackletPiece> cut_where_in_doubt(std::vector<TrackletLog::Tracklet> tracklets, const TrackletLog& log,
                                               const DoubtOptions& options = {});
 

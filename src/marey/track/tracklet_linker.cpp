@@ -32,7 +32,7 @@ bool is_sure(const TrackRow& row) {
 }
 
 /// What was seen of each row's clothes while it was sure who it is.
-std::vector<Clothes> clothes_of(const Tracklet& rows) {
+std::vector<Clothes> clothes_of(std::span<const TrackRow> rows) {
   std::vector<Clothes> seen;
   for (const TrackRow& row : rows) {
     const Clothes clothes = row.clothes.unpacked();
@@ -41,10 +41,10 @@ std::vector<Clothes> clothes_of(const Tracklet& rows) {
   return seen;
 }
 
-ClothesLikelihood learned(std::span<const Tracklet> tracklets, const TrackletLog& log) {
+ClothesLikelihood learned(std::span<Tracklet> tracklets, const TrackletLog& log) {
   std::vector<std::vector<Clothes>> seen;
-  for (const TrackletPiece& piece : cut_where_in_doubt({tracklets.begin(), tracklets.end()}, log))
-    seen.push_back(clothes_of(piece.rows));
+  for (const TrackletPart& part : find_parts_between_doubts(tracklets, log))
+    seen.push_back(clothes_of(std::span(tracklets[part.tracklet]).subspan(part.first, part.end - part.first)));
   return ClothesLikelihood(seen);
 }
 
@@ -77,7 +77,7 @@ struct TrackletLinker::End {
   bool at_border = false;  // of the picture
 };
 
-TrackletLinker::TrackletLinker(std::span<const Tracklet> tracklets, const TrackletLog& log, const JoinOptions& options)
+TrackletLinker::TrackletLinker(std::span<Tracklet> tracklets, const TrackletLog& log, const JoinOptions& options)
     : log_(log), options_(options), clothes_(learned(tracklets, log)) {}
 
 std::vector<Tracklet> TrackletLinker::join(std::vector<Tracklet> tracklets, double longest_gap) const {
@@ -99,6 +99,9 @@ std::vector<Tracklet> TrackletLinker::link(std::vector<TrackletPiece> pieces, do
   std::vector<Tracklet> joined;
   for (const std::vector<int>& chain : chains_of(next)) {
     Tracklet& whole = joined.emplace_back(std::move(pieces[chain.front()].rows));
+    std::size_t rows = whole.size();
+    for (const int piece : std::span(chain).subspan(1)) rows += pieces[piece].rows.size();
+    whole.reserve(rows);  // no spare room: rows are what grows with a match
     for (const int piece : std::span(chain).subspan(1)) {
       append(whole, pieces[piece].rows);
       Tracklet().swap(pieces[piece].rows);

@@ -18,8 +18,8 @@ namespace marey::track {
 
 class TrackletLinker {
  public:
-  /// Learns from `tracklets` what clothes say. `log` and `options` must outlive it.
-  TrackletLinker(std::span<const TrackletLog::Tracklet> tracklets, const TrackletLog& log, const JoinOptions& options);
+  /// Learns from `tracklets` what clothes say, and marks their rows that are in doubt. `log` and `options` must outlive it.
+  TrackletLinker(std::span<TrackletLog::Tracklet> tracklets, const TrackletLog& log, const JoinOptions& options);
 
   /// Joins tracklets over gaps of at most so many seconds.
   std::vector<TrackletLog::Tracklet> join(std::vector<TrackletLog::Tracklet> tracklets, double longest_gap) const;
