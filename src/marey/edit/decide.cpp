@@ -67,6 +67,14 @@ double cutoff_of(Tracks& tracks, TrackId track) {
   return proposed_cutoff(path, rate_hz).value_or(kUsualCutoff_hz);
 }
 
+/// A range that ends after the recording is a slip of the pen; one without an end goes as far as there is.
+void require_frames(const Request& request, const Tracks& tracks) {
+  if (!request.frames || request.frames->last == FrameRange::kToTheEnd || tracks.moments().empty()) return;
+  const std::int64_t last = tracks.moments().back().index;
+  if (request.frames->last > last)
+    throw Error("{}: frame {} is named, and the last one is {}", name_of(request.kind), request.frames->last, last);
+}
+
 void require_rows(const Request& request, Tracks& tracks, const std::vector<TrackId>& named) {
   if (!request.frames || request.kind == Kind::fill) return;
   const auto within = [&](TrackId track) {
@@ -80,13 +88,36 @@ void require_rows(const Request& request, Tracks& tracks, const std::vector<Trac
     throw Error("{}: nothing is there in frames {} to {}", name_of(request.kind), request.frames->first, request.frames->last);
 }
 
+/// Pieces of one marker may share its name; two that are there at once may not: files know markers by their names.
+void require_free_name(const Request& request, Tracks& tracks, TrackId named, const std::vector<TrackName>& names) {
+  if (request.label.empty()) return;
+  const auto begins = [&](const Tracks::Row& row) {
+    return request.kind != Kind::split || tracks.moments()[static_cast<std::size_t>(row.at)].index >= request.frames->first;
+  };
+  for (const TrackName& other : names) {
+    if (other.id == named || other.label != request.label) continue;
+    const Tracks::Rows& theirs = tracks.rows(other.id);
+    for (const Tracks::Row& row : tracks.rows(named)) {
+      const auto same = std::lower_bound(theirs.begin(), theirs.end(), row.at,
+                                         [](const Tracks::Row& their, std::int32_t at) { return their.at < at; });
+      if (begins(row) && same != theirs.end() && same->at == row.at)
+        throw Error(
+            "{}: #{} is called \"{}\" already and is there at the same time, as in frame {}; rename, join or delete it first",
+            name_of(request.kind), number(other.id), plain_text(request.label),
+            tracks.moments()[static_cast<std::size_t>(row.at)].index);
+    }
+  }
+}
+
 }  // namespace
 
 Operation decide(const Request& request, Tracks& tracks) {
   const std::vector<TrackName> names = tracks.names();
   Operation operation{
       .kind = request.kind, .tracks = tracks_named(request, names), .frames = request.frames, .label = request.label};
+  require_frames(request, tracks);
   require_rows(request, tracks, operation.tracks);
+  if (!operation.tracks.empty()) require_free_name(request, tracks, operation.tracks.front(), names);
   if (request.kind == Kind::split) operation.born = tracks.unused_id();
   if (request.kind == Kind::filter) {
     for (const TrackId track : operation.tracks)

@@ -98,6 +98,15 @@ TEST(Edit, SplitJoinRenameDelete) {
   EXPECT_EQ(picture(edited(recording)), "A:1111.. ");
 }
 
+TEST(Edit, PiecesOfOneMarkerMayShareItsName) {
+  Recording recording = letters(2, 6);
+  edit(recording, "delete A 3:");
+  EXPECT_EQ(error_of(recording, "delete A 4:5"), "delete: nothing is there in frames 4 to 5");
+  EXPECT_NE(error_of(recording, "split B 2 A"), "") << "both are there in frame 2";
+  edit(recording, "split B 3 A");
+  EXPECT_EQ(picture(edited(recording)), "A:111... B:222... A:...222 ");
+}
+
 TEST(Edit, UndoRedoAndBranches) {
   Recording recording = letters(2, 3);
   edit(recording, "rename A C");
@@ -122,7 +131,10 @@ TEST(Edit, WhatCannotBeDoneIsSaid) {
   EXPECT_EQ(error_of(recording, "swap A B 5:2"), "\"5:2\" are no frames; write FIRST:LAST, counted from 0");
   EXPECT_EQ(error_of(recording, "swap A B 1:2 C"), "swap: \"C\" is too much");
   EXPECT_EQ(error_of(recording, "join A B"), "\"A\" and \"B\" are both there in frame 0; split or delete one of them first");
-  EXPECT_EQ(error_of(recording, "delete A 100:200"), "delete: nothing is there in frames 100 to 200");
+  EXPECT_EQ(error_of(recording, "delete A 3:200"), "delete: frame 200 is named, and the last one is 5");
+  EXPECT_EQ(error_of(recording, "split A 6"), "split: frame 6 is named, and the last one is 5");
+  EXPECT_EQ(error_of(recording, "rename A C"),
+            "rename: #3 is called \"C\" already and is there at the same time, as in frame 0; rename, join or delete it first");
   EXPECT_EQ(error_of(recording, "rename #7 B"), "there is no track #7");
   EXPECT_EQ(error_of(recording, "rename \"A B"), "a name begins with \" and does not end");
   EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is no cut-off; it is in Hz, above 0, or auto");

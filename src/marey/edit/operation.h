@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,8 @@ namespace marey::edit {
 
 /// Frames by their indices, both ends included.
 struct FrameRange {
+  static constexpr std::int64_t kToTheEnd = std::numeric_limits<std::int32_t>::max();
+
   std::int64_t first = 0, last = 0;
 
   bool holds(std::int64_t index) const { return first <= index && index <= last; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "marey/core/error.h"
@@ -64,11 +63,11 @@ std::optional<FrameRange> range_in(const Word& word) {
   const std::size_t colon = word.text.find(':');
   if (word.quoted || colon == std::string::npos) return std::nullopt;
   const std::string_view first = std::string_view(word.text).substr(0, colon), last = std::string_view(word.text).substr(colon + 1);
-  constexpr std::int64_t kLast = std::numeric_limits<std::int32_t>::max();
   const auto begin = first.empty() ? std::optional<std::int64_t>(0) : number_in<std::int64_t>(first);
-  const auto end = last.empty() ? std::optional<std::int64_t>(kLast) : number_in<std::int64_t>(last);
+  const auto end = last.empty() ? std::optional<std::int64_t>(FrameRange::kToTheEnd) : number_in<std::int64_t>(last);
   if (!begin || !end) return std::nullopt;
-  if (*begin < 0 || *end < *begin || *end > kLast) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", word.text);
+  if (*begin < 0 || *end < *begin || *end > FrameRange::kToTheEnd)
+    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", word.text);
   return FrameRange{*begin, *end};
 }
 
@@ -150,7 +149,7 @@ std::optional<bool> auto_in(const Word& word) {
 
 std::optional<std::int64_t> frame_in(const Word& word) {
   const auto frame = number_in<std::int64_t>(word.text);
-  return frame && *frame >= 0 && *frame <= std::numeric_limits<std::int32_t>::max() ? frame : std::nullopt;
+  return frame && *frame >= 0 && *frame < FrameRange::kToTheEnd ? frame : std::nullopt;
 }
 
 void read_fill(Reader& words, Request& request) {
