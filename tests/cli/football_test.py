@@ -95,6 +95,17 @@ class Football(unittest.TestCase):
         self.assertIn("mirrored", self.refused(*both))
         self.assertFalse((self.folder / "never.toml").exists())
 
+    def test_pictures_are_not_drawn_over_those_of_the_cameras(self):
+        clicks = self.write_clicks("own.csv", self.points)
+        (self.folder / "own").mkdir()
+        picture = self.folder / "own" / "stand.jpg"
+        picture.write_bytes(b"taken by the camera")
+        (self.folder / "own.toml").write_text('[[camera]]\nname = "stand"\nsource = "own/stand.jpg"\nsize = [1920, 1080]\n')
+        pitch = ("calibrate", "pitch", "own.toml", "--points", f"stand={clicks}", "-o", "never.toml", "--pictures", "own")
+        self.assertIn("is an input too", self.marey(*pitch, code=2).stderr)
+        self.assertEqual(picture.read_bytes(), b"taken by the camera")
+        self.assertFalse((self.folder / "never.toml").exists())
+
     def write_people(self, name, ways):
         """Boxes, 40 px high, of people whose feet go these ways (px at 25 Hz): functions of s."""
         with open(self.folder / name, "w") as out:

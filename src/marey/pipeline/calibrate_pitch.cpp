@@ -225,8 +225,8 @@ PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string
   pitch.ground = run.rig.ground;
   run.calibration = calibrate::pitch::calibrate_pitch(run.views, pitch);
   enter(run);
-  if (!options.pictures.empty()) draw(run, options);
   put_in_step(run, options, hooks);
+  if (!options.pictures.empty()) draw(run, options);
   return run;
 }
 
