@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "marey/core/source.h"
+#include "marey/draw/jpeg.h"
 
-#include "jpeg.h"
 #include "web_server.h"
 
 namespace marey::viewer {
@@ -48,7 +48,7 @@ class FilmPictures {
   std::function<void(PageId, std::string)> ready_;
   std::unique_ptr<Source> film_;
   std::optional<Frame> held_;
-  JpegEncoder encoder_;
+  draw::JpegEncoder encoder_;
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -13,9 +13,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/draw/jpeg.h"
 
 #include "access.h"
-#include "jpeg.h"
 #include "json_value.h"
 #include "page_files.h"
 #include "page_words.h"
@@ -110,7 +110,7 @@ class LiveViewer::Core {
   bool ending_ = false;
 
   std::set<int> with_pictures_;  // the pictures' thread alone
-  JpegEncoder encoder_;          // likewise
+  draw::JpegEncoder encoder_;    // likewise
   std::unique_ptr<WebServer> server_;
   std::thread pictures_;
 };

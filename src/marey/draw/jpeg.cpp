@@ -1,4 +1,4 @@
-#include "jpeg.h"
+#include "marey/draw/jpeg.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,10 @@
 #include <opencv2/imgproc.hpp>
 #include <turbojpeg.h>
 
-namespace marey::viewer {
+namespace marey::draw {
 namespace {
 
-constexpr int kQuality = 75;
-constexpr int kMostSide = 8192;  // px
+constexpr int kMostJpegSide = 8192;  // px
 
 /// A plane at `size`, in full range, with its rows one behind the other.
 cv::Mat plane_for_jpeg(const cv::Mat& plane, cv::Size size, bool limited, bool chroma) {
@@ -40,10 +39,11 @@ JpegEncoder::~JpegEncoder() {
   if (handle_ != nullptr) tjDestroy(handle_);
 }
 
-std::string JpegEncoder::encode(const Picture& picture, int most_width) {
+std::string JpegEncoder::encode(const Picture& picture, int most_width, int quality) {
   if (handle_ == nullptr || picture.empty()) return {};
   const cv::Size full = picture.size();
-  const double scale = std::min({1.0, most_width / static_cast<double>(full.width), kMostSide / static_cast<double>(full.height)});
+  const double scale =
+      std::min({1.0, most_width / static_cast<double>(full.width), kMostJpegSide / static_cast<double>(full.height)});
   const cv::Size size(std::max(1, static_cast<int>(full.width * scale)), std::max(1, static_cast<int>(full.height * scale)));
   const cv::Size half((size.width + 1) / 2, (size.height + 1) / 2);
   const bool limited = picture.range() == Picture::Range::limited;
@@ -54,14 +54,15 @@ std::string JpegEncoder::encode(const Picture& picture, int most_width) {
   std::array<const unsigned char*, 3> planes{luma.data, cb.data, cr.data};
   std::array<int, 3> strides{static_cast<int>(luma.step), static_cast<int>(cb.step), static_cast<int>(cr.step)};
   const int sampling = colour ? TJSAMP_420 : TJSAMP_GRAY;
+  const int exact = quality > kToBeSeen ? TJFLAG_ACCURATEDCT : TJFLAG_FASTDCT;
   unsigned long bytes = tjBufSize(size.width, size.height, sampling);
   std::string jpeg(bytes, '\0');
   auto* to = reinterpret_cast<unsigned char*>(jpeg.data());
-  if (tjCompressFromYUVPlanes(handle_, planes.data(), size.width, strides.data(), size.height, sampling, &to, &bytes, kQuality,
-                              TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0)
+  if (tjCompressFromYUVPlanes(handle_, planes.data(), size.width, strides.data(), size.height, sampling, &to, &bytes, quality,
+                              TJFLAG_NOREALLOC | exact) != 0)
     return {};
   jpeg.resize(bytes);
   return jpeg;
 }
 
-}  // namespace marey::viewer
+}  // namespace marey::draw

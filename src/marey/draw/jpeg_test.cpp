@@ -1,4 +1,4 @@
-#include "jpeg.h"
+#include "marey/draw/jpeg.h"
 
 #include <vector>
 
@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace marey::viewer {
+namespace marey::draw {
 namespace {
 
 cv::Mat read_back(const std::string& jpeg) {
@@ -51,9 +51,22 @@ TEST(Jpeg, GreyOfSixteenBitsAndPartsOfPictures) {
   EXPECT_NEAR(part.at<cv::Vec3b>(19, 19)[0], 180, 2);
 }
 
+TEST(Jpeg, QualityIsWhatIsLeftOfIt) {
+  cv::Mat noise(64, 64, CV_8UC1);
+  cv::randn(noise, 128, 20);
+  JpegEncoder encoder;
+  const auto off = [&](int quality) {
+    cv::Mat grey;
+    cv::cvtColor(read_back(encoder.encode(Picture(noise), 64, quality)), grey, cv::COLOR_BGR2GRAY);
+    return cv::norm(grey, noise, cv::NORM_L1) / static_cast<double>(noise.total());
+  };
+  EXPECT_LT(off(98), 1);
+  EXPECT_GT(off(JpegEncoder::kToBeSeen), 2);
+}
+
 TEST(Jpeg, OfNothingIsNothing) {
   EXPECT_TRUE(JpegEncoder().encode(Picture(), 64).empty());
 }
 
 }  // namespace
-}  // namespace marey::viewer
+}  // namespace marey::draw
