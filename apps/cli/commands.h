@@ -22,6 +22,7 @@ void add_edit(Command& program);
 void add_view(Command& program);
 void add_play(Command& program);
 void add_live(Command& program);
+void add_node(Command& program);
 void add_cameras(Command& program);
 void add_batch(Command& program);
 void add_doctor(Command& program);

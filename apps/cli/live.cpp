@@ -23,9 +23,9 @@
 #include "json_value.h"
 #include "live_outputs.h"
 #include "live_screen.h"
+#include "live_sources.h"
 #include "people_options.h"
 #include "realtime.h"
-#include "rig_inputs.h"
 #include "run_hooks.h"
 #include "summary_figures.h"
 
@@ -53,16 +53,6 @@ struct LiveCommand {
   LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
-
-bool is_rig(const std::string& source) {
-  return scheme_of(source).empty() && source.ends_with(".toml");
-}
-
-/// A rig file with CAMERA=SOURCE after it, or sources alone.
-Rig rig_of(const LiveCommand& command) {
-  if (!is_rig(command.sources.front())) return pipeline::rig_of_sources(command.sources);
-  return rig_of(RigAndSources{command.sources.front(), {command.sources.begin() + 1, command.sources.end()}});
-}
 
 Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
   const pipeline::LiveDrops& drops = summary.last.drops;
@@ -112,13 +102,13 @@ std::string pictures_of(const std::string& take) {
 
 std::vector<std::string> played_files(const LiveCommand& command) {
   std::vector<std::string> files;
-  for (const RigCamera& camera : rig_of(command).cameras) files.push_back(path_of_source(camera.source));
+  for (const RigCamera& camera : rig_of_live_sources(command.sources).cameras) files.push_back(path_of_source(camera.source));
   return files;
 }
 
 std::vector<std::string> files_beside_take(const LiveCommand& command) {
   if (command.record != Kept::raw) return {};
-  return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of(command));
+  return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
 }
 
 pipeline::LiveOptions options_of(const LiveCommand& command) {
@@ -151,7 +141,7 @@ void run(const LiveCommand& command) {
   if (command.realtime) {
     if (const auto refused = ask_for_realtime()) warn({*refused});
   }
-  const Rig rig = rig_of(command);
+  const Rig rig = rig_of_live_sources(command.sources);
   pipeline::LiveOptions options = options_of(command);
   LiveOutputs outputs(command.outputs, options.policy.time, options.recording, command.quiet);
   options.sinks = outputs.sinks();
@@ -190,14 +180,7 @@ void run(const LiveCommand& command) {
 void add_live(Command& program) {
   auto options = std::make_shared<LiveCommand>();
   Command command = program.subcommand("live", "Track what live cameras see, while they see it");
-  std::string forms;
-  for (const auto& kind : pipeline::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
-  command
-      .input_files(
-          "SOURCES", options->sources,
-          "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a film that is played; " +
-              forms)
-      .required();
+  add_live_sources(command, options->sources);
   command.choice("--targets", options->targets, kLiveTargets, "what is followed");
   command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});

@@ -25,6 +25,7 @@ int run_program(int argc, char** argv) {
   add_reconstruct(root);
   add_live(root);
   add_cameras(root);
+  add_node(root);
   add_solve(root);
   add_batch(root);
   add_doctor(root);

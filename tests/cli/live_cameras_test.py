@@ -291,7 +291,7 @@ class LiveCameras(unittest.TestCase):
 
     def test_names_that_mean_nothing_are_refused(self):
         for name, word in (("sim://space", "room, people"), ("sim://room?cameras=900", "whole number"), ("sim://room?colour=red", "no option"),
-                           ("node:left", "reads no node"), ("play:missing.mp4", "no such file"), ("missing.mp4", "no such file"),
+                           ("node:/left", "node"), ("play:missing.mp4", "no such file"), ("missing.mp4", "no such file"),
                            ("v4l2:/dev/video0?format=H264", "H264"), ("http://", "names no host")):
             self.assertIn(word, self.marey("live", name, "--for", 1, code=1).stderr, name)
 

@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
+#include "marey/pipeline/live_node.h"
 #include "marey/pipeline/live_simulation.h"
 #include "marey/pipeline/live_take.h"
 #include "marey/source/live/live_camera.h"
@@ -72,6 +73,7 @@ std::vector<source::live::Kind> live_kinds() {
   for (source::live::Kind& kind : kinds) {
     if (kind.schemes.front() == "play") kind = with_takes(std::move(kind));
   }
+  if (auto nodes = node_kind()) kinds.push_back(std::move(*nodes));
   kinds.push_back(simulation_kind());
   return kinds;
 }
@@ -85,7 +87,8 @@ Rig rig_of_sources(std::span<const std::string> sources) {
                        std::none_of(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(sign), unfit_for_camera_name);
     Rig some = cameras_of(source::live::parse_address(live_name(named ? given.substr(sign + 1) : given)));
     for (RigCamera& camera : some.cameras) {
-      camera.name = named ? given.substr(0, sign) : fmt::format("cam{}", rig.cameras.size() + 1);
+      const bool has_name = !camera.name.empty() && !names.contains(camera.name);
+      if (named || !has_name) camera.name = named ? given.substr(0, sign) : fmt::format("cam{}", rig.cameras.size() + 1);
       if (named && some.cameras.size() > 1) camera.name += fmt::format("{}", rig.cameras.size() + 1);
       if (!names.insert(camera.name).second) throw Error("two cameras are called {}; each needs its own name", camera.name);
       rig.cameras.push_back(std::move(camera));

@@ -13,9 +13,9 @@ namespace marey::pipeline {
 /// Every kind of live source that this build knows: the register of all that a rig or a command line may name.
 std::vector<source::live::Kind> live_kinds();
 
-/// A rig of sources as a command line names them, SOURCE or NAME=SOURCE: what is not named is cam1, cam2, …; a path is a film, or a
-/// folder of pictures, that is played. A name that stands for several cameras brings them all, with their calibration where it is
-/// known. Throws Error for what names nothing, and for a name given twice.
+/// A rig of sources as a command line names them, SOURCE or NAME=SOURCE: what is not named, and has no name of its own, is cam1,
+/// cam2, …; a path is a film, or a folder of pictures, that is played. A name that stands for several cameras brings them all, with
+/// their calibration where it is known. Throws Error for what names nothing, and for a name given twice.
 Rig rig_of_sources(std::span<const std::string> sources);
 
 /// The rig's cameras, each read on a thread of its own and connected again, without end, whenever it is not there. Returns when all

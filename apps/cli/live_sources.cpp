@@ -1,0 +1,35 @@
+#include "live_sources.h"
+
+#include <fmt/format.h>
+
+#include "marey/core/source_name.h"
+#include "marey/pipeline/live_feeds.h"
+
+#include "rig_inputs.h"
+
+namespace marey::cli {
+namespace {
+
+bool is_rig(const std::string& source) {
+  return scheme_of(source).empty() && source.ends_with(".toml");
+}
+
+}  // namespace
+
+void add_live_sources(Command& command, std::vector<std::string>& sources) {
+  std::string forms;
+  for (const auto& kind : pipeline::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
+  command
+      .input_files(
+          "SOURCES", sources,
+          "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a film that is played; " +
+              forms)
+      .required();
+}
+
+Rig rig_of_live_sources(const std::vector<std::string>& sources) {
+  if (!is_rig(sources.front())) return pipeline::rig_of_sources(sources);
+  return rig_of(RigAndSources{sources.front(), {sources.begin() + 1, sources.end()}});
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,103 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "marey/core/rig_sources.h"
+#include "marey/core/source_name.h"
+#include "marey/pipeline/camera_node.h"
+#include "marey/pipeline/live_feeds.h"
+
+#include "blob_options.h"
+#include "command_line.h"
+#include "commands.h"
+#include "json_value.h"
+#include "live_sources.h"
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+enum class NodeSends { markers, pictures };
+constexpr std::array<std::pair<const char*, NodeSends>, 2> kNodeSends{
+    {{"markers", NodeSends::markers}, {"pictures", NodeSends::pictures}}};
+
+struct NodeCommand {
+  std::vector<std::string> sources;
+  NodeSends send = NodeSends::markers;
+  int quality = 90;
+  pipeline::NodeOptions options;
+  bool json = false, quiet = false;
+};
+
+bool is_open_to_others(const std::string& address) {
+  return !address.starts_with("127.") && address != "localhost" && address != "[::1]";
+}
+
+/// What the other computer is to be told.
+void print_begun(const NodeCommand& command, const Rig& rig) {
+  const bool everywhere = command.options.address == "0.0.0.0" || command.options.address == "[::]";
+  const std::string host = everywhere ? "THIS-COMPUTER" : command.options.address;
+  fmt::print(stderr, "{}: marey live node:{}:{}\n", camera_names(rig), host, command.options.port);
+  if (is_open_to_others(command.options.address))
+    warn({fmt::format("whoever reaches ports {} and {} of this computer sees what its cameras see", command.options.port,
+                      command.options.port + 1)});
+}
+
+Json as_json(const pipeline::NodeSummary& summary, const NodeCommand& command) {
+  Json json{{"address", fmt::format("{}:{}", command.options.address, command.options.port)},
+            {"seconds", summary.seconds},
+            {"bytes", summary.bytes},
+            {"cameras", Json::object()}};
+  for (const pipeline::NodeSummary::Camera& camera : summary.cameras)
+    json["cameras"][camera.name] = {{"state", to_string(camera.state)},
+                                    {"sent", camera.sent},
+                                    {"lost", camera.lost},
+                                    {"damaged", camera.damaged},
+                                    {"overrun", camera.overrun}};
+  return json;
+}
+
+void print_node(const pipeline::NodeSummary& summary) {
+  for (const pipeline::NodeSummary::Camera& camera : summary.cameras) {
+    fmt::print(stderr, "  {:<12} {:>7} frames sent, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.sent, camera.lost,
+               camera.damaged, camera.overrun, camera.trouble.empty() ? "" : "; " + camera.trouble);
+  }
+  fmt::print(stderr, "{:.1f} s, {:.1f} MB\n", summary.seconds, 1e-6 * static_cast<double>(summary.bytes));
+}
+
+void run(NodeCommand& command) {
+  const Rig rig = rig_of_live_sources(command.sources);
+  if (command.send == NodeSends::pictures) command.options.quality = command.quality;
+  if (!command.quiet) command.options.begun = [&](const Rig& told) { print_begun(command, told); };
+  const pipeline::NodeSummary summary = with_progress(
+      command.quiet || command.json, [&](const Hooks& hooks) { return pipeline::serve_cameras(rig, command.options, hooks); });
+  if (command.json) {
+    print(as_json(summary, command));
+  } else if (!command.quiet) {
+    print_node(summary);
+  }
+}
+
+}  // namespace
+
+void add_node(Command& program) {
+  auto options = std::make_shared<NodeCommand>();
+  pipeline::NodeOptions& how = options->options;
+  Command command = program.subcommand("node", "Hand this computer's cameras to another one, where marey live runs");
+  add_live_sources(command, options->sources);
+  command.choice("--send", options->send, kNodeSends,
+                 "what goes over the network: the markers that are found here, or the pictures");
+  command.whole("--quality", options->quality, "N", 1, 100, "of the pictures, which are JPEG");
+  command.text("--listen", how.address, "address of this machine at which its cameras are had; 0.0.0.0: all of them");
+  command.whole("--port", how.port, "N", 1, 65534, "of the cameras; the one above it answers questions");
+  command.number("--for", how.for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C)");
+  command.number("--patience", how.patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
+  add_blob_options(command, how.markers);
+  command.reports(options->json, options->quiet);
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,65 @@
+// A camera node: cameras of another computer, by ZeroMQ. The node publishes each camera's frames (PUB, on a port) and answers
+// questions (REP, on the port above it): a camera's name with what it knows of it and the time by its clock, an empty question with
+// its rig. Frames that nobody could take in time are let go, never kept. An optional part of the build.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "marey/source/live/address.h"
+#include "marey/source/live/connection.h"
+#include "marey/source/live/node_message.h"
+
+namespace marey::source::live {
+
+inline constexpr int kNodePort = 7780;
+
+/// node:HOST:PORT/CAMERA; without a camera all of them are meant.
+struct NodePlace {
+  std::string host;
+  int port = kNodePort;
+  std::string camera;
+
+  /// The sockets of both, as ZeroMQ names them.
+  std::string frames() const;
+  std::string questions() const;
+  /// "node:HOST:PORT"
+  std::string node() const;
+};
+
+/// Throws Error where no host is named, or the port is none.
+NodePlace node_place(const Address& address);
+
+/// Whether this build can speak to nodes and be one.
+bool has_nodes();
+
+/// A camera of a node. Its frames bear times by the run's clock: the node's clock is asked now and then.
+Connect connect_node(const NodePlace& place);
+
+/// The rig of a node, as text of a rig file. Throws Error where it does not answer within two seconds; Stopped.
+std::string ask_rig_of_node(const NodePlace& place);
+
+/// What a node hands out.
+class NodeServer {
+ public:
+  /// The answer to who asks for a camera, and the rig as text: asked from another thread.
+  using Answer = std::function<NodeAnswer(const std::string& camera)>;
+  using RigText = std::function<std::string()>;
+
+  /// Listens at `address`, an address of this machine or "0.0.0.0", from `port` on. Throws Error where that cannot be had.
+  NodeServer(const std::string& address, int port, Answer answer, RigText rig);
+  ~NodeServer();
+  NodeServer(const NodeServer&) = delete;
+  NodeServer& operator=(const NodeServer&) = delete;
+
+  /// To whoever listens to that camera; never waits. From one thread at a time.
+  void send(const std::string& camera, const std::string& message);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace marey::source::live

@@ -1,0 +1,52 @@
+// What a camera node and the host that solves say to each other (docs/live.md). Little endian, doubles as IEEE 754.
+//
+//   a frame    "MRYF" session:u64 sequence:i64 taken_ns:i64 width:u32 height:u32 kind:u8, then
+//              kind 0: the picture, JPEG, to the end
+//              kind 1: count:u32, and for each detection centre, covariance xx xy yy, area, box left top width height, score: f64
+//              each
+//   an answer  "MRYA" session:u64 now_ns:i64 known:u8 width:u32 height:u32 rate_hz:f64 (0: not known), then the names of all
+//              cameras, each with a line break behind it
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/detection.h"
+#include "marey/core/time.h"
+
+namespace marey::source::live {
+
+/// One camera's frame on its way: its picture or what was found in it.
+struct NodeFrame {
+  std::uint64_t session = 0;                              ///< of the node's start: another one counts and times anew
+  std::int64_t sequence = 0;                              ///< of this camera's frames; what a host does not get is missing
+  Timestamp taken{};                                      ///< by the node's clock
+  cv::Size size;                                          ///< of the picture, px; empty where it is not known
+  std::optional<std::vector<Detection>> detections = {};  ///< without outlines and groups
+  std::span<const std::uint8_t> jpeg = {};                ///< of the message that it was read from; where there are no detections
+};
+
+/// What a node says of a camera to who asks for it by its name.
+struct NodeAnswer {
+  std::uint64_t session = 0;
+  Timestamp now{};                   ///< by the node's clock, while it answered
+  bool known = false;                ///< whether it has such a camera
+  cv::Size size;                     ///< px; empty until its first picture came
+  std::optional<double> rate_hz;     ///< where it is known
+  std::vector<std::string> cameras;  ///< the names of all that it has
+};
+
+std::string message_of(const NodeFrame& frame);
+std::string message_of(const NodeAnswer& answer);
+
+/// Throw Error, with `name` of the node, for what is no such message.
+NodeFrame read_node_frame(std::string_view message, const std::string& name);
+NodeAnswer read_node_answer(std::string_view message, const std::string& name);
+
+}  // namespace marey::source::live

@@ -1,0 +1,118 @@
+#include "marey/source/live/node_message.h"
+
+#include <random>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/source/live/node.h"
+#include "marey/source/live/node_clock.h"
+
+namespace marey::source::live {
+namespace {
+
+Timestamp at(double s) {
+  return timestamp_from_seconds(s);
+}
+
+NodeFrame two_blobs() {
+  NodeFrame frame{.session = 7, .sequence = 41, .taken = at(12.5), .size = {640, 480}};
+  Detection found;
+  found.centre = {12.25, 99.5};
+  found.covariance << 0.01, 0.002, 0.002, 0.03;
+  found.area = 42;
+  found.box = {10, 97, 5, 6};
+  found.score = 0.75;
+  frame.detections = {found, Detection{}};
+  return frame;
+}
+
+TEST(NodeMessage, WhatIsWrittenIsRead) {
+  const NodeFrame frame = two_blobs();
+  const std::string message = message_of(frame);
+  const NodeFrame read = read_node_frame(message, "node");
+  EXPECT_EQ(read.session, 7u);
+  EXPECT_EQ(read.sequence, 41);
+  EXPECT_EQ(read.taken, frame.taken);
+  EXPECT_EQ(read.size, cv::Size(640, 480));
+  ASSERT_TRUE(read.detections);
+  ASSERT_EQ(read.detections->size(), 2u);
+  const Detection& found = read.detections->front();
+  EXPECT_EQ(found.centre, frame.detections->front().centre);
+  EXPECT_EQ(found.covariance, frame.detections->front().covariance);
+  EXPECT_EQ(found.area, 42);
+  EXPECT_EQ(found.box.height, 6);
+  EXPECT_EQ(found.score, 0.75);
+
+  const std::vector<std::uint8_t> jpeg{1, 2, 3};
+  const std::string picture = message_of(NodeFrame{.session = 7, .sequence = 1, .taken = at(0), .size = {4, 4}, .jpeg = jpeg});
+  const NodeFrame with_picture = read_node_frame(picture, "node");
+  EXPECT_FALSE(with_picture.detections);
+  EXPECT_EQ(std::vector(with_picture.jpeg.begin(), with_picture.jpeg.end()), jpeg);
+
+  const NodeAnswer answer{.session = 7, .now = at(3), .known = true, .size = {8, 6}, .rate_hz = 60, .cameras = {"left", "right"}};
+  const NodeAnswer heard = read_node_answer(message_of(answer), "node");
+  EXPECT_EQ(heard.now, at(3));
+  EXPECT_TRUE(heard.known);
+  EXPECT_EQ(heard.rate_hz, 60);
+  EXPECT_EQ(heard.cameras, answer.cameras);
+}
+
+TEST(NodeMessage, WhatIsNoneIsRefused) {
+  std::string message = message_of(two_blobs());
+  for (std::size_t length = 0; length < message.size(); ++length)
+    EXPECT_THROW(read_node_frame(std::string_view(message).substr(0, length), "node"), Error) << length;
+  EXPECT_THROW(read_node_frame(message + "x", "node"), Error);
+  EXPECT_THROW(read_node_answer(message, "node"), Error);
+  EXPECT_THROW(read_node_answer("MRYA", "node"), Error);
+  std::string many = message.substr(0, message.size() - 2 * 11 * 8);
+  many.replace(many.size() - 4, 4, "\xff\xff\xff\xff");
+  EXPECT_THROW(read_node_frame(many, "node"), Error);
+  std::mt19937 random(5);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string mutated = message;
+    for (int k = 0; k < 3; ++k) mutated[random() % mutated.size()] = static_cast<char>(random());
+    try {
+      const NodeFrame read = read_node_frame(mutated, "node");
+      for (const Detection& found : read.detections.value_or(std::vector<Detection>{})) EXPECT_TRUE(found.centre.allFinite());
+    } catch (const Error& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("node: ")) << error.what();
+    }
+  }
+}
+
+TEST(NodePlace, IsReadFromAnAddress) {
+  const auto place = [](const std::string& text) { return node_place(parse_address(text)); };
+  EXPECT_EQ(place("node:lab2:7000/left").questions(), "tcp://lab2:7001");
+  EXPECT_EQ(place("node:lab2:7000/left").camera, "left");
+  EXPECT_EQ(place("node://lab2").frames(), fmt::format("tcp://lab2:{}", kNodePort));
+  EXPECT_EQ(place("node:[::1]/left").host, "[::1]");
+  EXPECT_EQ(place("node:[::1]:7000/left").port, 7000);
+  for (const char* wrong : {"node:", "node:lab2:0", "node:lab2:65535", "node:lab2:7x", "node:/left", "node:lab2?fast"})
+    EXPECT_THROW(place(wrong), Error) << wrong;
+}
+
+/// Round trips with delays either way, a slow one now and then, and a drift of 30 ppm: the clock is known to what it says.
+TEST(NodeClock, IsWithinWhatItSays) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE(fmt::format("seed {}", seed));
+  std::mt19937 random(seed);
+  std::exponential_distribution<double> delay(1 / 0.3e-3);
+  NodeClock clock;
+  EXPECT_FALSE(clock.here(at(1)));
+  const double ahead = 1234.5, drift = 30e-6;
+  double worst = 0;
+  for (double now = 0; now < 120; now += 1) {
+    const double there = now + delay(random) + (random() % 10 == 0 ? 0.05 : 0);
+    const double came = there + delay(random);
+    clock.learn(at(now), at(ahead + there * (1 + drift)), at(came));
+    const double off = seconds(clock.here(at(ahead + came * (1 + drift))).value()) - came;
+    EXPECT_LE(std::abs(off), clock.uncertainty(at(came)) + 1e-6);
+    if (now > 10) worst = std::max(worst, std::abs(off));
+  }
+  EXPECT_LT(worst, 1e-3);
+}
+
+}  // namespace
+}  // namespace marey::source::live

@@ -1,0 +1,132 @@
+// A node and the host that listens to it, over this machine's loopback.
+#include "marey/source/live/node.h"
+
+#include <chrono>
+#include <functional>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/core/stop.h"
+#include "marey/source/live/live_camera.h"
+
+namespace marey::source::live {
+namespace {
+
+bool becomes_true(const std::function<bool()>& is) {
+  for (int i = 0; i < 2000 && !is(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  return is();
+}
+
+/// A node whose clock is a quarter of an hour ahead, on whatever ports are free.
+class Node {
+ public:
+  explicit Node(std::uint64_t session, int port = 0) : session_(session) {
+    std::mt19937 random(std::random_device{}());
+    for (int tries = 0; server_ == nullptr; ++tries) {
+      port_ = port != 0 ? port : 20'000 + static_cast<int>(random() % 20'000) * 2;
+      try {
+        server_ = std::make_unique<NodeServer>(
+            "127.0.0.1", port_, [this](const std::string& camera) { return answer(camera); }, [] { return "the rig"; });
+      } catch (const Error&) {
+        if (tries == 100) throw;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // of one that has just gone
+      }
+    }
+  }
+
+  NodePlace place(const std::string& camera) const { return {.host = "127.0.0.1", .port = port_, .camera = camera}; }
+  int port() const { return port_; }
+
+  void send(std::int64_t sequence) {
+    NodeFrame frame{.session = session_, .sequence = sequence, .taken = now(), .size = {64, 48}};
+    frame.detections.emplace().emplace_back().centre = {static_cast<double>(sequence), 1};
+    server_->send("left", message_of(frame));
+  }
+
+ private:
+  Timestamp now() const { return time_->now() + std::chrono::minutes(15); }
+  NodeAnswer answer(const std::string& camera) const {
+    return {.session = session_, .now = now(), .known = camera == "left", .size = {64, 48}, .rate_hz = 50, .cameras = {"left"}};
+  }
+
+  std::uint64_t session_;
+  int port_ = 0;
+  std::shared_ptr<LiveTime> time_ = steady_time();
+  std::unique_ptr<NodeServer> server_;
+};
+
+TEST(Node, FramesArriveWithTimesByTheHostsClock) {
+  Node node(1);
+  const auto time = steady_time();
+  const auto camera = keep_connected("left", connect_node(node.place("left")), time, {.keep = 1000});
+  ASSERT_TRUE(becomes_true([&] { return camera->connected(); }));
+  std::int64_t sequence = 0;
+  std::vector<CameraFrame> came;
+  ASSERT_TRUE(becomes_true([&] {
+    node.send(sequence++);
+    for (CameraFrame& frame : camera->arrived()) came.push_back(std::move(frame));
+    return came.size() > 20;
+  }));
+  EXPECT_EQ(camera->info().rate_hz, 50);
+  EXPECT_EQ(camera->info().size, cv::Size(64, 48));
+  EXPECT_EQ(camera->report().lost, 0);
+  ASSERT_TRUE(came.back().detections);
+  EXPECT_GT(came.back().detections->front().centre.x(), 0);
+  const double old = seconds(time->now() - came.back().frame.time);
+  EXPECT_TRUE(old >= 0 && old < 1) << old << " s: the node's clock is 900 s ahead";
+  EXPECT_EQ(ask_rig_of_node(node.place("")), "the rig");
+}
+
+TEST(Node, WhatIsMissingIsCounted) {
+  Node node(1);
+  const auto camera = keep_connected("left", connect_node(node.place("left")), steady_time(), {.keep = 1000});
+  std::int64_t sequence = 0;
+  ASSERT_TRUE(becomes_true([&] {
+    node.send(sequence++);
+    return camera->report().received > 0;
+  }));
+  node.send(sequence + 5);
+  ASSERT_TRUE(becomes_true([&] { return camera->report().lost == 5; })) << camera->report().lost;
+}
+
+TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
+  auto node = std::make_unique<Node>(1);
+  const int port = node->port();
+  const auto camera = keep_connected("left", connect_node(node->place("left")), steady_time(), {.silent_s = 0.5});
+  std::int64_t sequence = 0;
+  const auto gives = [&] {
+    const std::int64_t before = camera->report().received;
+    return becomes_true([&] {
+      node->send(sequence++);
+      return camera->report().received > before;
+    });
+  };
+  ASSERT_TRUE(gives());
+  node.reset();
+  ASSERT_TRUE(becomes_true([&] { return !camera->connected(); }));
+  node = std::make_unique<Node>(2, port);
+  sequence = 0;
+  ASSERT_TRUE(gives());
+  EXPECT_EQ(camera->report().connections, 2);
+}
+
+TEST(Node, WhatIsNotThereIsSaid) {
+  Node node(1);
+  const auto nobody = keep_connected("nobody", connect_node(node.place("nobody")), steady_time());
+  ASSERT_TRUE(becomes_true([&] { return !nobody->report().trouble.empty(); }));
+  EXPECT_NE(nobody->report().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos) << nobody->report().trouble;
+  EXPECT_THROW(Node(2, node.port()), Error) << "the ports are taken";
+  NodePlace elsewhere = node.place("");
+  elsewhere.port = 1;
+  EXPECT_THROW(ask_rig_of_node(elsewhere), Error);
+  std::stop_source stop;
+  stop.request_stop();
+  const StopScope scope(stop.get_token());
+  EXPECT_THROW(ask_rig_of_node(elsewhere), Stopped);
+}
+
+}  // namespace
+}  // namespace marey::source::live
