@@ -154,11 +154,12 @@ TEST(Bundle, FindsARigByAWandWithinItsOwnDeviations) {
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(result.noise_px, 0.1, 0.003);
   EXPECT_GT(result.inliers, 0.99 * static_cast<double>(truth.observations.size()));
-  double squares = 0;
+  double squares = 0, largest = 0;
   int numbers = 0;
   for (std::size_t c = 0; c < truth.cameras.size(); ++c) {
     const CameraDeviation& sigma = result.deviations[c];
     ASSERT_GT(sigma.focal, 0);
+    largest = std::max(largest, sigma.centre.norm());
     squares += std::pow(
         (geometry::focal_of(bundle.cameras[c].lens).x() / geometry::focal_of(truth.cameras[c].lens).x() - 1) / sigma.focal, 2);
     ++numbers;
@@ -168,7 +169,8 @@ TEST(Bundle, FindsARigByAWandWithinItsOwnDeviations) {
     }
   }
   EXPECT_NEAR(squares / numbers, 1, 0.7) << "errors are of the size that the deviations promise";
-  EXPECT_LT(centre_error(bundle, truth), 4e-3);
+  EXPECT_LT(largest, 5e-3);
+  EXPECT_LT(centre_error(bundle, truth), 3 * largest);
 }
 
 TEST(Bundle, PutsOutliersOut) {
