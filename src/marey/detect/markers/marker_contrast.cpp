@@ -72,8 +72,10 @@ MarkerContrast measured(const cv::Mat& luma, const MarkerBlob& blob, bool dark, 
   std::size_t n = 0;
   walk_round(blob.box, kRim, luma.size(), [&](int x, int y, int across, int down) {
     rim[n] = valleys[n] = sign * luma.ptr<Pixel>(y)[x];
-    for (int step = 1; step < kRim; ++step)
-      valleys[n] = std::min<int>(valleys[n], sign * luma.ptr<Pixel>(y + step * down)[x + step * across]);
+    for (int step = 1; step < kRim; ++step) {  // past a blob of one row or column, and so perhaps out of the picture
+      const int row = std::clamp(y + step * down, 0, luma.rows - 1), column = std::clamp(x + step * across, 0, luma.cols - 1);
+      valleys[n] = std::min<int>(valleys[n], sign * luma.ptr<Pixel>(row)[column]);
+    }
     ++n;
   });
   if (n == 0) return {otherwise, peak - sign * otherwise, 0};

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/detect/markers/marker_contrast.h"
 #include "marey/detect/markers/marker_fit.h"
 
 // The discs are drawn here, not by simulate/, which is a step of its own; bench/marker_accuracy measures with that one.
@@ -336,6 +337,20 @@ TEST(MarkerDetector, DarkMarkersOnAWhitePlateBeforeBlackAreFoundByAFixedThreshol
     ASSERT_EQ(found.size(), 2u);
     EXPECT_LT(distance_to_nearest(found, 70.3, 60.2), 0.1);
     EXPECT_LT(distance_to_nearest(found, 75.6, 30.4), 0.1);
+  }
+}
+
+/// Single lines of pixels along the borders: the address sanitizer sees what is read beyond them.
+TEST(MarkerDetector, ReadsNothingOutsideThePicture) {
+  for (const cv::Rect& line : {cv::Rect(30, 99, 4, 1), cv::Rect(60, 0, 4, 1), cv::Rect(0, 30, 1, 4), cv::Rect(99, 60, 1, 4)}) {
+    cv::Mat picture = scene({100, 100}, {}, 2, 3);
+    picture(line).setTo(200);
+    MarkerBlob blob{};
+    blob.box = line;
+    blob.area = line.area();
+    const MarkerContrast contrast = contrast_of(picture, blob, false, 12);
+    EXPECT_NEAR(contrast.around, 12, 2);
+    EXPECT_NEAR(contrast.height, 188, 8);
   }
 }
 
