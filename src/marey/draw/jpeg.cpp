@@ -12,6 +12,14 @@ namespace {
 
 constexpr int kMostJpegSide = 8192;  // px
 
+/// Luma whose width and height are even, as two by two of it to a chroma pixel are read; the last column and row twice.
+cv::Mat evened(const cv::Mat& luma) {
+  if (luma.cols % 2 == 0 && luma.rows % 2 == 0) return luma;
+  cv::Mat even;
+  cv::copyMakeBorder(luma, even, 0, luma.rows % 2, 0, luma.cols % 2, cv::BORDER_REPLICATE);
+  return even;
+}
+
 /// A plane at `size`, in full range, with its rows one behind the other.
 cv::Mat plane_for_jpeg(const cv::Mat& plane, cv::Size size, bool limited, bool chroma) {
   cv::Mat shown;
@@ -48,7 +56,7 @@ std::string JpegEncoder::encode(const Picture& picture, int most_width, int qual
   const cv::Size half((size.width + 1) / 2, (size.height + 1) / 2);
   const bool limited = picture.range() == Picture::Range::limited;
   const bool colour = picture.is_colour();
-  const cv::Mat luma = plane_for_jpeg(picture.luma(), size, limited, false);
+  const cv::Mat plain = plane_for_jpeg(picture.luma(), size, limited, false), luma = colour ? evened(plain) : plain;
   const cv::Mat cb = colour ? plane_for_jpeg(picture.cb(), half, limited, true) : cv::Mat();
   const cv::Mat cr = colour ? plane_for_jpeg(picture.cr(), half, limited, true) : cv::Mat();
   std::array<const unsigned char*, 3> planes{luma.data, cb.data, cr.data};
