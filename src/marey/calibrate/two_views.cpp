@@ -182,7 +182,7 @@ std::optional<Matrix<3>> Relation::search() const {
         static_cast<double>(inliers(E, sample, kMatchGate).size()) / static_cast<double>(sample.size() * options_.markers);
     const double orientations = options_.reversible ? std::pow(0.5, static_cast<double>(wands) - 1) : 1;
     const double hit = std::pow(good, static_cast<double>(wands)) * orientations;
-    if (hit > 0) needed = std::max(60, static_cast<int>(std::log(1e-4) / std::log1p(-std::min(hit, 0.999999))));
+    if (hit > 0) needed = static_cast<int>(std::clamp(std::log(1e-4) / std::log1p(-std::min(hit, 0.999999)), 60.0, 1e9));
   }
   return best;
 }
