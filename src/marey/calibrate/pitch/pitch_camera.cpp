@@ -65,11 +65,45 @@ double cost_of(const Matrix<3>& H, const std::vector<Vector<2>>& from, const std
   return cost;
 }
 
-Start find_start(const std::vector<PitchPoint>& points, cv::Size size) {
+/// With the sign that puts the pitch before the camera, by the majority of the points.
+Matrix<3> ahead(const Matrix<3>& H, const std::vector<Vector<2>>& ground) {
+  const auto count =
+      std::count_if(ground.begin(), ground.end(), [&](const Vector<2>& p) { return H.row(2).dot(p.homogeneous()) > 0; });
+  return 2 * count < std::ssize(ground) ? Matrix<3>(-H) : H;
+}
+
+/// By all points that it reaches, in place of the four that it was drawn from; as it was where that explains no more.
+Start with_all_in_reach(Start start, const std::vector<Vector<2>>& ground, const std::vector<Vector<2>>& straight) {
+  constexpr int kRounds = 5;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<int> reached;
+    for (std::size_t i = 0; i < ground.size(); ++i) {
+      const Vector<3> at = start.image_from_ground * ground[i].homogeneous();
+      if (std::abs(at.z()) > 1e-12 && (at.hnormalized() - straight[i]).norm() < kReach) reached.push_back(static_cast<int>(i));
+    }
+    const auto H = reached.size() > 4 ? homography(ground, straight, reached) : std::nullopt;
+    const double cost = H ? cost_of(*H, ground, straight) : start.cost;
+    if (!(cost < start.cost)) break;
+    const Matrix<3> better = ahead(*H, ground);
+    if ((better.determinant() > 0) != (start.image_from_ground.determinant() > 0)) break;
+    start.image_from_ground = better;
+    start.cost = cost;
+  }
+  return start;
+}
+
+/// For either hand of the points' frame the best map of each strength, the cheapest first.
+struct Starts {
+  std::vector<Start> right, left;
+
+  static double cost(const std::vector<Start>& starts) { return starts.empty() ? Start{}.cost : starts.front().cost; }
+};
+
+Starts find_starts(const std::vector<PitchPoint>& points, cv::Size size) {
   std::vector<Vector<2>> ground, straight(points.size());
   for (const PitchPoint& point : points) ground.push_back(point.ground);
   const int count = static_cast<int>(points.size());
-  Start best;
+  Starts best;
   std::mt19937 random(1);
   for (int step = 0; step < kStrengths; ++step) {
     const double strength = kStrongest + (kWeakest - kStrongest) * step / (kStrengths - 1);
@@ -81,23 +115,28 @@ Start find_start(const std::vector<PitchPoint>& points, cv::Size size) {
       straight[i] = at / std::max(weight, 0.1);
     }
     if (folds) continue;
+    Start right{.strength = strength}, left = right;
     std::vector<int> four(4);
     for (int sample = 0; sample < kDrawsPerStrength; ++sample) {
       for (int& i : four) i = static_cast<int>(random() % static_cast<unsigned>(count));
       std::vector<int> sorted = four;
       std::sort(sorted.begin(), sorted.end());
       if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) continue;
-      const auto H = homography(ground, straight, sorted);
-      if (!H) continue;
-      const double cost = cost_of(*H, ground, straight);
-      if (cost < best.cost) best = {*H, strength, cost};
+      const auto drawn = homography(ground, straight, sorted);
+      if (!drawn) continue;
+      const double cost = cost_of(*drawn, ground, straight);
+      if (!(cost < std::max(left.cost, right.cost))) continue;
+      const Matrix<3> H = ahead(*drawn, ground);
+      // Seen from above, with the image's y down, a right-handed ground is turned over: a negative determinant before the camera.
+      Start& hand = H.determinant() > 0 ? left : right;
+      if (cost < hand.cost) hand = {H, strength, cost};
+    }
+    for (const auto& [hand, all] : {std::pair(&left, &best.left), std::pair(&right, &best.right)}) {
+      if (std::isfinite(hand->cost)) all->push_back(with_all_in_reach(*hand, ground, straight));
     }
   }
-  if (!std::isfinite(best.cost)) return best;
-  // The sign that puts the pitch before the camera, by the majority of the points.
-  const auto ahead = std::count_if(ground.begin(), ground.end(),
-                                   [&](const Vector<2>& p) { return best.image_from_ground.row(2).dot(p.homogeneous()) > 0; });
-  if (2 * ahead < count) best.image_from_ground = -best.image_from_ground;
+  for (std::vector<Start>* all : {&best.left, &best.right})
+    std::stable_sort(all->begin(), all->end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
   return best;
 }
 
@@ -238,6 +277,34 @@ constexpr double kWorstMedian = 0.02;  // of the picture's width: points that ha
 constexpr double kLeastOutlier = 6;    // px: no user clicks better than this always
 constexpr double kOutlierSigmas = 4;
 
+/// Whether it is above the ground and sees most of these points at all: a camera under it that sees them mirrored, one that looks
+/// away, or a lens that folds over may fit them in the formulas.
+bool looks_down_upon_most(const Camera& camera, const std::vector<PitchPoint>& points, const std::vector<char>& which) {
+  if (!(camera.camera_from_world().inverse().translation.z() > 0)) return false;
+  std::ptrdiff_t seen = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    seen += which[i] && camera.project({points[i].ground.x(), points[i].ground.y(), 0}) ? 1 : 0;
+  return 2 * seen > std::count(which.begin(), which.end(), 1);
+}
+
+/// The best that a start leads to; nothing where none looks down upon the points.
+std::optional<CameraNumbers> camera_from(const Start& start, const std::vector<PitchPoint>& points, cv::Size size) {
+  std::vector<char> agree;
+  for (const PitchPoint& point : points) {
+    const Vector<2> at = (point.pixel - middle_of(size)) / (size.width / 2.0);
+    const Vector<2> straight = at / (1 + start.strength * at.squaredNorm());
+    agree.push_back(((start.image_from_ground * point.ground.homogeneous()).hnormalized() - straight).norm() < kReach);
+  }
+  double best = std::numeric_limits<double>::infinity();
+  std::optional<CameraNumbers> found;
+  for (const double focal : focal_candidates(start.image_from_ground)) {
+    CameraNumbers p = CameraNumbers::of(camera_at(start, focal, size));
+    const double cost = solve(p, size, points, agree, {}, false);
+    if (cost < best && looks_down_upon_most(p.camera(size), points, agree)) best = cost, found = p;
+  }
+  return found;
+}
+
 std::vector<char> inliers_of(const std::vector<double>& errors) {
   std::vector<double> sorted = errors;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
@@ -245,6 +312,25 @@ std::vector<char> inliers_of(const std::vector<double>& errors) {
   std::vector<char> inlier;
   for (const double error : errors) inlier.push_back(error < reach);
   return inlier;
+}
+
+constexpr double kClearlyWorse = 3;  // times what the other hand's map costs: cameras need not be tried
+
+std::vector<PitchPoint> mirrored(std::vector<PitchPoint> points) {
+  for (PitchPoint& point : points) point.ground.y() = -point.ground.y();
+  return points;
+}
+
+/// px in the mean, no more than an outlier's each, of the best camera that looks down upon the points; infinite where none does.
+double misfit(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
+  try {
+    const PitchCamera found = camera_from_points(name, points, size);
+    double sum = 0;
+    for (const double error : found.error_px) sum += std::min(error, kLeastOutlier);
+    return sum / static_cast<double>(points.size());
+  } catch (const Error&) {
+    return std::numeric_limits<double>::infinity();
+  }
 }
 
 }  // namespace
@@ -273,31 +359,27 @@ Camera CameraNumbers::camera(cv::Size size) const {
 
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   check(name, points);
-  const Start start = find_start(points, size);
-  if (!std::isfinite(start.cost))
+  const Starts starts = find_starts(points, size);
+  const double right = Starts::cost(starts.right), left = Starts::cost(starts.left);
+  if (!std::isfinite(std::min(left, right)))
     throw Error("{}: the points do not fit any camera; are four of them in general position, and is each with its place?", name);
-  // Seen from above, with the image's y down, a right-handed ground is turned over: a negative determinant before the camera.
-  return start.image_from_ground.determinant() > 0;
+  if (std::max(left, right) > kClearlyWorse * std::min(left, right)) return left < right;
+  const double by_right = misfit(name, points, size), by_left = misfit(name, mirrored(points), size);
+  return by_left == by_right ? left < right : by_left < by_right;
 }
 
 PitchCamera camera_from_points(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   check(name, points);
-  const Start start = find_start(points, size);
-  if (!std::isfinite(start.cost)) throw Error("{}: the points do not fit any camera; is each with its place on the pitch?", name);
+  const std::vector<Start> starts = find_starts(points, size).right;
+  if (starts.empty()) throw Error("{}: the points do not fit any camera; is each with its place on the pitch?", name);
+  std::optional<CameraNumbers> first;
+  for (const Start& start : starts) {
+    first = camera_from(start, points, size);
+    if (first) break;
+  }
+  if (!first) throw Error("{}: no camera over a level pitch fits the points; is each with its place on it?", name);
+  CameraNumbers numbers = *first;
   std::vector<char> agree;
-  for (const PitchPoint& point : points) {
-    const Vector<2> at = (point.pixel - middle_of(size)) / (size.width / 2.0);
-    const Vector<2> straight = at / (1 + start.strength * at.squaredNorm());
-    agree.push_back(((start.image_from_ground * point.ground.homogeneous()).hnormalized() - straight).norm() < kReach);
-  }
-  double best = std::numeric_limits<double>::infinity();
-  CameraNumbers numbers;
-  for (const double focal : focal_candidates(start.image_from_ground)) {
-    CameraNumbers p = CameraNumbers::of(camera_at(start, focal, size));
-    const double cost = solve(p, size, points, agree, {}, false);
-    if (cost < best) best = cost, numbers = p;
-  }
-  if (!std::isfinite(best)) throw Error("{}: no camera over a level pitch fits the points; is each with its place on it?", name);
   for (int round = 0; round < 4; ++round) {
     agree = inliers_of(errors_of(numbers.camera(size), points));
     solve(numbers, size, points, agree, {}, false);

@@ -174,6 +174,33 @@ TEST(PitchCalibration, ClickedLinesHoldWhatFewPointsLeaveOpen) {
   EXPECT_LT(worst_on_the_ground(with, GroundView(truth), true), 0.5 * worst_on_the_ground(without, GroundView(truth), true));
 }
 
+/// Eight clicks: whatever their noise, what comes out is a camera that looks down upon them, and the side that y grows to.
+TEST(PitchCalibration, FewPointsAreEnough) {
+  const Camera truth = turned_on_the_stand(-0.45);
+  for (unsigned seed = 1; seed <= 15; ++seed) {
+    SCOPED_TRACE(seed);
+    const bool left_handed = seed % 2 == 0;
+    auto few = clicks(truth, 1.5, left_handed, seed);
+    std::shuffle(few.begin(), few.end(), std::mt19937(seed));
+    few.resize(8);
+    EXPECT_EQ(is_left_handed("left", few, kClickedSize), left_handed);
+    const auto found = calibrate_pitch({{"left", kClickedSize, few, {}, {}}}, {kUsualPitch});
+    EXPECT_LT(*std::max_element(found.views[0].error_px.begin(), found.views[0].error_px.end()), 10);
+  }
+}
+
+/// All but one or two on the goal line: a camera under the ground explains them nearly as well, and noise may decide for it.
+TEST(PitchCalibration, PointsAlongOneLineMostlyTellTheHand) {
+  const Camera truth = turned_on_the_stand(-0.45);
+  int wrong = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    auto few = clicks(truth, 1.5, seed % 2 == 0, seed);
+    few.resize(8);
+    wrong += is_left_handed("left", few, kClickedSize) != (seed % 2 == 0);
+  }
+  EXPECT_LE(wrong, 1);
+}
+
 TEST(PitchCalibration, WrongNamesAreFoundAndNamed) {
   const Camera truth = turned_on_the_stand(-0.45);
   auto points = clicks(truth, 1, true, 5);
