@@ -20,12 +20,12 @@ bool is_silent(FeedState state) {
   return state == FeedState::stalled || state == FeedState::lost || state == FeedState::connecting;
 }
 
-int columns() {
+}  // namespace
+
+int terminal_columns() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 120;
 }
-
-}  // namespace
 
 /// Letters come one by one and are not shown; Ctrl-C stays what it is.
 struct Keys::Terminal {
@@ -121,7 +121,7 @@ std::string LiveScreen::line(const pipeline::LiveStatus& status) const {
   if (status.latency_median_s)
     text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
   if (status.recording) text += " | REC";
-  return text.substr(0, static_cast<std::size_t>(std::max(20, columns() - 1)));
+  return text.substr(0, static_cast<std::size_t>(std::max(20, terminal_columns() - 1)));
 }
 
 }  // namespace marey::cli

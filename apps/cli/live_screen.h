@@ -11,6 +11,9 @@
 
 namespace marey::cli {
 
+/// How wide the terminal is that standard error goes to; 120 where it is none.
+int terminal_columns();
+
 /// The keys of a terminal while something live runs, read on a thread of its own: one at a time, without Enter. Where standard
 /// input is no terminal nothing is read. The terminal is as before when this is gone.
 class Keys {

@@ -1,15 +1,87 @@
 #include "marey/pipeline/calibrate_wand.h"
 
+#include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "marey/calibrate/wand/wand_coverage.h"
 #include "marey/pipeline/camera_blobs.h"
+#include "marey/pipeline/live_blobs.h"
 
 namespace marey::pipeline {
+
+namespace {
+
+constexpr double kCountEvery = 2;  // s of waving that are looked through at a time
+
+/// Counts what cameras see of the wand while it is waved.
+class WavedWand {
+ public:
+  WavedWand(const CalibrateWandOptions& options, std::size_t cameras)
+      : options_(options), coverage_(options.wand, cameras), counted_(cameras) {}
+
+  /// Whether that will do.
+  bool look(const LiveLook& now) {
+    if (now.seconds - counted_s_ >= kCountEvery) {
+      counted_s_ = now.seconds;
+      count(now.blobs, now.feeds);
+    }
+    seen_ = {.seconds = now.seconds, .cameras = {}, .enough = coverage_.is_enough()};
+    for (std::size_t c = 0; c < now.feeds.size(); ++c)
+      seen_.cameras.push_back({now.feeds[c].camera().name, now.feeds[c].state({}, now.policy), coverage_.coverage(c),
+                               coverage_.views(c), coverage_.is_covered(c)});
+    const bool go_on = !options_.waving || options_.waving(seen_);
+    return seen_.enough || !go_on;
+  }
+
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> sentences;
+    for (const WandSeen::Camera& camera : seen_.cameras) {
+      if (!camera.covered)
+        sentences.push_back(fmt::format("camera \"{}\" saw the wand in {:.0f} % of its picture; {:.0f} % are wanted", camera.name,
+                                        100 * camera.coverage, 100 * calibrate::wand::WandCoverage::kWellCovered));
+    }
+    return sentences;
+  }
+
+ private:
+  void count(const CameraBlobs& blobs, std::span<const Feed> feeds) {
+    std::vector<calibrate::wand::WandCoverage::Seen> fresh;
+    double rate_hz = kUsualRate;
+    for (std::size_t c = 0; c < feeds.size(); ++c) {
+      const cv::Size size = feeds[c].info().size;
+      fresh.push_back({std::span(blobs.seen[c]).subspan(counted_[c]), feeds[c].camera().lens, size});
+      counted_[c] = blobs.seen[c].size();
+      rate_hz = std::max(rate_hz, feeds[c].info().rate_hz.value_or(0));
+    }
+    coverage_.add(fresh, 0.5 / rate_hz);
+  }
+
+  const CalibrateWandOptions& options_;
+  calibrate::wand::WandCoverage coverage_;
+  std::vector<std::size_t> counted_;
+  double counted_s_ = 0;
+  WandSeen seen_;
+};
+
+CameraBlobs wave_wand(Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks) {
+  WavedWand wand(options, rig.cameras.size());
+  CameraBlobs blobs = see_live_blobs(
+      rig, {.markers = options.markers, .for_s = options.wave_s, .will_do = [&](const LiveLook& now) { return wand.look(now); }},
+      hooks);
+  blobs.warnings = wand.warnings();
+  return blobs;
+}
+
+}  // namespace
 
 WandCalibration calibrate_wand(const Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   calibrate::wand::WandInput input{.rig = rig, .wand = options.wand, .seen = {}};
-  CameraBlobs blobs = blobs_of(input.rig, options.observations, options.markers, hooks);
+  const bool live = options.observations.empty() && has_live_cameras(rig);
+  CameraBlobs blobs =
+      live ? wave_wand(input.rig, options, hooks) : blobs_of(input.rig, options.observations, options.markers, hooks);
   input.seen = std::move(blobs.seen);
   calibrate::wand::WandOptions how = options.how;
   how.find_offsets = blobs.timed && !options.synced;

@@ -1,13 +1,29 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "marey/calibrate/wand/wand.h"
+#include "marey/core/frame_set.h"
 #include "marey/core/hooks.h"
 #include "marey/detect/markers/marker_detector.h"
 
 namespace marey::pipeline {
+
+/// How far a wand that is waved before live cameras has been seen.
+struct WandSeen {
+  struct Camera {
+    std::string name;
+    FeedState state = FeedState::connecting;
+    double coverage = 0;     ///< share of its picture in which the wand was
+    std::int64_t views = 0;  ///< frames in which it was
+    bool covered = false;    ///< that is enough
+  };
+  double seconds = 0;
+  std::vector<Camera> cameras;
+  bool enough = false;  ///< every camera is covered, and all are chained by views that two of them share
+};
 
 struct CalibrateWandOptions {
   std::string observations;  ///< what another program saw of the wand; empty: it is looked for in the cameras' sources
@@ -15,6 +31,9 @@ struct CalibrateWandOptions {
   calibrate::wand::WandShape wand;
   calibrate::wand::WandOptions how;  ///< offsets are looked for unless `synced`, or nobody says the cameras' rate
   bool synced = false;               ///< the cameras' clocks are right
+  double wave_s = 600;               ///< live cameras: the wand is waved until it was seen enough, at most so long
+  /// Some times a second while it is waved; false: what was seen will do. May be empty.
+  std::function<bool(const WandSeen& seen)> waving = {};
 };
 
 struct WandCalibration {
@@ -22,8 +41,8 @@ struct WandCalibration {
   std::vector<std::string> warnings;  ///< of the cameras' sources, one sentence each
 };
 
-/// Where the rig's cameras stand, by a wand or a light waved before them. Throws Error where a source cannot be read, and as
-/// calibrate::wand::calibrate_wand does; Stopped.
+/// Where the rig's cameras stand, by a wand or a light waved before them: in films, or before live cameras now. Throws Error where
+/// a source cannot be read, and as calibrate::wand::calibrate_wand does; Stopped.
 WandCalibration calibrate_wand(const Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

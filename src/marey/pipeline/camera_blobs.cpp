@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/format/observations.h"
 #include "marey/pipeline/feed.h"
+#include "marey/pipeline/live_blobs.h"
 
 namespace marey::pipeline {
 namespace {
@@ -53,6 +54,7 @@ CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, 
     if (camera.source.empty())
       throw Error("camera \"{}\" has no source: give {}=VIDEO, or --observations", camera.name, camera.name);
   }
+  if (has_live_cameras(rig)) return see_live_blobs(rig, {.markers = options}, hooks);
   auto feeds = open_feeds(rig, {.steady_times = true, .ahead = 4});
   for (std::size_t c = 0; c < feeds.size(); ++c) {
     feeds[c].find(std::make_unique<detect::markers::MarkerDetector>(options));

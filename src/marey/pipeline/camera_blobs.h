@@ -21,8 +21,9 @@ struct CameraBlobs {
 /// other.
 CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 
-/// Finds markers in the cameras' sources, cameras in parallel. Sets the sizes that the rig lacks. Throws Error where a source
-/// cannot be read, or its picture does not have the camera's size; Stopped.
+/// Finds markers in the cameras' sources, cameras in parallel; live cameras are looked at for three seconds (live_blobs.h). Sets
+/// the sizes that the rig lacks. Throws Error where a source cannot be read, or its picture does not have the camera's size;
+/// Stopped.
 CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks);
 
 /// The first of a file of observations, the second where there is none.

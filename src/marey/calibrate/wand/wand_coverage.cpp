@@ -1,0 +1,71 @@
+#include "marey/calibrate/wand/wand_coverage.h"
+
+#include <algorithm>
+
+#include "marey/assign/disjoint_sets.h"
+
+namespace marey::calibrate::wand {
+namespace {
+
+constexpr int kPartsAcross = 10, kPartsDown = 8;
+
+std::optional<int> part_of(const Vector<2>& pixel, cv::Size size) {
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height)) return std::nullopt;
+  const auto column = static_cast<int>(pixel.x() / size.width * kPartsAcross);
+  const auto row = static_cast<int>(pixel.y() / size.height * kPartsDown);
+  return row * kPartsAcross + column;
+}
+
+/// How many of `a` have one of `b` within `together_s`; both by growing time.
+std::int64_t shared_views(const std::vector<MarkFrame>& a, const std::vector<MarkFrame>& b, double together_s) {
+  std::int64_t shared = 0;
+  auto at = b.begin();
+  for (const MarkFrame& frame : a) {
+    while (at != b.end() && at->time_s < frame.time_s - together_s) ++at;
+    shared += at != b.end() && at->time_s <= frame.time_s + together_s ? 1 : 0;
+  }
+  return shared;
+}
+
+}  // namespace
+
+void WandCoverage::add(std::span<const Seen> seen, double together_s) {
+  std::vector<std::vector<MarkFrame>> marks(seen.size());
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    if (seen[c].size.empty()) continue;
+    marks[c] = find_marks(seen[c].frames, wand_, seen[c].lens, seen[c].size);
+    Camera& camera = cameras_[c];
+    for (const MarkFrame& frame : marks[c]) {
+      ++camera.views;
+      for (const auto& mark : frame.marks) {
+        const auto part = mark ? part_of(*mark, seen[c].size) : std::nullopt;
+        if (part && camera.parts.insert(*part).second) camera.views_at_growth = camera.views;
+      }
+    }
+  }
+  for (std::size_t a = 0; a < marks.size(); ++a) {
+    for (std::size_t b = a + 1; b < marks.size(); ++b) shared_[{a, b}] += shared_views(marks[a], marks[b], together_s);
+  }
+}
+
+double WandCoverage::coverage(std::size_t camera) const {
+  return static_cast<double>(cameras_[camera].parts.size()) / (kPartsAcross * kPartsDown);
+}
+
+bool WandCoverage::is_covered(std::size_t camera) const {
+  const bool no_more = cameras_[camera].views - cameras_[camera].views_at_growth >= kNothingNew;
+  return coverage(camera) >= (no_more ? kCovered : kWellCovered);
+}
+
+bool WandCoverage::is_enough() const {
+  assign::DisjointSets chained(cameras_.size());
+  for (const auto& [pair, views] : shared_) {
+    if (views >= kEnoughShared) chained.join(static_cast<int>(pair.first), static_cast<int>(pair.second));
+  }
+  for (std::size_t c = 0; c < cameras_.size(); ++c) {
+    if (!is_covered(c) || chained.find(static_cast<int>(c)) != chained.find(0)) return false;
+  }
+  return true;
+}
+
+}  // namespace marey::calibrate::wand

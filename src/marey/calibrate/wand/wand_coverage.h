@@ -1,0 +1,53 @@
+// How much of a waved wand cameras have seen so far, while it is still waved: whether it is enough, and for whom it is not.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "marey/calibrate/wand/wand_marks.h"
+
+namespace marey::calibrate::wand {
+
+class WandCoverage {
+ public:
+  WandCoverage(WandShape wand, std::size_t cameras) : wand_(std::move(wand)), cameras_(cameras) {}
+
+  /// What a camera gave since the last call, a few seconds of it. Times are by one clock here, as those of live cameras are.
+  struct Seen {
+    std::span<const BlobFrame> frames;
+    std::optional<geometry::Lens> lens;  ///< where it is known
+    cv::Size size;                       ///< px; empty where it is not known yet: nothing is counted then
+  };
+  /// By camera. Two cameras share a view where both saw the wand within `together_s`.
+  void add(std::span<const Seen> seen, double together_s);
+
+  /// Share of the camera's picture, in 10 × 8 parts, in which the wand was.
+  double coverage(std::size_t camera) const;
+  /// Frames of the camera in which the wand was.
+  std::int64_t views(std::size_t camera) const { return cameras_[camera].views; }
+  /// Whether it was seen in enough of the camera's picture; in a volume that is small in it, whether more waving adds nothing.
+  bool is_covered(std::size_t camera) const;
+  /// Whether every camera is covered, and all are chained by enough views that two of them share.
+  bool is_enough() const;
+
+  static constexpr double kWellCovered = 0.3;  ///< a rig whose least covered camera has so much may be excellent,
+  static constexpr double kCovered = 0.2;      ///< and good with so much
+  static constexpr std::int64_t kNothingNew = 400, kEnoughShared = 200;  ///< views
+
+ private:
+  struct Camera {
+    std::set<int> parts;
+    std::int64_t views = 0, views_at_growth = 0;  ///< all; and when it was last seen in a new part
+  };
+
+  WandShape wand_;
+  std::vector<Camera> cameras_;
+  std::map<std::pair<std::size_t, std::size_t>, std::int64_t> shared_;
+};
+
+}  // namespace marey::calibrate::wand

@@ -1,0 +1,80 @@
+#include "marey/calibrate/wand/wand_coverage.h"
+
+#include <gtest/gtest.h>
+
+#include "marey/calibrate/wand/wand_scene_test.h"
+
+namespace marey::calibrate::wand {
+namespace {
+
+constexpr double kRate = 50;  // Hz
+
+/// What camera `c` gives between two moments; a camera that sees nothing gives empty frames.
+std::vector<BlobFrame> frames_of(WandScene& scene, std::size_t c, double from_s, double to_s, bool sees = true) {
+  std::vector<BlobFrame> frames;
+  for (double t = from_s; t < to_s; t += 1 / kRate) {
+    BlobFrame& frame = frames.emplace_back(BlobFrame{t, {}});
+    const auto marks = scene.seen(c, t, 0.1);
+    if (!sees || !marks) continue;
+    for (std::size_t m = 0; m < scene.wand.markers(); ++m) frame.blobs.push_back(*(*marks)[m]);
+  }
+  return frames;
+}
+
+/// Two seconds at a time, as they come.
+template <typename Sees>
+WandCoverage waved(WandScene& scene, double duration_s, Sees sees) {
+  WandCoverage coverage(scene.wand, scene.rig.cameras.size());
+  for (double t = 0; t < duration_s; t += 2) {
+    std::vector<std::vector<BlobFrame>> frames;
+    std::vector<WandCoverage::Seen> seen;
+    for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
+      frames.push_back(frames_of(scene, c, t, t + 2, sees(c, t)));
+      seen.push_back({frames.back(), scene.rig.cameras[c].lens, *scene.rig.cameras[c].size});
+    }
+    coverage.add(seen, 0.5 / kRate);
+  }
+  return coverage;
+}
+
+TEST(WandCoverage, GrowsUntilItIsEnough) {
+  WandScene scene(1);
+  const auto always = [](std::size_t, double) { return true; };
+  const WandCoverage early = waved(scene, 2, always), late = waved(scene, 40, always);
+  EXPECT_FALSE(early.is_enough());
+  EXPECT_TRUE(late.is_enough());
+  for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
+    EXPECT_GT(early.coverage(c), 0);
+    EXPECT_GT(late.coverage(c), early.coverage(c));
+    EXPECT_TRUE(late.is_covered(c)) << c << " saw " << late.coverage(c);
+    EXPECT_GT(late.views(c), 500);
+  }
+}
+
+TEST(WandCoverage, IsNotEnoughWhereOneCameraSeesNothing) {
+  WandScene scene(2);
+  const WandCoverage coverage = waved(scene, 40, [](std::size_t c, double) { return c != 2; });
+  EXPECT_FALSE(coverage.is_enough());
+  EXPECT_EQ(coverage.coverage(2), 0);
+  EXPECT_TRUE(coverage.is_covered(1));
+}
+
+/// Two pairs that see the wand in turn: each camera is covered, but nothing says how the pairs stand to each other.
+TEST(WandCoverage, IsNotEnoughWhereCamerasShareNoViews) {
+  WandScene scene(3);
+  const WandCoverage coverage =
+      waved(scene, 80, [](std::size_t c, double t) { return (c < 2) == (static_cast<int>(t / 10) % 2 == 0); });
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_TRUE(coverage.is_covered(c)) << c << " saw " << coverage.coverage(c);
+  EXPECT_FALSE(coverage.is_enough());
+}
+
+TEST(WandCoverage, CountsNothingBeforeThePictureIsKnown) {
+  WandScene scene(4);
+  const std::vector<BlobFrame> frames = frames_of(scene, 0, 0, 2);
+  WandCoverage coverage(scene.wand, 1);
+  coverage.add(std::array{WandCoverage::Seen{frames, {}, {}}}, 0.01);
+  EXPECT_EQ(coverage.views(0), 0);
+}
+
+}  // namespace
+}  // namespace marey::calibrate::wand
