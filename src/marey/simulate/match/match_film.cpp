@@ -80,7 +80,8 @@ std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& wo
     const Vector<2> at = in_world(world_from_pitch, place);
     const auto pixel = view.pixel(at);
     const Vector<2> slip(noise * random.gaussian(), noise * random.gaussian());
-    if (pixel && view.camera()->in_picture(*pixel)) clicks.push_back({place, *pixel + slip});
+    if (!pixel || !view.camera()->in_picture(*pixel)) continue;
+    if (view.camera()->in_picture(*pixel + slip)) clicks.push_back({place, *pixel + slip});  // nobody clicks beside the picture
   }
   const int count = std::min(wrong, static_cast<int>(clicks.size()) / 2);
   for (int i = 0; i < count; ++i) {  // in turn put elsewhere and named as its neighbour
