@@ -17,6 +17,7 @@ import time
 import unittest
 
 MAREY = ""
+SANITIZED = bool(os.environ.get("MAREY_SANITIZE"))  # what was freed is kept back then, to see who reads it
 LIVE_SCENE = ""
 FOLDER = pathlib.Path()
 
@@ -258,7 +259,8 @@ class View(unittest.TestCase):
             for wire in crowd:
                 wire.close()
             self.assertEqual(shown.ask("/scene")[0], 200, f"seed {seed}")
-            self.assertLess(shown.memory_mb() - before, 30, f"seed {seed}")
+            if not SANITIZED:
+                self.assertLess(shown.memory_mb() - before, 30, f"seed {seed}")
 
     def test_it_ends_when_it_is_told_to(self):
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -368,7 +370,8 @@ class Live(unittest.TestCase):
                         late.append(time.monotonic() - last[i])
                         last[i] = time.monotonic()
             self.assertGreater(min(counts), 200)
-            self.assertLess(shown.memory_mb() - before, 16)
+            if not SANITIZED:
+                self.assertLess(shown.memory_mb() - before, 16)
             shown.process.stdin.close()
             figures = shown.process.stdout.read()
             print(figures.strip(), "others' longest silence", f"{1000 * max(late):.0f} ms")
