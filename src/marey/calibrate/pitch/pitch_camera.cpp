@@ -4,141 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <random>
 
-#include <Eigen/LU>
 #include <ceres/ceres.h>
 
 #include "marey/calibrate/pitch/pitch_residual.h"
+#include "marey/calibrate/pitch/pitch_start.h"
 #include "marey/calibrate/solve.h"
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
 
 namespace marey::calibrate::pitch {
 namespace {
-
-// --- The start: straighten, then a homography by consensus -------------------------------------------------------------
-
-constexpr int kDrawsPerStrength = 400;  // of four points, per strength of distortion
-constexpr double kReach = 0.02;         // half picture widths: beyond, a point says nothing (30 px in a picture of 3,072)
-constexpr double kStrongest = -1.2, kWeakest = 0.3;  // division model, per half picture width squared
-constexpr int kStrengths = 31;
-
-struct Start {
-  Matrix<3> image_from_ground = Matrix<3>::Identity();  // image: straightened, in half picture widths about the middle
-  double strength = 0;
-  double cost = std::numeric_limits<double>::infinity();
-};
-
-/// Least squares with both sides scaled about their middle (Hartley); nothing where the points do not decide it.
-std::optional<Matrix<3>> homography(const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to,
-                                    const std::vector<int>& which) {
-  Vector<2> middle = Vector<2>::Zero();
-  for (const int i : which) middle += from[i];
-  middle /= static_cast<double>(which.size());
-  double spread = 0;
-  for (const int i : which) spread += (from[i] - middle).squaredNorm();
-  spread = std::sqrt(spread / static_cast<double>(which.size()));
-  if (!(spread > 0)) return std::nullopt;
-  Eigen::MatrixXd A(2 * which.size(), 9);
-  for (std::size_t row = 0; row < which.size(); ++row) {
-    const Vector<3> p = ((from[which[row]] - middle) / spread).homogeneous();
-    const Vector<2>& q = to[which[row]];
-    A.row(2 * row) << p.transpose(), Eigen::RowVector3d::Zero(), -q.x() * p.transpose();
-    A.row(2 * row + 1) << Eigen::RowVector3d::Zero(), p.transpose(), -q.y() * p.transpose();
-  }
-  const geometry::Eigenpairs<9> solver = geometry::eigenpairs<9>(A.transpose() * A);
-  if (!(solver.values(1) > 1e-10 * solver.values(8))) return std::nullopt;
-  Matrix<3> normalise = Matrix<3>::Identity();
-  normalise.topLeftCorner<2, 2>() /= spread;
-  normalise.topRightCorner<2, 1>() = -middle / spread;
-  const Eigen::Matrix<double, 9, 1> h = solver.vectors.col(0);
-  return Matrix<3>(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(h.data()) * normalise);
-}
-
-double cost_of(const Matrix<3>& H, const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to) {
-  double cost = 0;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const Vector<3> at = H * from[i].homogeneous();
-    cost += std::abs(at.z()) < 1e-12 ? kReach : std::min((at.hnormalized() - to[i]).norm(), kReach);
-  }
-  return cost;
-}
-
-/// With the sign that puts the pitch before the camera, by the majority of the points.
-Matrix<3> ahead(const Matrix<3>& H, const std::vector<Vector<2>>& ground) {
-  const auto count =
-      std::count_if(ground.begin(), ground.end(), [&](const Vector<2>& p) { return H.row(2).dot(p.homogeneous()) > 0; });
-  return 2 * count < std::ssize(ground) ? Matrix<3>(-H) : H;
-}
-
-/// By all points that it reaches, in place of the four that it was drawn from; as it was where that explains no more.
-Start with_all_in_reach(Start start, const std::vector<Vector<2>>& ground, const std::vector<Vector<2>>& straight) {
-  constexpr int kRounds = 5;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<int> reached;
-    for (std::size_t i = 0; i < ground.size(); ++i) {
-      const Vector<3> at = start.image_from_ground * ground[i].homogeneous();
-      if (std::abs(at.z()) > 1e-12 && (at.hnormalized() - straight[i]).norm() < kReach) reached.push_back(static_cast<int>(i));
-    }
-    const auto H = reached.size() > 4 ? homography(ground, straight, reached) : std::nullopt;
-    const double cost = H ? cost_of(*H, ground, straight) : start.cost;
-    if (!(cost < start.cost)) break;
-    const Matrix<3> better = ahead(*H, ground);
-    if ((better.determinant() > 0) != (start.image_from_ground.determinant() > 0)) break;
-    start.image_from_ground = better;
-    start.cost = cost;
-  }
-  return start;
-}
-
-/// For either hand of the points' frame the best map of each strength, the cheapest first.
-struct Starts {
-  std::vector<Start> right, left;
-
-  static double cost(const std::vector<Start>& starts) { return starts.empty() ? Start{}.cost : starts.front().cost; }
-};
-
-Starts find_starts(const std::vector<PitchPoint>& points, cv::Size size) {
-  std::vector<Vector<2>> ground, straight(points.size());
-  for (const PitchPoint& point : points) ground.push_back(point.ground);
-  const int count = static_cast<int>(points.size());
-  Starts best;
-  std::mt19937 random(1);
-  for (int step = 0; step < kStrengths; ++step) {
-    const double strength = kStrongest + (kWeakest - kStrongest) * step / (kStrengths - 1);
-    bool folds = false;
-    for (int i = 0; i < count; ++i) {
-      const Vector<2> at = (points[i].pixel - middle_of(size)) / (size.width / 2.0);
-      const double weight = 1 + strength * at.squaredNorm();
-      folds |= weight < 0.1;
-      straight[i] = at / std::max(weight, 0.1);
-    }
-    if (folds) continue;
-    Start right{.strength = strength}, left = right;
-    std::vector<int> four(4);
-    for (int sample = 0; sample < kDrawsPerStrength; ++sample) {
-      for (int& i : four) i = static_cast<int>(random() % static_cast<unsigned>(count));
-      std::vector<int> sorted = four;
-      std::sort(sorted.begin(), sorted.end());
-      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) continue;
-      const auto drawn = homography(ground, straight, sorted);
-      if (!drawn) continue;
-      const double cost = cost_of(*drawn, ground, straight);
-      if (!(cost < std::max(left.cost, right.cost))) continue;
-      const Matrix<3> H = ahead(*drawn, ground);
-      // Seen from above, with the image's y down, a right-handed ground is turned over: a negative determinant before the camera.
-      Start& hand = H.determinant() > 0 ? left : right;
-      if (cost < hand.cost) hand = {H, strength, cost};
-    }
-    for (const auto& [hand, all] : {std::pair(&left, &best.left), std::pair(&right, &best.right)}) {
-      if (std::isfinite(hand->cost)) all->push_back(with_all_in_reach(*hand, ground, straight));
-    }
-  }
-  for (std::vector<Start>* all : {&best.left, &best.right})
-    std::stable_sort(all->begin(), all->end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
-  return best;
-}
 
 void check(const std::string& name, const std::vector<PitchPoint>& points) {
   if (points.size() < 4)
@@ -252,7 +128,7 @@ std::vector<double> focal_candidates(const Matrix<3>& H) {
   return result;
 }
 
-Camera camera_at(const Start& start, double focal, cv::Size size) {
+Camera camera_at(const PitchStart& start, double focal, cv::Size size) {
   Matrix<3> M = Vector<3>(1 / focal, 1 / focal, 1).asDiagonal() * start.image_from_ground;
   M /= std::sqrt(M.col(0).norm() * M.col(1).norm());
   Matrix<3> columns;
@@ -288,13 +164,8 @@ bool looks_down_upon_most(const Camera& camera, const std::vector<PitchPoint>& p
 }
 
 /// The best that a start leads to; nothing where none looks down upon the points.
-std::optional<CameraNumbers> camera_from(const Start& start, const std::vector<PitchPoint>& points, cv::Size size) {
-  std::vector<char> agree;
-  for (const PitchPoint& point : points) {
-    const Vector<2> at = (point.pixel - middle_of(size)) / (size.width / 2.0);
-    const Vector<2> straight = at / (1 + start.strength * at.squaredNorm());
-    agree.push_back(((start.image_from_ground * point.ground.homogeneous()).hnormalized() - straight).norm() < kReach);
-  }
+std::optional<CameraNumbers> camera_from(const PitchStart& start, const std::vector<PitchPoint>& points, cv::Size size) {
+  const std::vector<char> agree = start.agreeing(points, size);
   double best = std::numeric_limits<double>::infinity();
   std::optional<CameraNumbers> found;
   for (const double focal : focal_candidates(start.image_from_ground)) {
@@ -359,8 +230,8 @@ Camera CameraNumbers::camera(cv::Size size) const {
 
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   check(name, points);
-  const Starts starts = find_starts(points, size);
-  const double right = Starts::cost(starts.right), left = Starts::cost(starts.left);
+  const PitchStarts starts = find_pitch_starts(points, size);
+  const double right = PitchStarts::cost(starts.right), left = PitchStarts::cost(starts.left);
   if (!std::isfinite(std::min(left, right)))
     throw Error("{}: the points do not fit any camera; are four of them in general position, and is each with its place?", name);
   if (std::max(left, right) > kClearlyWorse * std::min(left, right)) return left < right;
@@ -370,10 +241,10 @@ bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& poin
 
 PitchCamera camera_from_points(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   check(name, points);
-  const std::vector<Start> starts = find_starts(points, size).right;
+  const std::vector<PitchStart> starts = find_pitch_starts(points, size).right;
   if (starts.empty()) throw Error("{}: the points do not fit any camera; is each with its place on the pitch?", name);
   std::optional<CameraNumbers> first;
-  for (const Start& start : starts) {
+  for (const PitchStart& start : starts) {
     first = camera_from(start, points, size);
     if (first) break;
   }

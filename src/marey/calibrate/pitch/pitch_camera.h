@@ -1,11 +1,10 @@
 // A camera over a pitch, from points whose place on the pitch is known: clicked by hand, some on the wrong spot, some misnamed.
 //
-// Start: for each of a row of one-parameter distortions (Fitzgibbon's division model) the points are straightened and a homography
-// is sought by consensus of four; the best of all gives the lens's strength, the inliers and, its columns being those of a rotation
-// seen through a focal length, focal length and pose. Then lens and pose are refined together on the pixels with a robust loss,
-// and points judged anew. Assumes a level pitch (z = 0), square pixels and a principal point near the picture's middle.
-// Cost: some thousand homographies of a few dozen points. Reference: Fitzgibbon, "Simultaneous linear estimation of multiple view
-// geometry and lens distortion", CVPR 2001; Zhang, "A flexible new technique for camera calibration", PAMI 2000 (pose from H).
+// A start (pitch_start.h) gives the lens's strength, the inliers and, its columns being those of a rotation seen through a focal
+// length, focal length and pose; of all that come of the starts, cameras that look down upon the points count. Then lens and pose
+// are refined together on the pixels with a robust loss, and points judged anew. Assumes a level pitch (z = 0), square pixels and a
+// principal point near the picture's middle. Reference: Zhang, "A flexible new technique for camera calibration", PAMI 2000 (pose
+// from H).
 #pragma once
 
 #include <string>
@@ -51,7 +50,8 @@ struct PitchCamera {
 PitchCamera camera_from_points(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size);
 
 /// Whether the points, as seen from above, are in a left-handed frame (y grows to the right of x): a camera sees the ground from
-/// above, so that the sign of the map decides. Throws Error as `camera_from_points`.
+/// above, so that the sign of the map decides; where both signs fit nearly as well, the camera that fits better. Throws Error as
+/// `camera_from_points`.
 bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size);
 
 /// Refines lens and pose on points (those not `inlier` are left out) and sightings of lines, both with a robust loss.
