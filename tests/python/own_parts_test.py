@@ -3,6 +3,7 @@
 Run by marey_python_shell: own_parts_test.py MAREY ROOT [unittest options].
 """
 
+import os
 import threading
 import time
 import traceback
@@ -17,7 +18,8 @@ import marey
 class OwnParts(SimulatedFilm):
     def test_own_detector(self):
         seen = marey.track(self.film, detector=self.bright)
-        self.assertTrue(2 <= len(seen.tracks) <= 4, "three people, of whom the compiler's order of drawing decides how they walk")
+        # The sanitizers' build is another compiler's, which draws random numbers in another order: people walk elsewhere.
+        self.assertIn(len(seen.tracks), (2, 3) if "ASAN_OPTIONS" in os.environ else (3,))
         supervision = __import__("supervision")
         as_detections = lambda p: supervision.Detections(xyxy=self.bright(p)[:, :4].reshape(-1, 4), confidence=self.bright(p)[:, 4].reshape(-1))
         np.testing.assert_array_equal(marey.track(self.film, detector=as_detections).to_numpy(), seen.to_numpy())
