@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
-#include "marey/draw/svg_text.h"
+#include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
@@ -36,9 +35,7 @@ struct Axis {
 Axis linear_axis(double high) {
   Axis axis;
   high = high > 0 ? high : 1;
-  const double magnitude = std::pow(10, std::floor(std::log10(high / 4)));
-  const double ratio = high / 4 / magnitude;
-  const double step = magnitude * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
+  const double step = round_step(high / 4);
   axis.high = step * std::ceil(high / step - 1e-9);
   for (int i = 0; i * step <= axis.high * (1 + 1e-9); ++i) axis.ticks.push_back(i * step);
   return axis;
@@ -53,50 +50,30 @@ Axis logarithmic_axis(double low, double high) {
   return axis;
 }
 
-class Svg {
- public:
-  explicit Svg(double width) : width_(width) {
-    add(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {} {}" font-family="sans-serif" font-size="12">)", width, kHeight);
-    add(R"(<rect width="100%" height="100%" fill="white"/>)");
+void add_frame(Svg& svg, double width, const std::string& title, const std::string& value_label, const Axis& axis) {
+  svg.text({kLeft, 22}, title, {{"font-size", 15}, {"font-weight", "bold"}});
+  svg.add("text", {{"transform", fmt::format("translate(52 {}) rotate(-90)", kTop + kPlotHeight / 2)}, {"text-anchor", "middle"}},
+          value_label);
+  for (const double tick : axis.ticks) {
+    const double y = axis.y(tick);
+    svg.line({kLeft, y}, {width - 20, y}, {{"stroke", "#ddd"}});
+    svg.text({kLeft - 6, y + 4}, fmt::format("{:g}", tick), {{"text-anchor", "end"}});
   }
+}
 
-  template <typename... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    text_ += '\n';
-  }
-
-  void frame(const std::string& title, const std::string& value_label, const Axis& axis) {
-    add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kLeft, escaped(title));
-    add(R"svg(<text transform="translate(52 {}) rotate(-90)" text-anchor="middle">{}</text>)svg", kTop + kPlotHeight / 2,
-        escaped(value_label));
-    for (const double tick : axis.ticks) {
-      const double y = axis.y(tick);
-      add(R"(<line x1="{}" x2="{}" y1="{:.1f}" y2="{:.1f}" stroke="#ddd"/>)", kLeft, width_ - 20, y, y);
-      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)", kLeft - 6, y + 4, tick);
+void add_legend(Svg& svg, double width, const std::vector<std::string>& names) {
+  double x = kLeft, y = kBaseline + 112;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double advance = 30 + 7.2 * static_cast<double>(names[i].size());
+    if (x + advance > width - 10 && x > kLeft) {
+      x = kLeft;
+      y += 18;
     }
+    svg.rect({x, y, 11, 11}, {{"fill", colour(i)}});
+    svg.text({x + 15, y + 10}, names[i]);
+    x += advance;
   }
-
-  void legend(const std::vector<std::string>& names) {
-    double x = kLeft, y = kBaseline + 112;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const double width = 30 + 7.2 * static_cast<double>(names[i].size());
-      if (x + width > width_ - 10 && x > kLeft) {
-        x = kLeft;
-        y += 18;
-      }
-      add(R"(<rect x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", x, y, colour(i));
-      add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x + 15, y + 10, escaped(names[i]));
-      x += width;
-    }
-  }
-
-  std::string finish() && { return std::move(text_) + "</svg>\n"; }
-
- private:
-  double width_;
-  std::string text_;
-};
+}
 
 }  // namespace
 
@@ -110,8 +87,9 @@ std::string to_svg(const BarChart& chart) {
     }
   }
   const Axis axis = linear_axis(highest);
-  Svg svg(std::max(420.0, kLeft + 40 + group_width * static_cast<double>(chart.groups.size())));
-  svg.frame(chart.title, chart.value_label, axis);
+  const double width = std::max(420.0, kLeft + 40 + group_width * static_cast<double>(chart.groups.size()));
+  Svg svg(width, kHeight, 12);
+  add_frame(svg, width, chart.title, chart.value_label, axis);
   for (std::size_t g = 0; g < chart.groups.size(); ++g) {
     const auto& group = chart.groups[g];
     const double left = kLeft + kGap / 2 + group_width * static_cast<double>(g);
@@ -119,19 +97,19 @@ std::string to_svg(const BarChart& chart) {
       if (!group.bars[s]) continue;
       const Bar& bar = *group.bars[s];
       const double x = left + kBar * static_cast<double>(s), y = axis.y(bar.value);
-      svg.add(R"(<rect x="{:.1f}" y="{:.1f}" width="{}" height="{:.1f}" fill="{}"><title>{}, {}: {:g}</title></rect>)", x, y,
-              kBar - 2, std::max(kBaseline - y, 0.5), colour(s), escaped(group.name), escaped(chart.series[s]), bar.value);
+      svg.rect({x, y, kBar - 2, std::max(kBaseline - y, 0.5)}, {{"fill", colour(s)}})
+          .add("title", {}, fmt::format("{}, {}: {:g}", group.name, chart.series[s], bar.value));
       if (bar.low && bar.high) {
-        svg.add(R"(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}" stroke="black"/>)", x + kBar / 2 - 1, axis.y(*bar.low),
-                axis.y(*bar.high));
+        const double middle = x + kBar / 2 - 1;
+        svg.line({middle, axis.y(*bar.low)}, {middle, axis.y(*bar.high)}, {{"stroke", "black"}});
       }
     }
-    const double middle = left + (group_width - kGap) / 2;
-    svg.add(R"svg(<text transform="translate({:.1f} {}) rotate(-35)" text-anchor="end">{}</text>)svg", middle + 8, kBaseline + 16,
-            escaped(group.name));
+    const double end = left + (group_width - kGap) / 2 + 8;
+    svg.add("text", {{"transform", fmt::format("translate({:.1f} {}) rotate(-35)", end, kBaseline + 16)}, {"text-anchor", "end"}},
+            group.name);
   }
-  svg.legend(chart.series);
-  return std::move(svg).finish();
+  add_legend(svg, width, chart.series);
+  return svg.str();
 }
 
 std::string to_svg(const LineChart& chart) {
@@ -150,29 +128,26 @@ std::string to_svg(const LineChart& chart) {
   const auto place = [&](double x) {
     return kLeft + 10 + (kRight - kLeft - 20) * (right > left ? (x - left) / (right - left) : 0.5);
   };
-  Svg svg(kWidth);
-  svg.frame(chart.title, chart.y_label, axis);
+  Svg svg(kWidth, kHeight, 12);
+  add_frame(svg, kWidth, chart.title, chart.y_label, axis);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < chart.lines.size(); ++i) {
-    std::string points;
-    for (const auto& [x, y] : chart.lines[i].points)
-      fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ", place(x), axis.y(y));
-    svg.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2"{}/>)", points, colour(i),
-            i < kColours.size() ? "" : R"( stroke-dasharray="6 3")");
-    for (const auto& [x, y] : chart.lines[i].points) {
-      svg.add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"><title>{}: {:g}, {:g}</title></circle>)", place(x), axis.y(y),
-              colour(i), escaped(chart.lines[i].name), x, y);
+    std::vector<Vector<2>> points;
+    for (const auto& [x, y] : chart.lines[i].points) points.emplace_back(place(x), axis.y(y));
+    svg.polyline(points, {{"stroke", colour(i)}, {"stroke-width", 2}, {"stroke-dasharray", i < kColours.size() ? "none" : "6 3"}});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto& [x, y] = chart.lines[i].points[k];
+      svg.circle(points[k], 3, {{"fill", colour(i)}}).add("title", {}, fmt::format("{}: {:g}, {:g}", chart.lines[i].name, x, y));
     }
     names.push_back(chart.lines[i].name);
   }
   if (!chart.lines.empty()) {
-    for (const auto& [x, y] : chart.lines.front().points) {
-      svg.add(R"(<text x="{:.1f}" y="{}" text-anchor="middle">{:g}</text>)", place(x), kBaseline + 18, x);
-    }
+    for (const auto& [x, y] : chart.lines.front().points)
+      svg.text({place(x), kBaseline + 18}, fmt::format("{:g}", x), {{"text-anchor", "middle"}});
   }
-  svg.add(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)", (kLeft + kRight) / 2, kBaseline + 38, escaped(chart.x_label));
-  svg.legend(names);
-  return std::move(svg).finish();
+  svg.text({(kLeft + kRight) / 2, kBaseline + 38}, chart.x_label, {{"text-anchor", "middle"}});
+  add_legend(svg, kWidth, names);
+  return svg.str();
 }
 
 }  // namespace marey::draw

@@ -15,8 +15,8 @@ TEST(Chart, BarsHaveHeightsInProportionAndMissingOnesAreNotDrawn) {
   const std::string svg = to_svg(chart);
   EXPECT_EQ(test::count_of("<title>", svg), 3u);
   EXPECT_NE(svg.find("Losses &lt; 20 &amp; more"), std::string::npos);
-  EXPECT_NE(svg.find(R"(height="270.0")"), std::string::npos) << "the largest bar reaches the top of a 0-4 axis";
-  EXPECT_NE(svg.find(R"(height="135.0")"), std::string::npos);
+  EXPECT_NE(svg.find(R"(height="270")"), std::string::npos) << "the largest bar reaches the top of a 0-4 axis";
+  EXPECT_NE(svg.find(R"(height="135")"), std::string::npos);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/draw/svg_text.h"
+#include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
@@ -29,7 +29,7 @@ double magnification(const CoveragePlot& plot) {
   return std::max(1.0, (wanted >= 5 * power ? 5 : wanted >= 2 * power ? 2 : 1) * power);
 }
 
-std::string fields(const CoveragePlot& plot, double scale) {
+void add_fields(Svg& svg, const CoveragePlot& plot, double scale) {
   std::array<int, static_cast<std::size_t>(kColumns * kRows)> count{};
   for (const CoveragePlot::Mark& mark : plot.marks) {
     if (!mark.used) continue;
@@ -37,19 +37,15 @@ std::string fields(const CoveragePlot& plot, double scale) {
     const int y = std::clamp(static_cast<int>((mark.pixel.y() + 0.5) / plot.size.height * kRows), 0, kRows - 1);
     ++count[static_cast<std::size_t>(y * kColumns + x)];
   }
-  std::string svg;
   const double width = scale * plot.size.width / kColumns, height = scale * plot.size.height / kRows;
   for (int y = 0; y < kRows; ++y) {
     for (int x = 0; x < kColumns; ++x) {
       const int marks = count[static_cast<std::size_t>(y * kColumns + x)];
-      svg += fmt::format(
-          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" fill-opacity=\"{:.2f}\" "
-          "stroke=\"#ddd\"/>\n",
-          kCoverageMargin + x * width, kHead + y * height, width, height, marks ? "#2a7de1" : "#fff",
-          marks ? 0.08 + 0.3 * std::min(marks, kFull) / kFull : 1.0);
+      const double opacity = marks ? 0.08 + 0.3 * std::min(marks, kFull) / kFull : 1.0;
+      svg.rect({kCoverageMargin + x * width, kHead + y * height, width, height},
+               {{"fill", marks ? "#2a7de1" : "#fff"}, {"fill-opacity", fmt::format("{:.2f}", opacity)}, {"stroke", "#ddd"}});
     }
   }
-  return svg;
 }
 
 }  // namespace
@@ -58,23 +54,19 @@ std::string to_svg(const CoveragePlot& plot) {
   const double scale = (kWidth - 2 * kCoverageMargin) / plot.size.width;
   const double height = kHead + scale * plot.size.height + kCoverageMargin;
   const double times = magnification(plot);
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"sans-serif\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<text x=\"{2}\" y=\"22\" font-size=\"16\">{3}</text>\n"
-      "<text x=\"{2}\" y=\"41\" font-size=\"12\" fill=\"#555\">errors drawn {4:.0f} times as long as they are; red: not used; "
-      "white fields: nothing was seen there</text>\n",
-      kWidth, height, kCoverageMargin, escaped(plot.title), times);
-  svg += fields(plot, scale);
+  Svg svg(kWidth, height, 12);
+  svg.set({{"width", kWidth}, {"height", std::round(height)}});
+  svg.text({kCoverageMargin, 22}, plot.title, {{"font-size", 16}});
+  svg.text({kCoverageMargin, 41},
+           fmt::format("errors drawn {:.0f} times as long as they are; red: not used; white fields: nothing was seen there", times),
+           {{"fill", "#555"}});
+  add_fields(svg, plot, scale);
   for (const CoveragePlot::Mark& mark : plot.marks) {
-    const double x = kCoverageMargin + scale * (mark.pixel.x() + 0.5), y = kHead + scale * (mark.pixel.y() + 0.5);
-    const Vector<2> end = Vector<2>(x, y) + scale * times * mark.error;
-    const char* colour = mark.used ? "#123" : "#d22";
-    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.4\" fill=\"{}\"/>", x, y, colour);
-    if (mark.used) svg += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#e07b00\"/>", x, y, end.x(), end.y());
-    svg += '\n';
+    const Vector<2> place = Vector<2>(kCoverageMargin, kHead) + scale * (mark.pixel + Vector<2>(0.5, 0.5));
+    svg.circle(place, 1.4, {{"fill", mark.used ? "#123" : "#d22"}});
+    if (mark.used) svg.line(place, place + scale * times * mark.error, {{"stroke", "#e07b00"}});
   }
-  return svg + "</svg>\n";
+  return svg.str();
 }
 
 }  // namespace marey::draw

@@ -10,16 +10,32 @@
 #include <fmt/format.h>
 
 #include "marey/draw/canvas.h"
-#include "marey/draw/svg_text.h"
+#include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
 
 constexpr double kPitchMargin = 3;     // m round the pitch
+constexpr int kDecimals = 2;           // of metres that are drawn
 constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
 
 constexpr double kTerritoryCell = 5;  // m
 constexpr double kTerritory = 0.5;    // of a team's time on the pitch is spent in its territory
+
+/// The grass, to draw on.
+class PitchSvg : public Svg {
+ public:
+  explicit PitchSvg(const MatchReport& report)
+      : PitchSvg(Box{report.corner.x() - kPitchMargin, report.corner.y() - kPitchMargin, report.pitch.length + 2 * kPitchMargin,
+                     report.pitch.width + 2 * kPitchMargin}) {}
+
+ private:
+  explicit PitchSvg(const Box& shown)
+      : Svg({{"viewBox", fmt::format("{:.2f} {:.2f} {:.2f} {:.2f}", shown.left, shown.top, shown.width, shown.height)}},
+            kDecimals) {
+    rect(shown, {{"fill", "#5f9469"}});
+  }
+};
 
 class ReportPage {
  public:
@@ -34,10 +50,10 @@ class ReportPage {
     define_lines();
     write_territories();
     add("<h2>Where everybody went</h2>");
-    open_pitch();
+    PitchSvg all(report_);
     const double opacity = opacity_of(report_.people, 0.25);
-    for (const MatchReport::Person& person : report_.people) draw_paths(person, 0.25, opacity);
-    close_pitch();
+    for (const MatchReport::Person& person : report_.people) draw_paths(all, person, 0.25, opacity);
+    add_pitch(all);
     add("<h2>One by one</h2>");
     for (const MatchReport::Person& person : report_.people) write_person(person);
     page.add_html(text_);
@@ -102,44 +118,40 @@ class ReportPage {
     const std::vector<bool> full = fullest_cells(seconds, kTerritory);
     const double most = *std::max_element(seconds.begin(), seconds.end());
     double area = 0;
-    add("<figure>");
-    open_pitch();
+    PitchSvg svg(report_);
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         const std::size_t cell = static_cast<std::size_t>(row) * columns + column;
         if (!full[cell]) continue;
         area += kTerritoryCell * kTerritoryCell;
-        add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="{3}" fill-opacity="{4:.2f}"/>)",
-            report_.corner.x() + column * kTerritoryCell, report_.corner.y() + row * kTerritoryCell, kTerritoryCell,
-            team_colour(team), 0.35 + 0.55 * seconds[cell] / most);
+        svg.rect(cell_at(column, row, kTerritoryCell),
+                 {{"fill", team_colour(team)}, {"fill-opacity", 0.35 + 0.55 * seconds[cell] / most}});
       }
     }
-    close_pitch();
-    add("<figcaption>{}, {}: {:.0f} m²</figcaption></figure>", escaped(team), escaped(period.name), area);
+    add("<figure>");
+    add_pitch(svg);
+    add("<figcaption>{}, {}: {:.0f} m²</figcaption></figure>", xml_escaped(team), xml_escaped(period.name), area);
   }
 
-  void open_pitch() {
-    const Vector<2>& c = report_.corner;
-    add(R"(<svg viewBox="{:.2f} {:.2f} {:.2f} {:.2f}">)", c.x() - kPitchMargin, c.y() - kPitchMargin,
-        report_.pitch.length + 2 * kPitchMargin, report_.pitch.width + 2 * kPitchMargin);
-    add(R"(<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#5f9469"/>)", c.x() - kPitchMargin, c.y() - kPitchMargin);
+  Box cell_at(int column, int row, double size) const {
+    return {report_.corner.x() + column * size, report_.corner.y() + row * size, size, size};
   }
 
-  void close_pitch() { add(R"(<use href="#lines"/></svg>)"); }
+  void add_pitch(PitchSvg& svg) {
+    svg.add("use", {{"href", "#lines"}});
+    text_ += svg.str();
+  }
 
   /// The pitch's lines, once for all its pictures.
   void define_lines() {
     constexpr double step = 0.1;  // m
-    add(R"(<svg style="position: absolute; width: 0; height: 0"><defs><g id="lines">)");
-    for (const geometry::PitchLine& line : geometry::pitch_lines(report_.pitch, step)) {
-      text_ += R"(<polyline fill="none" stroke="#d8e6da" stroke-width="0.15" points=")";
-      for (const Vector<2>& point : line.points) {
-        const Vector<2> place = point + report_.corner;
-        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", place.x(), place.y());
-      }
-      text_ += "\"/>\n";
+    Svg svg({{"style", "position: absolute; width: 0; height: 0"}}, kDecimals);
+    SvgElement lines = svg.add("defs", {}).add("g", {{"id", "lines"}});
+    for (geometry::PitchLine& line : geometry::pitch_lines(report_.pitch, step)) {
+      for (Vector<2>& point : line.points) point += report_.corner;
+      lines.polyline(line.points, {{"stroke", "#d8e6da"}, {"stroke-width", 0.15}});
     }
-    add("</g></defs></svg>");
+    text_ += svg.str();
   }
 
   std::string colour(const MatchReport::Person& person) const {
@@ -169,27 +181,23 @@ class ReportPage {
     return 0.8 / (1 + 8 * covered);
   }
 
-  void draw_paths(const MatchReport::Person& person, double width, double opacity) {
+  void draw_paths(Svg& svg, const MatchReport::Person& person, double width, double opacity) const {
     for (const auto& path : person.paths) {
-      const std::size_t step = step_of(path.size());
-      fmt::format_to(std::back_inserter(text_),
-                     R"(<polyline fill="none" stroke="{}" stroke-width="{}" stroke-opacity="{:.3f}" points=")", colour(person),
-                     width, opacity);
-      for (std::size_t i = 0; i < path.size(); i += step)
-        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", path[i].x(), path[i].y());
-      text_ += "\"/>\n";
+      std::vector<Vector<2>> points;
+      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) points.push_back(path[i]);
+      svg.polyline(points,
+                   {{"stroke", colour(person)}, {"stroke-width", width}, {"stroke-opacity", fmt::format("{:.3f}", opacity)}});
     }
   }
 
-  void draw_heat(const MatchReport::Person& person) {
+  void draw_heat(Svg& svg, const MatchReport::Person& person) const {
     const double most = person.heat.empty() ? 0 : *std::max_element(person.heat.begin(), person.heat.end());
     for (int row = 0; row < person.heat_rows; ++row) {
       for (int column = 0; column < person.heat_columns; ++column) {
         const double seconds = person.heat[static_cast<std::size_t>(row) * person.heat_columns + column];
         if (seconds <= 0) continue;
-        add(R"(<rect x="{0:.2f}" y="{1:.2f}" width="{2:g}" height="{2:g}" fill="#ffd54a" fill-opacity="{3:.2f}"/>)",
-            report_.corner.x() + column * person.heat_cell_m, report_.corner.y() + row * person.heat_cell_m, person.heat_cell_m,
-            std::sqrt(seconds / most) * 0.85);
+        svg.rect(cell_at(column, row, person.heat_cell_m),
+                 {{"fill", "#ffd54a"}, {"fill-opacity", std::sqrt(seconds / most) * 0.85}});
       }
     }
   }
@@ -202,28 +210,30 @@ class ReportPage {
         begin = std::min(begin, time), end = std::max(end, time), fastest = std::max(fastest, speed);
     }
     if (!(end > begin)) return;
-    const auto x = [&](double time) { return left + (width - left) * (time - begin) / (end - begin); };
-    const auto y = [&](double speed) { return height - bottom - (height - bottom) * speed / fastest; };
-    add(R"(<svg viewBox="-2 -4 {} {}" font-size="3.2" font-family="sans-serif">)", width + 4, height + 6);
+    const auto place = [&](double time, double speed) {
+      return Vector<2>(left + (width - left) * (time - begin) / (end - begin), (height - bottom) * (1 - speed / fastest));
+    };
+    Svg svg({{"viewBox", fmt::format("-2 -4 {} {}", width + 4, height + 6)}, {"font-size", 3.2}, {"font-family", "sans-serif"}},
+            kDecimals);
     for (double speed = 0; speed <= fastest; speed += 2) {
-      add(R"(<line class="grid" x1="{0}" x2="{1}" y1="{2:.2f}" y2="{2:.2f}" stroke-width="0.2"/>)", left, width, y(speed));
-      add(R"(<text class="axis" x="{}" y="{:.2f}" text-anchor="end">{:g}</text>)", left - 1, y(speed) + 1, speed);
+      const double y = place(begin, speed).y();
+      svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
+      svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
-    add(R"(<text class="axis" x="{}" y="{}">m/s over {:.0f} s; {} sprints are marked</text>)", left, height - 1, end - begin,
-        person.sprints.size());
+    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s; {} sprints are marked", end - begin, person.sprints.size()),
+             {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;
-      add(R"(<rect class="sprint" x="{:.2f}" y="0" width="{:.2f}" height="{:.2f}"><title>{:.1f} s to {:.1f} s</title></rect>)",
-          x(from), std::max(narrowest, x(to) - x(from)), y(0), from, to);
+      const double x = place(from, 0).x();
+      svg.rect({x, 0, std::max(narrowest, place(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
+          .add("title", {}, fmt::format("{:.1f} s to {:.1f} s", from, to));
     }
     for (const auto& path : person.speeds) {
-      const std::size_t step = step_of(path.size());
-      fmt::format_to(std::back_inserter(text_), R"(<polyline class="speed" fill="none" stroke-width="0.4" points=")");
-      for (std::size_t i = 0; i < path.size(); i += step)
-        fmt::format_to(std::back_inserter(text_), "{:.2f},{:.2f} ", x(path[i].first), y(path[i].second));
-      text_ += "\"/>\n";
+      std::vector<Vector<2>> points;
+      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) points.push_back(place(path[i].first, path[i].second));
+      svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
     }
-    add("</svg>");
+    text_ += svg.str();
   }
 
   void write_person(const MatchReport::Person& person) {
@@ -232,11 +242,11 @@ class ReportPage {
         person.name == own    ? ""
         : person.name.empty() ? own
                               : own + " · ",
-        escaped(person.name), escaped(person.team));
-    open_pitch();
-    draw_heat(person);
-    draw_paths(person, 0.3, opacity_of({&person, 1}, 0.3));
-    close_pitch();
+        xml_escaped(person.name), xml_escaped(person.team));
+    PitchSvg svg(report_);
+    draw_heat(svg, person);
+    draw_paths(svg, person, 0.3, opacity_of({&person, 1}, 0.3));
+    add_pitch(svg);
     add("</div><div>");
     draw_speeds(person);
     add("</div></div></details>");

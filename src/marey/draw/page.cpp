@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/draw/svg_text.h"
+#include "marey/core/text_safety.h"
 
 namespace marey::draw {
 namespace {
@@ -80,20 +80,20 @@ Column column_of(const PageTable& table, std::size_t index) {
 }  // namespace
 
 void Page::add_heading(const std::string& text) {
-  body_ += "<h2>" + escaped(text) + "</h2>\n";
+  body_ += "<h2>" + xml_escaped(text) + "</h2>\n";
 }
 
 void Page::add_sentence(const std::string& text) {
-  body_ += "<p>" + escaped(text) + "</p>\n";
+  body_ += "<p>" + xml_escaped(text) + "</p>\n";
 }
 
 void Page::add(const PageTable& table) {
   auto out = std::back_inserter(body_);
   std::vector<Column> columns;
-  fmt::format_to(out, "<h2>{}</h2><div class=\"scroll\"><table><thead><tr>", escaped(table.title));
+  fmt::format_to(out, "<h2>{}</h2><div class=\"scroll\"><table><thead><tr>", xml_escaped(table.title));
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     columns.push_back(column_of(table, i));
-    fmt::format_to(out, "<th{}><button>{}</button></th>", columns.back().numbers ? " class=\"n\"" : "", escaped(table.head[i]));
+    fmt::format_to(out, "<th{}><button>{}</button></th>", columns.back().numbers ? " class=\"n\"" : "", xml_escaped(table.head[i]));
   }
   body_ += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
@@ -109,7 +109,7 @@ void Page::add(const PageTable& table) {
                        columns[i].numbers       ? " class=\"n\""
                        : table.head[i] == "why" ? " class=\"why\""
                                                 : "",
-                       escaped(row[i]));
+                       xml_escaped(row[i]));
       }
     }
     body_ += "</tr>\n";
@@ -121,7 +121,7 @@ std::string Page::html() const {
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
       "<title>{0}</title><style>{1}</style></head><body><h1>{0}</h1>\n{2}<script>{3}</script></body></html>\n",
-      escaped(title_), kPageStyle, body_, kPageScript);
+      xml_escaped(title_), kPageStyle, body_, kPageScript);
 }
 
 }  // namespace marey::draw

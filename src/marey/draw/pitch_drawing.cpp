@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "marey/draw/canvas.h"
-#include "marey/draw/svg_text.h"
+#include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
@@ -30,6 +30,8 @@ struct Shade {
 };
 constexpr std::array<Shade, 6> kShades{
     {{0.03, "#1a9850"}, {0.06, "#91cf60"}, {0.12, "#d9ef8b"}, {0.25, "#fee08b"}, {0.5, "#fc8d59"}, {1e9, "#d73027"}}};
+
+constexpr const char* kUnseen = "#dddddd";
 
 const char* shade_of(double metres) {
   return std::find_if(kShades.begin(), kShades.end(), [&](const Shade& shade) { return metres <= shade.metres; })->colour;
@@ -69,41 +71,29 @@ Picture draw_pitch(const Picture& picture, const GroundView& view, const std::ve
 std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size,
                           const std::function<std::optional<double>(const Vector<2>&)>& metres) {
   constexpr double cell = 1, scale = 8, margin = 24, top = 40, bottom = 50;
-  std::string text;
-  const auto add = [&]<typename... Args>(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-    text += '\n';
-  };
   const double width = scale * size.length + 2 * margin, height = scale * size.width + top + bottom;
-  add(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {:.0f} {:.0f}" font-family="sans-serif" font-size="13">)", width,
-      height);
-  add(R"(<rect width="100%" height="100%" fill="white"/>)");
-  add(R"(<text x="{}" y="24" font-size="16" font-weight="bold">{}</text>)", margin, escaped(title));
-  add(R"svg(<g transform="translate({},{}) scale({})">)svg", margin, top, scale);
+  Svg svg(width, height, 13, 2);
+  svg.text({margin, 24}, title, {{"font-size", 16}, {"font-weight", "bold"}});
+  SvgElement map = svg.add("g", {{"transform", fmt::format("translate({},{}) scale({})", margin, top, scale)}});
   for (double y = 0; y < size.width; y += cell) {
     for (double x = 0; x < size.length; x += cell) {
       const auto worth = metres({x + cell / 2, y + cell / 2});
-      add(R"(<rect x="{:g}" y="{:g}" width="{:g}" height="{:g}" fill="{}"/>)", x, y, cell * 1.02, cell * 1.02,
-          worth ? shade_of(*worth) : "#dddddd");
+      map.rect({x, y, cell * 1.02, cell * 1.02}, {{"fill", worth ? shade_of(*worth) : kUnseen}});
     }
   }
-  for (const geometry::PitchLine& line : geometry::pitch_lines(size, 0.1)) {
-    text += R"(<polyline fill="none" stroke="black" stroke-width="0.15" points=")";
-    for (const Vector<2>& place : line.points) fmt::format_to(std::back_inserter(text), "{:.2f},{:.2f} ", place.x(), place.y());
-    text += "\"/>\n";
-  }
-  add("</g>");
-  double x = margin;
-  const double y = height - 30;
-  for (std::size_t i = 0; i < kShades.size(); ++i) {
-    add(R"(<rect x="{}" y="{}" width="16" height="16" fill="{}"/>)", x, y, kShades[i].colour);
-    add(R"(<text x="{}" y="{}">{}</text>)", x + 22, y + 13,
-        i + 1 < kShades.size() ? fmt::format("up to {:g} m", kShades[i].metres) : std::string("more"));
-    x += 112;
-  }
-  add(R"(<rect x="{}" y="{}" width="16" height="16" fill="#dddddd"/><text x="{}" y="{}">not in view</text>)", x, y, x + 22, y + 13);
-  add("</svg>");
-  return text;
+  for (const geometry::PitchLine& line : geometry::pitch_lines(size, 0.1))
+    map.polyline(line.points, {{"stroke", "black"}, {"stroke-width", 0.15}});
+  Vector<2> corner(margin, height - 30);
+  const auto add_key = [&](const char* colour, const std::string& meaning) {
+    svg.rect({corner.x(), corner.y(), 16, 16}, {{"fill", colour}});
+    svg.text(corner + Vector<2>(22, 13), meaning);
+    corner.x() += 112;
+  };
+  for (const Shade& shade : std::span(kShades).first(kShades.size() - 1))
+    add_key(shade.colour, fmt::format("up to {:g} m", shade.metres));
+  add_key(kShades.back().colour, "more");
+  add_key(kUnseen, "not in view");
+  return svg.str();
 }
 
 }  // namespace marey::draw

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
 #include "marey/core/geometry.h"
 #include "marey/draw/canvas.h"
-#include "marey/draw/svg_text.h"
+#include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
@@ -18,12 +17,6 @@ constexpr double kLongestSide = 900;  // units of the picture
 constexpr double kLeastSpan = 20;     // px shown at least, where nobody moves
 constexpr double kPlotMargin = 56, kPlotTop = 40, kPlotBottom = 48;
 
-double round_step(double span) {
-  const double magnitude = std::pow(10, std::floor(std::log10(span / 5)));
-  const double ratio = span / 5 / magnitude;
-  return magnitude * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
-}
-
 /// The part of the image that is shown: what the ways span, and a twentieth more on each side.
 Box window_of(const Vector<2>& low, const Vector<2>& high) {
   const Vector<2> middle = (low + high) / 2;
@@ -31,54 +24,50 @@ Box window_of(const Vector<2>& low, const Vector<2>& high) {
   return {middle.x() - span.x() / 2, middle.y() - span.y() / 2, span.x(), span.y()};
 }
 
-class PlotPage {
+class PlotPage : public Svg {
  public:
-  explicit PlotPage(const Box& window) : window_(window), scale_(kLongestSide / std::max(window.width, window.height)) {
-    add(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {:.0f} {:.0f}" font-family="sans-serif" font-size="12">)",
-        scale_ * window.width + kPlotMargin + 20, scale_ * window.height + kPlotTop + kPlotBottom);
-    add(R"(<rect width="100%" height="100%" fill="white"/>)");
-  }
+  explicit PlotPage(const Box& window) : PlotPage(window, kLongestSide / std::max(window.width, window.height)) {}
 
-  template <typename... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    text_ += '\n';
+  /// Where a pixel is drawn.
+  Vector<2> place(const Vector<2>& pixel) const {
+    return Vector<2>(kPlotMargin, kPlotTop) + scale_ * (pixel - Vector<2>(window_.left, window_.top));
   }
-
-  double x(double column) const { return kPlotMargin + scale_ * (column - window_.left); }
-  double y(double row) const { return kPlotTop + scale_ * (row - window_.top); }
 
   void axes(const std::string& title) {
-    add(R"(<text x="{}" y="22" font-size="15" font-weight="bold">{}</text>)", kPlotMargin, escaped(title));
-    const double bottom = y(window_.bottom());
+    text({kPlotMargin, 22}, title, {{"font-size", 15}, {"font-weight", "bold"}});
+    const Vector<2> end = place({window_.right(), window_.bottom()});
     for (const double tick : ticks(window_.left, window_.right())) {
-      add(R"(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1}" y2="{2:.1f}" stroke="#ddd"/>)", x(tick), kPlotTop, bottom);
-      add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle">{:g}</text>)", x(tick), bottom + 16, tick);
+      const double x = place({tick, 0}).x();
+      line({x, kPlotTop}, {x, end.y()}, {{"stroke", "#ddd"}});
+      text({x, end.y() + 16}, fmt::format("{:g}", tick), {{"text-anchor", "middle"}});
     }
     for (const double tick : ticks(window_.top, window_.bottom())) {
-      add(R"(<line x1="{0}" x2="{1:.1f}" y1="{2:.1f}" y2="{2:.1f}" stroke="#ddd"/>)", kPlotMargin, x(window_.right()), y(tick));
-      add(R"(<text x="{}" y="{:.1f}" text-anchor="end">{:g}</text>)", kPlotMargin - 6, y(tick) + 4, tick);
+      const double y = place({0, tick}).y();
+      line({kPlotMargin, y}, {end.x(), y}, {{"stroke", "#ddd"}});
+      text({kPlotMargin - 6, y + 4}, fmt::format("{:g}", tick), {{"text-anchor", "end"}});
     }
-    add(R"(<rect x="{}" y="{}" width="{:.1f}" height="{:.1f}" fill="none" stroke="#888"/>)", kPlotMargin, kPlotTop,
-        scale_ * window_.width, scale_ * window_.height);
-    add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle">x, px</text>)", x(window_.left + window_.width / 2), bottom + 36);
-    add(R"svg(<text transform="translate(14 {:.1f}) rotate(-90)" text-anchor="middle">y, px (down)</text>)svg",
-        y(window_.top + window_.height / 2));
+    rect({kPlotMargin, kPlotTop, scale_ * window_.width, scale_ * window_.height}, {{"fill", "none"}, {"stroke", "#888"}});
+    const Vector<2> middle = place({window_.left + window_.width / 2, window_.top + window_.height / 2});
+    text({middle.x(), end.y() + 36}, "x, px", {{"text-anchor", "middle"}});
+    add("text", {{"transform", fmt::format("translate(14 {:.1f}) rotate(-90)", middle.y())}, {"text-anchor", "middle"}},
+        "y, px (down)");
   }
 
-  std::string finish() && { return std::move(text_) + "</svg>\n"; }
-
  private:
+  PlotPage(const Box& window, double scale)
+      : Svg(scale * window.width + kPlotMargin + 20, scale * window.height + kPlotTop + kPlotBottom, 12),
+        window_(window),
+        scale_(scale) {}
+
   static std::vector<double> ticks(double from, double to) {
     std::vector<double> result;
-    const double step = round_step(to - from);
+    const double step = round_step((to - from) / 5);
     for (double i = std::ceil(from / step); i * step <= to; ++i) result.push_back(i * step);
     return result;
   }
 
   Box window_;
   double scale_;
-  std::string text_;
 };
 
 std::string css(const Colour& colour) {
@@ -120,19 +109,16 @@ std::string TrajectoryPlot::to_svg(const std::string& title) const {
   for (const auto& [id, way] : ways_) {
     const std::string colour = css(colour_of(number(id)));
     for (std::size_t i = 0; i < way.pieces.size(); ++i) {
-      std::string points;
-      for (const Vector<2>& place : way.pieces[i])
-        fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ", page.x(place.x()), page.y(place.y()));
-      if (i + 1 == way.pieces.size() && way.pieces[i].back() != way.last)
-        fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f}", page.x(way.last.x()), page.y(way.last.y()));
-      page.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.6" stroke-linejoin="round"/>)", points, colour);
+      std::vector<Vector<2>> points;
+      for (const Vector<2>& pixel : way.pieces[i]) points.push_back(page.place(pixel));
+      if (i + 1 == way.pieces.size() && way.pieces[i].back() != way.last) points.push_back(page.place(way.last));
+      page.polyline(points, {{"stroke", colour}, {"stroke-width", 1.6}, {"stroke-linejoin", "round"}});
     }
-    const Vector<2>& begin = way.pieces.front().front();
-    page.add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>)", page.x(begin.x()), page.y(begin.y()), colour);
-    page.add(R"(<text x="{:.1f}" y="{:.1f}" fill="{}">{}</text>)", page.x(begin.x()) + 5, page.y(begin.y()) - 4, colour,
-             escaped(way.name));
+    const Vector<2> begin = page.place(way.pieces.front().front());
+    page.circle(begin, 3, {{"fill", colour}});
+    page.text(begin + Vector<2>(5, -4), way.name, {{"fill", colour}});
   }
-  return std::move(page).finish();
+  return page.str();
 }
 
 }  // namespace marey::draw
