@@ -117,7 +117,7 @@ endif()
 if(MAREY_SANITIZE)  # The presets with GCC's sanitizers let warnings pass: it gives false ones there, as its manual says.
   add_compile_options(-fsanitize=${MAREY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MAREY_SANITIZE})
-  if(MAREY_FUZZ)  # what a fuzzer steers by; it costs the compiler a twentieth
+  if(MAREY_FUZZ_STEERED)  # not where tests run: every comparison calls
     add_compile_options(-fsanitize=fuzzer-no-link)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes the checks themselves for uses of what is not set

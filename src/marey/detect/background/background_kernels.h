@@ -4,8 +4,8 @@
 
 namespace marey::detect::background {
 
-/// The inner loops of the adaptive background model, over rows of pixels. Each is compiled for the plainest x86-64 and for
-/// AVX2, to the same results. A scene's mean is held in 1/128 level, its spread in 1/8 level.
+/// The inner loops of the adaptive background model, over rows of pixels. Each is compiled for several levels of the
+/// processor, to the same results. A scene's mean is held in 1/128 level, its spread in 1/8 level.
 struct BackgroundKernels {
   /// excess[x] = how far pixels[x] lies outside [low[x], high[x]].
   /// mark[x] = 0 inside, 1 outside, 1 + 16 where the excess is half the width of the band or more.
@@ -43,8 +43,5 @@ struct BackgroundKernels {
 
 /// The fastest that this machine runs.
 const BackgroundKernels& background_kernels();
-
-const BackgroundKernels& background_kernels_baseline();
-const BackgroundKernels& background_kernels_avx2();  ///< to be called on a machine with AVX2 only
 
 }  // namespace marey::detect::background

@@ -59,6 +59,7 @@ class MarkerDetector::Impl {
 
   MarkerCounts counts_;
   const MarkerLevels& levels() const { return search_.levels(); }
+  std::optional<std::vector<cv::Rect>> learned_parts() const { return search_.learned_parts(); }
 
  private:
   /// A blob as one disc.
@@ -262,6 +263,16 @@ MarkerDetector::~MarkerDetector() = default;
 
 void MarkerDetector::prime(std::span<const Frame> samples) {
   impl_->prime(samples);
+}
+
+void MarkerDetector::change(const MarkerOptions& options) {
+  auto other = std::make_unique<Impl>(options);
+  other->counts_ = impl_->counts_;
+  impl_ = std::move(other);
+}
+
+std::optional<std::vector<cv::Rect>> MarkerDetector::learned_parts() const {
+  return impl_->learned_parts();
 }
 
 Detections MarkerDetector::detect(const Frame& frame, std::span<const Expected> expected) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,11 @@ class MarkerDetector final : public Detector {
 
   /// Learns the automatic mask at once where the samples lie within its time.
   void prime(std::span<const Frame> samples) override;
+
+  /// Looks by other options from the next frame on. What was learned of the picture is learned anew; the counts go on.
+  void change(const MarkerOptions& options);
+  /// Once the automatic mask is learned: the boxes of its parts, px, from top to bottom.
+  std::optional<std::vector<cv::Rect>> learned_parts() const;
 
   /// Markers in the order of their first pixel. `expected` decides which stay when there are too many, and where to look for two in
   /// one blob.

@@ -366,6 +366,24 @@ TEST(MarkerDetector, MasksLeaveOutWhatTheyCover) {
   EXPECT_THROW(find(image, options), Error);
 }
 
+TEST(MarkerDetector, ChangedWhileItLooksItLeavesOutPartsAndWhatIsFaint) {
+  const cv::Mat image = scene({100, 60}, {{20.2, 20, 3}, {70.4, 30, 3, 90}}, 1, 1);
+  MarkerDetector detector;
+  EXPECT_EQ(detector.detect(frame_of(image), {}).detections.size(), 2u);
+  MarkerOptions options;
+  options.masked = {{-5, -5, 45, 80}};  // as far as it lies in the picture
+  detector.change(options);
+  const auto unmasked = detector.detect(frame_of(image, 1), {}).detections;
+  ASSERT_EQ(unmasked.size(), 1u);
+  EXPECT_LT(distance_to_nearest(unmasked, 70.4, 30), 0.1);
+  options.threshold = 120;
+  detector.change(options);
+  EXPECT_TRUE(detector.detect(frame_of(image, 2), {}).detections.empty());
+  detector.change({});
+  EXPECT_EQ(detector.detect(frame_of(image, 3), {}).detections.size(), 2u);
+  EXPECT_EQ(detector.counts().frames, 4);
+}
+
 TEST(MarkerDetector, TheAutomaticMaskLearnsLampsAndKeepsWhatMoves) {
   MarkerOptions options;
   options.auto_mask_s = 1;
@@ -375,8 +393,13 @@ TEST(MarkerDetector, TheAutomaticMaskLearnsLampsAndKeepsWhatMoves) {
     const auto found = detector.detect(frame_of(scene({200, 80}, {{100, 60, 5}, {x, 20, 3}}, 1, i), i / 30.0), {}).detections;
     ASSERT_EQ(found.size(), i <= 30 ? 2u : 1u) << i;
     EXPECT_LT(distance_to_nearest(found, x, 20), 0.1);
+    EXPECT_EQ(detector.learned_parts().has_value(), i > 30);
   }
   EXPECT_GT(detector.counts().masked_share, 0.004);
+  ASSERT_EQ(detector.learned_parts()->size(), 1u);
+  const cv::Rect lamp = detector.learned_parts()->front();
+  EXPECT_EQ(lamp & cv::Rect(95, 55, 10, 10), cv::Rect(95, 55, 10, 10));
+  EXPECT_LT(lamp.area(), 300);
 }
 
 TEST(MarkerDetector, ColouredMarkersAreToldByTheirHue) {

@@ -36,7 +36,7 @@ struct DiscsSolution {
 
 /// The problem at `model`, for the pixels `value` (padded as the window is) at the window's places.
 DiscsNormal linearised(const DiscsModel& model, const MarkerWindow& window, const std::vector<float>& value,
-                       const MarkerKernels& kernels = *marker_kernels().back());
+                       const MarkerKernels& kernels = marker_kernels());
 
 /// Fits a model to the pixels `value` at the window's places by Levenberg-Marquardt. `stiffness` pulls the blur to where it began:
 /// two close discs hardly tell it.

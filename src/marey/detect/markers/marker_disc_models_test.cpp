@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/detect/kernel_targets.h"
+
 namespace marey::detect::markers {
 namespace {
 
@@ -101,8 +103,8 @@ TEST(MarkerDiscModels, EveryKernelSumsWhatDifferencesDo) {
     for (float& v : value) v = static_cast<float>(uniform(random, -0.2, 1.2));
     const DiscsNormal slow = by_differences(model, window, value);
     std::optional<DiscsNormal> first;
-    for (const MarkerKernels* kernels : marker_kernels()) {
-      SCOPED_TRACE(kernels->name);
+    for (const auto& [target, kernels] : kernels_of_every_target(marker_kernels)) {
+      SCOPED_TRACE(target);
       const DiscsNormal fast = linearised(model, window, value, *kernels);
       EXPECT_NEAR(fast.squares, slow.squares, 1e-4 * slow.squares);
       EXPECT_LT((fast.information - slow.information).norm(), 2e-3 * slow.information.norm());

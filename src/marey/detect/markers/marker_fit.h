@@ -61,6 +61,6 @@ void collect_window(const cv::Mat& image, const MarkerBlob& blob, const MarkerSu
 
 /// Fits a disc to the window; falls back on the weighted centroid where that fails.
 MarkerShape fit_disc(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,
-                     const MarkerKernels& kernels = *marker_kernels().back());
+                     const MarkerKernels& kernels = marker_kernels());
 
 }  // namespace marey::detect::markers

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace marey::detect::markers {
 
@@ -65,7 +64,6 @@ struct DiscsSums {
 
 /// The loops that most of the time goes to, compiled for one level of the processor. Every level gives the same bits.
 struct MarkerKernels {
-  const char* name;
   /// Writes the hits of a band, row by row, left to right, and returns how many; `hits` has room for every word of the band.
   int (*scan_8)(const MarkerBand& band, MarkerHit* hits);
   int (*scan_16)(const MarkerBand& band, MarkerHit* hits);
@@ -75,7 +73,7 @@ struct MarkerKernels {
   void (*linearise_discs)(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& sums);
 };
 
-/// Those that this machine can run, the fastest last; never empty.
-std::span<const MarkerKernels* const> marker_kernels();
+/// The fastest that this machine runs.
+const MarkerKernels& marker_kernels();
 
 }  // namespace marey::detect::markers

@@ -59,7 +59,7 @@ class MarkerMask {
 class MarkerRunFinder {
  public:
   /// At most `most_runs` runs are kept: what lies below is not searched, and `cut_at` says from which row on.
-  explicit MarkerRunFinder(std::size_t most_runs, const MarkerKernels& kernels = *marker_kernels().back());
+  explicit MarkerRunFinder(std::size_t most_runs, const MarkerKernels& kernels = marker_kernels());
 
   /// `image`: CV_8UC1 or CV_16UC1. Blobs in the order of their first pixel, top to bottom, left to right.
   std::span<const MarkerBlob> find(const cv::Mat& image, const MarkerThresholds& thresholds, const MarkerMask& mask);

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/detect/kernel_targets.h"
+
 namespace marey::detect::markers {
 namespace {
 
@@ -89,8 +91,8 @@ TEST(MarkerRuns, AgreeWithFloodFillOnRandomImagesAtEveryProcessorLevel) {
     for (auto& threshold : thresholds.of_tile)
       threshold = static_cast<std::uint16_t>(top * (0.9 * level + random() % 100 / 1000.0));
     const auto regions = flood(image, thresholds);
-    for (const MarkerKernels* kernels : marker_kernels()) {
-      SCOPED_TRACE(kernels->name);
+    for (const auto& [target, kernels] : kernels_of_every_target(marker_kernels)) {
+      SCOPED_TRACE(target);
       MarkerRunFinder finder(1 << 20, *kernels);
       expect_same(finder.find(image, thresholds, {}), regions);
     }

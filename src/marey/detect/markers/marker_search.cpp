@@ -55,7 +55,9 @@ void MarkerSearch::prime(std::span<const Frame> samples) {
     if (seconds(frame.time - samples.front().time) > options_.auto_mask_s || frame.picture.empty()) continue;
     find(frame, std::nullopt);
   }
-  if (samples.size() >= kEnoughSamples && auto_mask_.learning()) mask_more(auto_mask_.finish());
+  if (samples.size() < kEnoughSamples || !auto_mask_.learning()) return;
+  learned_ = auto_mask_.finish();
+  mask_more(learned_);
 }
 
 std::span<const MarkerBlob> MarkerSearch::find(const Frame& frame, std::optional<double> widest) {
@@ -73,6 +75,7 @@ std::span<const MarkerBlob> MarkerSearch::find(const Frame& frame, std::optional
   if (options_.automatic()) levels_.learn_contrast(typical_);
   if (options_.auto_mask_s <= 0 || !auto_mask_.learning()) return blobs_;
   if (const auto learned = auto_mask_.add(frame.time, size_, finder_.runs())) {
+    learned_ = *learned;
     mask_more(*learned);
     look(frame.picture);
     if (options_.automatic()) assess(luma);
@@ -99,13 +102,32 @@ void MarkerSearch::begin(cv::Size size) {
   colour_thresholds_ = {std::vector<std::uint16_t>(static_cast<std::size_t>(tiles), 63), false};
   clutter_.begin(size, options_.widest > 0 && options_.automatic());
   mask_ = MarkerMask();
-  if (options_.mask.empty()) return;
-  cv::Mat excluded = options_.mask != 0;
+  if (options_.mask.empty() && options_.masked.empty()) return;
+  const cv::Size full = options_.colour ? cv::Size(2 * size.width, 2 * size.height) : size;
+  cv::Mat excluded = options_.mask.empty() ? cv::Mat(cv::Mat::zeros(full, CV_8UC1)) : cv::Mat(options_.mask != 0);
+  for (const cv::Rect& part : options_.masked) excluded(part & cv::Rect({}, excluded.size())).setTo(255);
   if (options_.colour) {  // a chroma pixel is left out where any of its four is
     cv::dilate(excluded, excluded, cv::Mat::ones(3, 3, CV_8U));
     cv::resize(excluded, excluded, size, 0, 0, cv::INTER_NEAREST);
   }
   mask_more(MarkerMask(excluded));
+}
+
+std::optional<std::vector<cv::Rect>> MarkerSearch::learned_parts() const {
+  if (options_.auto_mask_s <= 0 || auto_mask_.learning()) return std::nullopt;
+  cv::Mat learned(learned_.size(), CV_8UC1), labels, stats, centres;
+  for (int y = 0; y < learned.rows; ++y) {
+    for (int x = 0; x < learned.cols; ++x) learned.at<std::uint8_t>(y, x) = learned_.at(x, y) ? 255 : 0;
+  }
+  std::vector<cv::Rect> parts;
+  const int count = learned.empty() ? 0 : cv::connectedComponentsWithStats(learned, labels, stats, centres);
+  const int factor = options_.colour ? 2 : 1;
+  for (int i = 1; i < count; ++i) {
+    const int* of = stats.ptr<int>(i);
+    parts.emplace_back(factor * of[cv::CC_STAT_LEFT], factor * of[cv::CC_STAT_TOP], factor * of[cv::CC_STAT_WIDTH],
+                       factor * of[cv::CC_STAT_HEIGHT]);
+  }
+  return parts;
 }
 
 void MarkerSearch::mask_more(const MarkerMask& learned) {

@@ -40,6 +40,8 @@ class MarkerSearch {
   const MarkerLevels& levels() const { return levels_; }
   bool was_cut() const { return finder_.cut_at().has_value(); }  ///< the last frame's lower part was not searched
   double masked_share() const { return masked_share_; }          ///< of the picture
+  /// Once the automatic mask is learned: the boxes of its parts, px of the picture.
+  std::optional<std::vector<cv::Rect>> learned_parts() const;
 
  private:
   enum class Standing : char {
@@ -65,7 +67,7 @@ class MarkerSearch {
   MarkerClutter clutter_;
   MarkerRunFinder finder_;
   MarkerAutoMask auto_mask_;
-  MarkerMask mask_;
+  MarkerMask mask_, learned_;  // all that is left out; of that the automatic mask's
   MarkerThresholds colour_thresholds_;
   cv::Size size_;  // of what is searched
   cv::Mat colours_;
