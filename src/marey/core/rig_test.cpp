@@ -43,6 +43,17 @@ TEST(FitToSize, ACalibrationIsScaledWhereTheShapeFits) {
   EXPECT_LT((far.ground_view({})->place({200.5 + 0.5, 600.5})->ground - ground).norm(), 1e-12);
 }
 
+TEST(FitToSize, MasksCoverWhatTheyCovered) {
+  Rig rig = two_cameras();
+  RigCamera& left = rig.cameras[0];
+  left.size = {3072, 1728};
+  left.masks = {{3, 5, 10, 20}};
+  fit_to_size(left, {1536, 864});
+  EXPECT_EQ(left.masks.front(), cv::Rect(1, 2, 6, 11));
+  fit_to_size(left, {3072, 1728});
+  EXPECT_EQ(left.masks.front(), cv::Rect(2, 4, 12, 22));
+}
+
 TEST(FitToSize, GivesASizeWhereThereIsNone) {
   Rig rig = two_cameras();
   rig.cameras[0].size.reset();

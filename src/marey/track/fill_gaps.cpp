@@ -2,13 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace marey::track {
 namespace {
 
+using Tracklet = TrackletLog::Tracklet;
+
+float on_line(float a, float b, double share) {
+  return static_cast<float>(a + share * (static_cast<double>(b) - a));
+}
+
+TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, double share) {
+  TrackRow row = a;
+  row.frame = frame;
+  row.x = on_line(a.x, b.x, share);
+  row.y = on_line(a.y, b.y, share);
+  row.vx = on_line(a.vx, b.vx, share);
+  row.vy = on_line(a.vy, b.vy, share);
+  row.left = on_line(a.left, b.left, share);
+  row.top = on_line(a.top, b.top, share);
+  row.width = on_line(a.width, b.width, share);
+  row.height = on_line(a.height, b.height, share);
+  row.score = on_line(a.score, b.score, share);
+  row.state = Track<2>::State::predicted;
+  row.has_centre = false;
+  return row;
+}
+
 /// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the way. Velocities at the ends are
 /// means over the gap where they would throw the curve wide: a target that turned unseen has left with another velocity.
-float between(float a, float va, float b, float vb, double span, double u) {
+float on_cubic(float a, float va, float b, float vb, double span, double u) {
   const double rise = b - a;
   const double most = 3 * std::abs(rise);  // Fritsch & Carlson 1980: no overshoot
   const double ta = std::clamp(va * span, -most, most), tb = std::clamp(vb * span, -most, most);
@@ -16,10 +40,10 @@ float between(float a, float va, float b, float vb, double span, double u) {
   return static_cast<float>((2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * ta + (-2 * u3 + 3 * u2) * b + (u3 - u2) * tb);
 }
 
-TrackRow row_between(const TrackRow& from, const TrackRow& to, const TrackRow& guess, double span, double u) {
+TrackRow cubic_row(const TrackRow& from, const TrackRow& to, const TrackRow& guess, double span, double u) {
   TrackRow row = guess;
-  row.x = between(from.x, from.vx, to.x, to.vx, span, u);
-  row.y = between(from.y, from.vy, to.y, to.vy, span, u);
+  row.x = on_cubic(from.x, from.vx, to.x, to.vx, span, u);
+  row.y = on_cubic(from.y, from.vy, to.y, to.vy, span, u);
   row.vx = static_cast<float>((to.x - from.x) / span);
   row.vy = static_cast<float>((to.y - from.y) / span);
   row.left = row.x - (row.width - 1) / 2;
@@ -27,26 +51,46 @@ TrackRow row_between(const TrackRow& from, const TrackRow& to, const TrackRow& g
   return row;
 }
 
+/// The rows of the frames between the first and the last of `rows`, which are observed; what lies between them was guessed.
+void append_between(std::span<const TrackRow> rows, const TrackletLog& log, double longest, GapWay way, Tracklet& filled) {
+  const TrackRow &from = rows.front(), &to = rows.back();
+  const Timestamp begin = log.time_of(from.frame);
+  const double span = seconds(log.time_of(to.frame) - begin);
+  if (span > longest) return;
+  auto guess = rows.begin();
+  for (std::int32_t frame = from.frame + 1; frame < to.frame; ++frame) {
+    const double share = seconds(log.time_of(frame) - begin) / span;
+    if (way == GapWay::straight) {
+      filled.push_back(straight_row(from, to, frame, share));
+      continue;
+    }
+    while (guess->frame < frame) ++guess;
+    if (guess->frame == frame) filled.push_back(cubic_row(from, to, *guess, span, share));
+  }
+}
+
 }  // namespace
 
-std::vector<TrackRow> fill_gaps(TrackletLog& log, const GapOptions& options, int fewest) {
+void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest, GapWay way) {
+  Tracklet filled;
+  filled.reserve(rows.empty() ? 0 : static_cast<std::size_t>(rows.back().frame - rows.front().frame + 1));
+  const TrackRow* last = nullptr;
+  for (const TrackRow& row : rows) {
+    if (!row.observed()) continue;
+    if (last != nullptr) append_between(std::span(last, &row + 1), log, longest, way, filled);
+    filled.push_back(row);
+    last = &row;
+  }
+  rows = std::move(filled);
+}
+
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest, double longest) {
   std::vector<TrackRow> rows;
-  for (const TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
+  for (TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
     const auto seen = [](const TrackRow& row) { return row.observed(); };
     if (std::count_if(tracklet.begin(), tracklet.end(), seen) < fewest) continue;
-    auto last = tracklet.end();
-    for (auto at = tracklet.begin(); at != tracklet.end(); ++at) {
-      if (!at->observed()) continue;
-      if (last != tracklet.end() && at - last > 1) {
-        const Timestamp from = log.time_of(last->frame), to = log.time_of(at->frame);
-        const double span = seconds(to - from);
-        for (auto gap = last + 1; gap != at && span <= options.longest_filled; ++gap) {
-          rows.push_back(row_between(*last, *at, *gap, span, seconds(log.time_of(gap->frame) - from) / span));
-        }
-      }
-      rows.push_back(*at);
-      last = at;
-    }
+    fill_gaps(tracklet, log, longest, GapWay::cubic);
+    rows.insert(rows.end(), tracklet.begin(), tracklet.end());
   }
   std::sort(rows.begin(), rows.end(),
             [](const TrackRow& a, const TrackRow& b) { return std::pair(a.frame, a.id) < std::pair(b.frame, b.id); });

@@ -1,3 +1,4 @@
+// Gaps in tracklets, filled in a second pass that knows both ends of each.
 #pragma once
 
 #include <vector>
@@ -6,14 +7,18 @@
 
 namespace marey::track {
 
-struct GapOptions {
-  double longest_filled = 1;  ///< s; in a longer gap nothing is said of where the target was
-};
+/// Rows between two observed ones, as predicted.
+///   straight  every value on the straight way between both ends: people
+///   cubic     places on the cubic through the places and velocities of both ends, the rest as it was guessed: points
+enum class GapWay { straight, cubic };
 
-/// What a second look can say of points that were followed by themselves: nothing is reported before the first and after the last
-/// observation of a tracklet, and in a gap between two the place is the cubic through the places and velocities at both ends,
-/// instead of a guess that knows the first end alone. Tracklets seen in less than `fewest` frames are dropped. Rows in the order of
-/// frames, then ids. The recording's tracklets are used up.
-std::vector<TrackRow> fill_gaps(TrackletLog& log, const GapOptions& options = {}, int fewest = 3);
+/// Rows between two observed ones are put between them where that lasts at most `longest` seconds; where it lasts longer, before
+/// the first and after the last observation there are none. `rows` are one target's, in the order of frames; frames may be missing.
+void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longest, GapWay way);
+
+/// What a second look can say of points that were followed by themselves: the tracklets without gaps of up to `longest` seconds.
+/// Tracklets seen in less than `fewest` frames are dropped. Rows in the order of frames, then ids. The recording's tracklets are
+/// used up.
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest = 3, double longest = 1);
 
 }  // namespace marey::track

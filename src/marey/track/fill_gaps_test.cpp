@@ -31,7 +31,7 @@ TrackletLog record_of(int frames, Seen&& seen) {
 
 TEST(FillGaps, AGapIsFilledFromBothEnds) {
   TrackletLog log = record_of(30, [](int i) { return i < 10 || i >= 20; });
-  const auto rows = fill_gaps(log);
+  const auto rows = rows_of_points(log);
   ASSERT_EQ(rows.size(), 30u);
   for (const TrackRow& row : rows) {
     const double t = row.frame / 30.0;
@@ -44,7 +44,7 @@ TEST(FillGaps, AGapIsFilledFromBothEnds) {
 
 TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
   TrackletLog log = record_of(30, [](int i) { return i >= 5 && i < 12; });
-  const auto rows = fill_gaps(log);
+  const auto rows = rows_of_points(log);
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows.front().frame, 5);
   EXPECT_EQ(rows.back().frame, 11);
@@ -52,9 +52,26 @@ TEST(FillGaps, NothingIsSaidBeforeTheFirstAndAfterTheLastObservation) {
 
 TEST(FillGaps, ALongGapStaysOpenAndAFewSightingsAreNobody) {
   TrackletLog long_gap = record_of(90, [](int i) { return i < 5 || i >= 80; });
-  EXPECT_EQ(fill_gaps(long_gap).size(), 15u);
+  EXPECT_EQ(rows_of_points(long_gap).size(), 15u);
   TrackletLog brief = record_of(10, [](int i) { return i < 2; });
-  EXPECT_TRUE(fill_gaps(brief).empty());
+  EXPECT_TRUE(rows_of_points(brief).empty());
+}
+
+TEST(FillGaps, TheStraightWayPutsARowInEveryFrameAlsoWhereNothingWasGuessed) {
+  TrackletLog log = record_of(30, [](int i) { return i < 10 || i >= 20; });
+  auto rows = log.take_tracklets().front();
+  std::erase_if(rows, [](const TrackRow& row) { return row.frame == 14; });
+  fill_gaps(rows, log, 1, GapWay::straight);
+  ASSERT_EQ(rows.size(), 30u);
+  const TrackRow &from = rows[9], &to = rows[20];
+  for (int frame = 10; frame < 20; ++frame) {
+    const TrackRow& row = rows[static_cast<std::size_t>(frame)];
+    EXPECT_EQ(row.frame, frame);
+    EXPECT_FALSE(row.observed());
+    EXPECT_NEAR(row.y, from.y + (to.y - from.y) * (frame - 9) / 11, 1e-3);
+  }
+  fill_gaps(rows, log, 0.3, GapWay::straight);
+  EXPECT_EQ(rows.size(), 20u) << "a longer gap stays open";
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "marey/track/smooth.h"
+#include "marey/track/fill_gaps.h"
 #include "marey/track/tracklet_linker.h"
 
 namespace marey::track {
@@ -106,8 +106,8 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
   const double usual = usual_score(tracklets);
   std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), usual, options); });
   for (Tracklet& tracklet : tracklets) {
-    fill_gaps(tracklet, log, options.longest_filled);
-    smooth(tracklet, log, {.place = options.smoothing, .size = options.size_smoothing});
+    fill_gaps(tracklet, log, options.longest_filled, GapWay::straight);
+    smooth(tracklet, log, options.smoothing);
   }
   return by_frame(tracklets);
 }

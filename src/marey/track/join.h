@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/track/smooth.h"
 #include "marey/track/tracklet_log.h"
 
 namespace marey::track {
@@ -21,8 +22,7 @@ struct JoinOptions {
   double weaker = 0.15;         ///< what scores this much below the usual must last longer and be seen more often
   /// The picture, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
   std::optional<Box> view = {};
-  double smoothing = 0.12;      ///< s; standard deviation of the kernel that smooths places
-  double size_smoothing = 0.4;  ///< s; the same for sizes
+  Smoothing smoothing = {};
 };
 
 /// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with

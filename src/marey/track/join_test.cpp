@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/track/smooth.h"
-
 namespace marey::track {
 namespace {
 
@@ -120,7 +118,7 @@ TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
 
 TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
   TrackletLog log = record_tracks(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
-  const auto rows = join(log, {.smoothing = 0.3});
+  const auto rows = join(log, {.smoothing = {.place = 0.3}});
   for (const TrackRow& row : rows) {
     if (row.frame < 10 || row.frame >= 90) continue;
     EXPECT_NEAR(row.x, 100 + 5 * row.frame, 1);

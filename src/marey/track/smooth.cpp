@@ -1,33 +1,11 @@
 #include "marey/track/smooth.h"
 
-#include <array>
 #include <cmath>
 
 namespace marey::track {
 namespace {
 
 using Tracklet = TrackletLog::Tracklet;
-
-float between(float a, float b, double share) {
-  return static_cast<float>(a + share * (static_cast<double>(b) - a));
-}
-
-TrackRow interpolated(const TrackRow& a, const TrackRow& b, std::int32_t frame, double share) {
-  TrackRow row = a;
-  row.frame = frame;
-  row.x = between(a.x, b.x, share);
-  row.y = between(a.y, b.y, share);
-  row.vx = between(a.vx, b.vx, share);
-  row.vy = between(a.vy, b.vy, share);
-  row.left = between(a.left, b.left, share);
-  row.top = between(a.top, b.top, share);
-  row.width = between(a.width, b.width, share);
-  row.height = between(a.height, b.height, share);
-  row.score = between(a.score, b.score, share);
-  row.state = Track<2>::State::predicted;
-  row.has_centre = false;
-  return row;
-}
 
 /// Values of one quantity, fitted at time 0 by value + slope · t under weights.
 class LocalLine {
@@ -85,24 +63,6 @@ void smooth_outline(const Tracklet& rows, const std::vector<double>& times, std:
 }
 
 }  // namespace
-
-void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest) {
-  Tracklet filled;
-  filled.reserve(rows.empty() ? 0 : static_cast<std::size_t>(rows.back().frame - rows.front().frame + 1));
-  for (const TrackRow& row : rows) {
-    if (!row.observed()) continue;
-    if (!filled.empty()) {
-      const TrackRow last = filled.back();
-      const Duration gap = log.time_of(row.frame) - log.time_of(last.frame);
-      for (std::int32_t frame = last.frame + 1; frame < row.frame && seconds(gap) <= longest; ++frame) {
-        const double share = seconds(log.time_of(frame) - log.time_of(last.frame)) / seconds(gap);
-        filled.push_back(interpolated(last, row, frame, share));
-      }
-    }
-    filled.push_back(row);
-  }
-  rows = std::move(filled);
-}
 
 void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) {
   std::vector<double> times;

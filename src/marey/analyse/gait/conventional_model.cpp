@@ -97,7 +97,9 @@ std::optional<Hips> hips_of(const MarkerPlaces& markers, const GaitSubject& subj
     const double x = c * std::cos(kHipTheta) * std::sin(kHipBeta) - to_trochanter * std::cos(kHipBeta);
     const double y = half - c * std::sin(kHipTheta);
     const double z = -c * std::cos(kHipTheta) * std::cos(kHipBeta) - to_trochanter * std::sin(kHipBeta);
-    hips.centres[static_cast<std::size_t>(side)] = hips.pelvis * Vector<3>(x, side == Side::left ? y : -y, z);
+    const Vector<3> by_regression(x, side == Side::left ? y : -y, z);
+    const auto i = static_cast<std::size_t>(side);
+    hips.centres[i] = hips.pelvis * subject.hip_in_pelvis[i].value_or(by_regression);
   }
   return hips;
 }

@@ -54,6 +54,8 @@ struct GaitSubject {
   std::array<std::optional<double>, 2> leg_length, knee_width, ankle_width;
   std::array<std::optional<double>, 2> shoulder_offset, elbow_width, wrist_width, hand_thickness;  ///< offset: centre below skin
   std::optional<double> asis_distance;  ///< between the hips' front spines; else between their markers, instant by instant
+  std::array<std::optional<Vector<3>>, 2>
+      hip_in_pelvis;  ///< centres in the pelvis' frame, where better is known than the regression
   double marker_radius = 0.007;
   std::array<Matrix<3>, 2> sole_from_ankle_toe = {Matrix<3>::Identity(), Matrix<3>::Identity()};  ///< of a static trial
 

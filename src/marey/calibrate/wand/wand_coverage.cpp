@@ -7,7 +7,7 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr int kPartsAcross = 10, kPartsDown = 8;
+constexpr int kPartsAcross = WandCoverage::kPartsAcross, kPartsDown = WandCoverage::kPartsDown;
 
 std::optional<int> part_of(const Vector<2>& pixel, cv::Size size) {
   if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height)) return std::nullopt;
@@ -46,6 +46,11 @@ void WandCoverage::add(std::span<const Seen> seen, double together_s) {
   for (std::size_t a = 0; a < marks.size(); ++a) {
     for (std::size_t b = a + 1; b < marks.size(); ++b) shared_[{a, b}] += shared_views(marks[a], marks[b], together_s);
   }
+}
+
+std::int64_t WandCoverage::shared(std::size_t a, std::size_t b) const {
+  const auto found = shared_.find({std::min(a, b), std::max(a, b)});
+  return found != shared_.end() ? found->second : 0;
 }
 
 double WandCoverage::coverage(std::size_t camera) const {

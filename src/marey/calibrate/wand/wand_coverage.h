@@ -28,6 +28,10 @@ class WandCoverage {
 
   /// Share of the camera's picture, in 10 × 8 parts, in which the wand was.
   double coverage(std::size_t camera) const;
+  /// Those parts, row by row, each a number below `kPartsAcross` × `kPartsDown`.
+  const std::set<int>& parts(std::size_t camera) const { return cameras_[camera].parts; }
+  /// Views that two cameras share.
+  std::int64_t shared(std::size_t a, std::size_t b) const;
   /// Frames of the camera in which the wand was.
   std::int64_t views(std::size_t camera) const { return cameras_[camera].views; }
   /// Whether it was seen in enough of the camera's picture; in a volume that is small in it, whether more waving adds nothing.
@@ -35,6 +39,7 @@ class WandCoverage {
   /// Whether every camera is covered, and all are chained by enough views that two of them share.
   bool is_enough() const;
 
+  static constexpr int kPartsAcross = 10, kPartsDown = 8;
   static constexpr double kWellCovered = 0.3;  ///< a rig whose least covered camera has so much may be excellent,
   static constexpr double kCovered = 0.2;      ///< and good with so much
   static constexpr std::int64_t kNothingNew = 400, kEnoughShared = 200;  ///< views

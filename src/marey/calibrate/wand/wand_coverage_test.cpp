@@ -48,7 +48,12 @@ TEST(WandCoverage, GrowsUntilItIsEnough) {
     EXPECT_GT(late.coverage(c), early.coverage(c));
     EXPECT_TRUE(late.is_covered(c)) << c << " saw " << late.coverage(c);
     EXPECT_GT(late.views(c), 500);
+    EXPECT_EQ(static_cast<double>(late.parts(c).size()) / 80, late.coverage(c));
+    EXPECT_GE(*late.parts(c).begin(), 0);
+    EXPECT_LT(*late.parts(c).rbegin(), 80);
   }
+  EXPECT_GE(late.shared(0, 1), WandCoverage::kEnoughShared);
+  EXPECT_EQ(late.shared(0, 1), late.shared(1, 0));
 }
 
 TEST(WandCoverage, IsNotEnoughWhereOneCameraSeesNothing) {

@@ -9,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "marey/assign/association_beliefs.h"
 #include "marey/assign/sparse_assignment.h"
 #include "marey/core/colour.h"
 #include "marey/track/ground/ground_openness.h"
@@ -26,9 +27,7 @@ constexpr double surest_apart = -9, surest_same = 3;  // however colours differ 
 constexpr std::size_t kMostKinds = 300;
 
 constexpr int kTurns = 5;          // of learning who left, and where people leave
-constexpr int kMessages = 15;      // of messages between ends and beginnings
 constexpr double kLeastOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are left out
-constexpr double kSurest = 30;     // likewise: surer ones count no more
 constexpr double kBounds = 1.5;    // s
 
 template <int N>
@@ -150,28 +149,18 @@ class Chainer {
     return std::log((1 - leaving) / leaving) - std::log(heads_[static_cast<std::size_t>(pair.column)].coming);
   }
 
-  /// Marginal probabilities of all pairs, each end with one beginning at most and the other way round, by belief propagation
-  /// (Williams & Lau, "Approximate evaluation of marginal association probabilities with belief propagation", 2014).
+  /// Marginal probabilities of all pairs, each end with one beginning at most and the other way round.
   void weigh_pairs(std::vector<double>& came, std::vector<double>& left) {
     if (pairs_.empty()) find_pairs();
-    std::vector<double> odds;
-    for (const assign::GatedPair& pair : pairs_) odds.push_back(std::exp(std::min(kSurest, pair.gain + openness_gain(pair))));
-    std::vector<double> to_heads(odds.size(), 0), to_tails(odds.size(), 1), sums;
-    for (int round = 0; round < kMessages; ++round) {
-      sums.assign(tails_.size(), 1);
-      for (std::size_t k = 0; k < odds.size(); ++k) sums[row(k)] += odds[k] * to_tails[k];
-      for (std::size_t k = 0; k < odds.size(); ++k) to_heads[k] = odds[k] / std::max(1.0, sums[row(k)] - odds[k] * to_tails[k]);
-      sums.assign(heads_.size(), 1);
-      for (std::size_t k = 0; k < odds.size(); ++k) sums[column(k)] += to_heads[k];
-      for (std::size_t k = 0; k < odds.size(); ++k) to_tails[k] = 1 / std::max(1.0, sums[column(k)] - to_heads[k]);
-    }
-    sums.assign(tails_.size(), 1);
-    for (std::size_t k = 0; k < odds.size(); ++k) sums[row(k)] += odds[k] * to_tails[k];
+    std::vector<assign::GatedPair> weighed = pairs_;
+    for (assign::GatedPair& pair : weighed) pair.gain += openness_gain(pair);
+    const std::vector<double> probabilities =
+        assign::association_beliefs(static_cast<int>(tails_.size()), static_cast<int>(heads_.size()), weighed);
     came.assign(heads_.size(), 1);
     left.assign(tails_.size(), 1);
     probabilities_.clear();
-    for (std::size_t k = 0; k < odds.size(); ++k) {
-      const double probability = odds[k] * to_tails[k] / sums[row(k)];
+    for (std::size_t k = 0; k < probabilities.size(); ++k) {
+      const double probability = probabilities[k];
       probabilities_[{pairs_[k].row, pairs_[k].column}] = probability;
       came[column(k)] -= probability;
       left[row(k)] -= probability;

@@ -134,7 +134,10 @@ std::vector<GroundTracklet> GroundRecorder::tracklets() && {
 
 GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, const InSight& in_sight) && {
   std::vector<GroundTracklet> whole = std::move(*this).tracklets();
-  repair_swaps(whole, times_, {.max_speed = options.max_speed, .motion = options.motion});
+  SwapRepairOptions swaps;
+  swaps.max_speed = options.max_speed;
+  swaps.motion = options.motion;
+  repair_swaps(whole, times_, swaps);
   std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(whole), times_);
   tracklets = end_before_successors(std::move(tracklets), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_, {.near = kNear * options.motion.acceleration});

@@ -11,17 +11,13 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/track/ground/ground_join.h"
+#include "marey/track/ground/ground_meetings.h"
 #include "marey/track/ground/ground_tracklet.h"
 
 namespace marey::track::ground {
 
-struct SwapRepairOptions {
-  double near = 1.2;      ///< m, besides what is uncertain of the places: who is nearer than this meets
-  double judged_by = 3;   ///< s before and after
-  double surely = 6;      ///< logarithm of how much likelier exchanging must be
-  double max_speed = 12;  ///< m/s
-  GroundMotion motion;
+struct SwapRepairOptions : MeetingOptions {
+  double surely = 6;  ///< logarithm of how much likelier exchanging must be
 };
 
 /// `tracklets` of which some are exchanged from some sample on. `times` by instant. Returns how many meetings were exchanged.
