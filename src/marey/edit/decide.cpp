@@ -67,6 +67,21 @@ double cutoff_of(Tracks& tracks, TrackId track) {
   return proposed_cutoff(path, rate_hz).value_or(kUsualCutoff_hz);
 }
 
+/// Throws Error where a filter would do nothing at this cut-off: two passes at half the rate or above.
+double require_cutoff(double cutoff_hz, const Tracks& tracks) {
+  const auto moments = tracks.moments();
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < moments.size(); ++i) steps_s.push_back(seconds(moments[i].time - moments[i - 1].time));
+  if (steps_s.empty()) return cutoff_hz;
+  const auto median = steps_s.begin() + std::ssize(steps_s) / 2;  // instants may be left out
+  std::nth_element(steps_s.begin(), median, steps_s.end());
+  if (!(*median > 0)) return cutoff_hz;
+  const double rate_hz = 1 / *median;
+  if (cutoff_hz < highest_cutoff(rate_hz)) return cutoff_hz;
+  throw Error("filter: at {:.4g} frames a second a cut-off of {:g} Hz would change nothing; it lies below {:.1f} Hz", rate_hz,
+              cutoff_hz, highest_cutoff(rate_hz));
+}
+
 /// A range that ends after the recording is a slip of the pen; one without an end goes as far as there is.
 void require_frames(const Request& request, const Tracks& tracks) {
   if (!request.frames || request.frames->last == FrameRange::kToTheEnd || tracks.moments().empty()) return;
@@ -117,11 +132,11 @@ Operation decide(const Request& request, Tracks& tracks) {
       .kind = request.kind, .tracks = tracks_named(request, names), .frames = request.frames, .label = request.label};
   require_frames(request, tracks);
   require_rows(request, tracks, operation.tracks);
-  if (!operation.tracks.empty()) require_free_name(request, tracks, operation.tracks.front(), names);
+  if (!operation.tracks.empty() && request.kind != Kind::team) require_free_name(request, tracks, operation.tracks.front(), names);
   if (request.kind == Kind::split) operation.born = tracks.unused_id();
   if (request.kind == Kind::filter) {
     for (const TrackId track : operation.tracks)
-      operation.cutoffs_hz.push_back(request.cutoff_hz ? *request.cutoff_hz : cutoff_of(tracks, track));
+      operation.cutoffs_hz.push_back(request.cutoff_hz ? require_cutoff(*request.cutoff_hz, tracks) : cutoff_of(tracks, track));
   }
   if (request.kind == Kind::fill) {
     for (const TrackId track : operation.tracks) {

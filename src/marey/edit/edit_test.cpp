@@ -98,6 +98,18 @@ TEST(Edit, SplitJoinRenameDelete) {
   EXPECT_EQ(picture(edited(recording)), "A:1111.. ");
 }
 
+TEST(Edit, TeamsAreGivenAndGoAlong) {
+  Recording recording = letters(3, 6);
+  edit(recording, "team A,C \"Real, Madrid\"");
+  edit(recording, "split C 3 D");
+  std::string teams;
+  const Recording now = edited(recording);
+  for (const TrackColumns& track : now.tracks()) teams += track.name.label + ":" + track.name.team + " ";
+  EXPECT_EQ(teams, "A:Real, Madrid B: C:Real, Madrid D:Real, Madrid ");
+  EXPECT_EQ(error_of(recording, "team A"), "team: its new name is missing");
+  EXPECT_EQ(error_of(recording, "team X Reds"), "there is no track called \"X\"");
+}
+
 TEST(Edit, PiecesOfOneMarkerMayShareItsName) {
   Recording recording = letters(2, 6);
   edit(recording, "delete A 3:");
@@ -124,7 +136,8 @@ TEST(Edit, UndoRedoAndBranches) {
 
 TEST(Edit, WhatCannotBeDoneIsSaid) {
   const Recording recording = letters(3, 6);
-  EXPECT_EQ(error_of(recording, "swp A B"), "\"swp\" is no edit; rename, swap, split, join, delete, fill and filter are known");
+  EXPECT_EQ(error_of(recording, "swp A B"),
+            "\"swp\" is no edit; rename, swap, split, join, delete, fill, filter and team are known");
   EXPECT_EQ(error_of(recording, "swap A X"), "there is no track called \"X\"");
   EXPECT_EQ(error_of(recording, "swap A A"), "swap: \"A\" is named twice");
   EXPECT_EQ(error_of(recording, "swap A"), "swap: the second track is missing");
@@ -138,8 +151,12 @@ TEST(Edit, WhatCannotBeDoneIsSaid) {
   EXPECT_EQ(error_of(recording, "rename #7 B"), "there is no track #7");
   EXPECT_EQ(error_of(recording, "rename \"A B"), "a name begins with \" and does not end");
   EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is no cut-off; it is in Hz, above 0, or auto");
+  EXPECT_EQ(error_of(recording, "filter A 500"),
+            "filter: at 100 frames a second a cut-off of 500 Hz would change nothing; it lies below 40.1 Hz");
+  EXPECT_EQ(error_of(recording, "filter A 41"),
+            "filter: at 100 frames a second a cut-off of 41 Hz would change nothing; it lies below 40.1 Hz");
   EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap of up to 1 s that can be filled to within 50 mm");
-  EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill and filter are known");
+  EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill, filter and team are known");
 }
 
 TEST(Edit, AnOperationSurvivesItsText) {

@@ -24,6 +24,10 @@ void lowpass(std::span<Vector<3>> path, double rate_hz, double cutoff_hz) {
   geometry::low_pass(path, cutoff, std::max<std::size_t>(9, settles));
 }
 
+double highest_cutoff(double rate_hz) {
+  return 0.5 * rate_hz / geometry::cutoff_of_one_pass(1);
+}
+
 std::optional<double> proposed_cutoff(std::span<const Vector<3>> path, double rate_hz) {
   if (static_cast<double>(path.size()) < rate_hz || path.size() < 16) return std::nullopt;
   // Residuals over the cut-off fall on a straight line where only noise is taken away; Winter extends it to 0 Hz.

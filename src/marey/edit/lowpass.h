@@ -12,9 +12,12 @@
 
 namespace marey::edit {
 
-/// Smooths places at an even rate. `cutoff_hz` is where both passes together let half of the power through; at half the rate or
-/// above, and of fewer than four places, nothing is changed.
+/// Smooths places at an even rate. `cutoff_hz` is where both passes together let half of the power through; at
+/// `highest_cutoff` or above, and of fewer than four places, nothing is changed.
 void lowpass(std::span<Vector<3>> path, double rate_hz, double cutoff_hz);
+
+/// Below it `lowpass` changes something: the cut-off of a single pass lies below half the rate.
+double highest_cutoff(double rate_hz);
 
 /// The cut-off that residual analysis proposes: where what is taken away falls to what noise alone would leave. Nothing where the
 /// path is too short (a second at least).

@@ -17,12 +17,13 @@ namespace {
 using nlohmann::json;
 using Kind = Operation::Kind;
 
-constexpr std::array<std::pair<Kind, std::string_view>, 7> kKinds{{{Kind::rename, "rename"},
+constexpr std::array<std::pair<Kind, std::string_view>, 8> kKinds{{{Kind::rename, "rename"},
                                                                    {Kind::swap, "swap"},
                                                                    {Kind::split, "split"},
                                                                    {Kind::join, "join"},
                                                                    {Kind::remove, "delete"},
                                                                    {Kind::fill, "fill"},
+                                                                   {Kind::team, "team"},
                                                                    {Kind::filter, "filter"}}};
 constexpr std::array<std::pair<FillMethod, std::string_view>, 3> kMethods{
     {{FillMethod::spline, "spline"}, {FillMethod::rigid, "rigid"}, {FillMethod::pattern, "pattern"}}};
@@ -46,7 +47,7 @@ json ids(const std::vector<TrackId>& tracks) {
 
 TrackId track_of(const json& value) {
   const auto id = value.get<std::int64_t>();
-  if (id <= 0 || id > std::int64_t{1} << 31) throw json::other_error::create(500, "a track's id", &value);
+  if (id <= 0 || id >= std::int64_t{1} << 31) throw json::other_error::create(500, "a track's id", &value);
   return TrackId{static_cast<int>(id)};
 }
 
@@ -99,6 +100,7 @@ Operation parsed(Kind kind, const json& payload) {
   const auto [fewest, most] = tracks_wanted(kind);
   const bool whole = operation.tracks.size() >= fewest && operation.tracks.size() <= most &&
                      (kind != Kind::split || (operation.born && operation.frames)) &&
+                     (kind != Kind::fill || !operation.gaps.empty()) &&
                      (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());
   if (!whole) throw json::other_error::create(500, "its parts", &payload);
   return operation;

@@ -45,6 +45,7 @@ struct Operation {
     join,    ///< tracks[0] gets what tracks[1] has, which ends
     remove,  ///< what the tracks have within `frames` is left out
     fill,    ///< `gaps`
+    team,    ///< tracks are of the team that `label` is called
     filter,  ///< tracks[i] is smoothed with `cutoffs_hz[i]` within `frames`
   };
 
@@ -59,7 +60,7 @@ struct Operation {
   bool operator==(const Operation&) const = default;
 };
 
-/// "rename", "swap", "split", "join", "delete", "fill", "filter".
+/// "rename", "swap", "split", "join", "delete", "fill", "team", "filter".
 std::string_view name_of(Operation::Kind kind);
 std::optional<Operation::Kind> kind_named(std::string_view name);
 /// "spline", "rigid", "pattern".

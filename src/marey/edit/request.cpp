@@ -14,7 +14,7 @@ namespace {
 
 using Kind = Operation::Kind;
 
-constexpr std::string_view kKnown = "rename, swap, split, join, delete, fill and filter are known";
+constexpr std::string_view kKnown = "rename, swap, split, join, delete, fill, filter and team are known";
 
 struct Word {
   std::string text;
@@ -67,7 +67,7 @@ std::optional<FrameRange> range_in(const Word& word) {
   const auto end = last.empty() ? std::optional<std::int64_t>(FrameRange::kToTheEnd) : number_in<std::int64_t>(last);
   if (!begin || !end) return std::nullopt;
   if (*begin < 0 || *end < *begin || *end > FrameRange::kToTheEnd)
-    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", word.text);
+    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", plain_text(word.text));
   return FrameRange{*begin, *end};
 }
 
@@ -105,7 +105,7 @@ class Reader {
   }
 
   void end() const {
-    if (!ended()) throw Error("{}: \"{}\" is too much", kind_, words_.front().front().text);
+    if (!ended()) throw Error("{}: \"{}\" is too much", kind_, plain_text(words_.front().front().text));
   }
 
  private:
@@ -123,7 +123,7 @@ std::optional<double> setting_in(const Word& word, std::string_view name, double
     return std::nullopt;
   const auto value = number_in<double>(std::string_view(word.text).substr(name.size() + 1));
   if (!value || !(*value > 0 && *value <= most))
-    throw Error("fill: {} is none; {} is above 0, up to {:g} {}", word.text, name, most, unit);
+    throw Error("fill: {} is none; {} is above 0, up to {:g} {}", plain_text(word.text), name, most, unit);
   return value;
 }
 
@@ -139,7 +139,7 @@ std::optional<double> cutoff_in(const Word& word) {
   if (word.quoted || word.text.find(':') != std::string::npos) return std::nullopt;
   const auto value = number_in<double>(word.text);
   if (!value || !(*value > 0 && *value <= 10'000))
-    throw Error("filter: \"{}\" is no cut-off; it is in Hz, above 0, or auto", word.text);
+    throw Error("filter: \"{}\" is no cut-off; it is in Hz, above 0, or auto", plain_text(word.text));
   return value;
 }
 
@@ -206,6 +206,10 @@ void read(Reader& words, Request& request) {
     case Kind::fill:
       request.tracks = words.tracks("the track, or all,");
       read_fill(words, request);
+      break;
+    case Kind::team:
+      request.tracks = words.tracks("the track");
+      request.label = new_name(words);
       break;
     case Kind::filter:
       request.tracks = words.tracks("the track, or all,");

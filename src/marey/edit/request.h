@@ -1,7 +1,7 @@
 // An edit as a person writes it: a word, the tracks it is done to, frames where it is not done to all of them.
 //   rename LKNE LKneeOuter        swap LKNE RKNE 120:180       split LKNE 300 [NAME]       join LKNE LKNE2
 //   delete LKNE,RKNE [120:180]    fill all|LKNE [120:180] [spline|rigid|pattern] [longest=0.5] [within=20]
-//   filter all|LKNE [6|auto] [120:180]
+//   filter all|LKNE [6|auto] [120:180]                       team LKNE,RKNE left
 // Tracks are named by their labels, or #12 by their numbers; names with blanks or commas stand in double quotes. Frames are counted
 // from 0, both ends included; `120:` is from there on, `:180` up to there.
 #pragma once
@@ -19,7 +19,7 @@ struct Request {
   Operation::Kind kind{};
   std::vector<std::string> tracks = {};  ///< as written; `all` alone stands for all of them
   std::optional<FrameRange> frames = {};
-  std::string label = {};                 ///< of rename and split
+  std::string label = {};                 ///< of rename, split and team
   std::optional<FillMethod> method = {};  ///< of fill; nothing: the one that does best
   double longest_s = 1;                   ///< of fill
   double within_m = 0.05;                 ///< of fill

@@ -112,6 +112,13 @@ void Tracks::apply(const Operation& operation) {
       return remove(operation);
     case Kind::fill:
       return fill(operation);
+    case Kind::team:
+      for (const TrackId track : operation.tracks) {
+        rows(track);
+        entry(track).name.team = operation.label;
+        entry(track).changed = true;
+      }
+      return;
     case Kind::filter:
       return filter(operation);
   }
