@@ -231,6 +231,38 @@ std::vector<BodyMarker> place_markers(int count, Random& random) {
   return markers;
 }
 
+Skeleton body_skeleton(std::span<const BodyMarker> markers) {
+  constexpr std::array<int, kLimbs> kParents{-1,        pelvis, chest,   chest,   arm_l,  forearm_l, chest,  arm_r,
+                                             forearm_r, pelvis, thigh_l, shank_l, pelvis, thigh_r,   shank_r};
+  const BodyPose rest = pose_of({}, {});
+  Skeleton skeleton;
+  skeleton.name = "body";
+  const auto add_axis = [&](Segment& segment, bool turns, int axis) {
+    Coordinate coordinate;
+    coordinate.name = segment.name + (turns ? "_r" : "_t") + "xyz"[axis];
+    coordinate.turns = turns;
+    segment.joint.axes.push_back({turns, Vector<3>::Unit(axis), {}, static_cast<int>(skeleton.coordinates.size())});
+    skeleton.coordinates.push_back(std::move(coordinate));
+  };
+  for (std::size_t limb = 0; limb < kLimbs; ++limb) {
+    Segment segment{.name = std::string(limb_shapes()[limb].name), .parent = {}, .joint = {}, .end = limb_shapes()[limb].end};
+    if (kParents[limb] >= 0) {
+      segment.parent = kParents[limb];
+      segment.joint.parent_from_joint.translation =
+          rest[static_cast<std::size_t>(kParents[limb])].inverse() * rest[limb].translation;
+    } else {
+      for (const int axis : {0, 1, 2}) add_axis(segment, false, axis);
+    }
+    const bool fixed = limb == hand_l || limb == hand_r || limb == foot_l || limb == foot_r;
+    for (const int axis : {2, 1, 0}) {
+      if (!fixed) add_axis(segment, true, axis);
+    }
+    skeleton.segments.push_back(std::move(segment));
+  }
+  for (const BodyMarker& marker : markers) skeleton.markers.push_back({marker.label, marker.limb, marker.in_limb, 1});
+  return skeleton;
+}
+
 bool hidden_by_body(const BodyPose& pose, const Vector<3>& from, const Vector<3>& to) {
   for (std::size_t i = 0; i < kLimbs; ++i) {
     const LimbShape& limb = limb_shapes()[i];

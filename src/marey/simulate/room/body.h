@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/core/skeleton.h"
 #include "marey/geometry/rigid.h"
 #include "marey/simulate/random.h"
 
@@ -46,6 +47,10 @@ struct BodyMarker {
 
 /// Spreads markers over the body by the limbs' surfaces, as far from each other as they fit.
 std::vector<BodyMarker> place_markers(int count, Random& random);
+
+/// The body as a skeleton, its segments the limbs in their order: at rest upright with the arms down, the pelvis free, hands and
+/// feet fixed, everything else balls.
+Skeleton body_skeleton(std::span<const BodyMarker> markers);
 
 /// Whether some limb stands between two points.
 bool hidden_by_body(const BodyPose& pose, const Vector<3>& from, const Vector<3>& to);

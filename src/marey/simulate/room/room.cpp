@@ -241,6 +241,15 @@ const Rig& RoomScene::rig_at(double time_s) const {
 const std::vector<std::string>& RoomScene::labels() const {
   return parts_->labels;
 }
+std::optional<Skeleton> RoomScene::skeleton() const {
+  if (!parts_->has_body()) return std::nullopt;
+  return body_skeleton(parts_->body);
+}
+std::vector<Rigid3> RoomScene::segments(double time_s) const {
+  if (!parts_->has_body()) return {};
+  const BodyPose at = parts_->pose(time_s);
+  return {at.begin(), at.end()};
+}
 std::vector<Vector<3>> RoomScene::points(double time_s) const {
   return parts_->points(time_s);
 }

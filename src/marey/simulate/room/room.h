@@ -12,6 +12,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/rig.h"
+#include "marey/core/skeleton.h"
 
 namespace marey::simulate::room {
 
@@ -97,6 +98,11 @@ class RoomScene {
   const Rig& rig_at(double time_s) const;
   /// A name for each marker.
   const std::vector<std::string>& labels() const;
+
+  /// The body that bears the markers; nothing where none does.
+  std::optional<Skeleton> skeleton() const;
+  /// Where its segments truly are at a time by the rig's clock: world_from_segment, m. Only where there is a body.
+  std::vector<Rigid3> segments(double time_s) const;
 
   /// Where the markers are at a time by the rig's clock, m.
   std::vector<Vector<3>> points(double time_s) const;

@@ -44,6 +44,7 @@ PoseSolver::PoseSolver(const Skeleton& skeleton, const PoseOptions& options)
   pose_.coordinates = skeleton.rest();
   pose_.deviations.assign(skeleton.coordinates.size(), 0);
   pose_.observed.assign(skeleton.coordinates.size(), false);
+  find_limbs();
 }
 
 void PoseSolver::start_from(std::vector<double> coordinates) {
@@ -155,7 +156,7 @@ double PoseSolver::limit_cost(const SkeletonState& state) const {
   return cost;
 }
 
-void PoseSolver::add_limits(const SkeletonState& state) {
+void PoseSolver::add_limits(const SkeletonState& state, PoseEquations& equations) const {
   const double information = 1 / (options_.limit_rad * options_.limit_rad);
   for (int d = 0; d < articulation_.dofs(); ++d) {
     const auto& index = articulation_.dof()[static_cast<std::size_t>(d)].coordinate;
@@ -165,8 +166,8 @@ void PoseSolver::add_limits(const SkeletonState& state) {
     const double to =
         std::clamp(x, coordinate.lowest.value_or(x), std::max(coordinate.lowest.value_or(x), coordinate.highest.value_or(x)));
     if (to == x) continue;
-    equations_.information(d, d) += information;
-    equations_.gradient[d] += information * (to - x);
+    equations.information(d, d) += information;
+    equations.gradient[d] += information * (to - x);
   }
 }
 
@@ -182,7 +183,7 @@ double PoseSolver::minimise(Seen seen, int most) {
     stop_point();
     gather(equations_);
     add_prior(state_);
-    add_limits(state_);
+    add_limits(state_, equations_);
     for (bool accepted = false; !accepted;) {
       damped_ = equations_.information;
       damped_.diagonal() += damping * equations_.information.diagonal();
@@ -259,6 +260,7 @@ const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
   iterations_ = 0;
   const bool any = std::any_of(seen.begin(), seen.end(), [](const auto& place) { return place.has_value(); });
   pose_.started = !known_ && any;
+  since_start_s_ += seconds;
   if (!known_ && !any) {
     state_ = predicted_ = articulation_.state_of(articulation_.skeleton().rest());
   } else if (!known_) {
@@ -272,13 +274,15 @@ const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
     state_ = predicted_;
     if (any) minimise(seen, options_.max_iterations);
     rms_of(seen);
-    if (lost()) {
+    if (lost() && since_start_s_ >= options_.sought_anew_s) {
       pose_.started = true;
+      since_start_s_ = 0;
       const SkeletonState before = state_;
       const double rms = pose_.rms_m;
       cold_start(seen);
       if (rms_of(seen) > 0.7 * rms) state_ = before;
     }
+    if (any) mind_limits(seconds, seen);
   }
   articulation_.take_angles(state_);
   rms_of(seen);

@@ -34,7 +34,9 @@ struct PoseOptions {
   double not_observed_rad = 0.174532925;  ///< 10°
   double not_observed_m = 0.1;
   int max_iterations = 30;
-  double lost_m = 0.12;  ///< where most markers are farther away, it starts anew
+  double lost_m = 0.12;      ///< where most markers are farther away, it starts anew
+  double sought_anew_s = 0;  ///< and that no sooner than this after the last time
+  double at_limit_s = 0.25;  ///< a hinge that stays at its limit for so long is asked whether the limb above it is turned about
 };
 
 /// A skeleton at one instant.
@@ -76,6 +78,8 @@ class PoseSolver {
   const SkeletonState& state() const { return state_; }
   /// Linearises the markers at a state.
   void linearise(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen, PoseEquations& equations);
+  /// Adds what pulls coordinates back that are beyond their limits.
+  void add_limits(const SkeletonState& state, PoseEquations& equations) const;
 
  private:
   using Seen = std::span<const std::optional<Vector<3>>>;
@@ -87,6 +91,17 @@ class PoseSolver {
     Vector<3> pull = Vector<3>::Zero(), torque = Vector<3>::Zero();
   };
 
+  /// A segment that turns freely, and the hinge with limits at its end: turned by half a turn about itself, with the hinge bent the
+  /// other way, it lies nearly as before.
+  struct Limb {
+    std::size_t ball = 0;
+    int hinge = 0;            ///< coordinate
+    std::vector<int> beside;  ///< coordinates of the hinge's joint besides
+    Vector<3> along;          ///< in the ball's frame
+    Matrix<3> rest;           ///< of the ball
+    double at_limit_s = 0;
+  };
+
   void predict(double seconds);
   double evaluate(const SkeletonState& state, Seen seen);
   double gather_markers(Seen seen);
@@ -94,9 +109,15 @@ class PoseSolver {
   double prior_cost(const SkeletonState& state);
   void add_prior(const SkeletonState& state);
   double limit_cost(const SkeletonState& state) const;
-  void add_limits(const SkeletonState& state);
   double minimise(Seen seen, int most);
   void cold_start(Seen seen);
+  void find_limbs();
+  bool at_limit(int coordinate) const;
+  double oddness(const Limb& limb) const;
+  double cost_of_pose(const Limb& limb, Seen seen);
+  std::vector<SkeletonState> turned_about(const Limb& limb) const;
+  bool turn_limbs(Seen seen, bool all);
+  void mind_limits(double seconds, Seen seen);
   std::vector<SkeletonState> starts(Seen seen);
   std::optional<Rigid3> root_from(Seen seen, bool root_alone, const SkeletonState& rest);
   double rms_of(Seen seen);
@@ -109,13 +130,14 @@ class PoseSolver {
   Articulation articulation_;
   PoseOptions options_;
   bool known_ = false;
-  bool rested_ = false;
+  double since_start_s_ = 0;
   double sigma_m_, robust_m_;
   SkeletonState state_, predicted_, trial_, last_;
   Eigen::VectorXd velocity_, variance_, prior_information_, step_, difference_;
   std::vector<bool> dof_observed_;
   Eigen::VectorXd dof_deviation_;
   std::vector<Moments> moments_;
+  std::vector<Limb> limbs_;
   PoseEquations equations_;
   Eigen::MatrixXd damped_, covariance_;
   Eigen::LDLT<Eigen::MatrixXd> solver_;

@@ -172,6 +172,53 @@ TEST(PoseSolver, IsNotDraggedAlongByAWrongLabel) {
   }
 }
 
+/// A trunk, an upper arm that turns freely and a forearm on an elbow that bends to one side, with few markers, as sets have them.
+Skeleton arm() {
+  Skeleton skeleton;
+  skeleton.name = "arm";
+  const auto coordinate = [&](bool turns, std::optional<double> lowest, std::optional<double> highest) {
+    skeleton.coordinates.push_back({"c" + std::to_string(skeleton.coordinates.size()), turns, 0, lowest, highest, false, {}});
+    return static_cast<int>(skeleton.coordinates.size()) - 1;
+  };
+  Segment trunk{.name = "trunk", .parent = {}, .joint = {}, .end = {}};
+  for (int i = 0; i < 6; ++i) trunk.joint.axes.push_back({i >= 3, Vector<3>::Unit(i % 3), {}, coordinate(i >= 3, {}, {})});
+  Segment upper{.name = "upper arm", .parent = 0, .joint = {}, .end = {}};
+  upper.joint.parent_from_joint.translation = {0, 0.2, 0.4};
+  for (int i = 0; i < 3; ++i) upper.joint.axes.push_back({true, Vector<3>::Unit(i), {}, coordinate(true, {}, {})});
+  Segment fore{.name = "forearm", .parent = 1, .joint = {}, .end = {}};
+  fore.joint.parent_from_joint.translation = {0, 0, -0.3};
+  fore.joint.axes.push_back({true, -Vector<3>::UnitY(), {}, coordinate(true, -0.26, 2.88)});
+  fore.joint.axes.push_back({true, -Vector<3>::UnitZ(), {}, coordinate(true, -3.14, 3.14)});
+  skeleton.segments = {trunk, upper, fore};
+  for (const Vector<3>& place : {Vector<3>(0.1, 0, 0), Vector<3>(-0.1, 0, 0.1), Vector<3>(0, 0.15, 0.4), Vector<3>(0, -0.15, 0.4)})
+    skeleton.markers.push_back({"t" + std::to_string(skeleton.markers.size()), 0, place, 1});
+  for (const Vector<3>& place : {Vector<3>(0, 0.03, -0.15), Vector<3>(0, 0.03, -0.3)})
+    skeleton.markers.push_back({"u" + std::to_string(skeleton.markers.size()), 1, place, 1});
+  for (const double side : {0.03, -0.03})
+    skeleton.markers.push_back({"f" + std::to_string(skeleton.markers.size()), 2, Vector<3>(0, side, -0.25), 1});
+  return skeleton;
+}
+
+/// The upper arm turned by half a turn about itself and the elbow as far backwards as it may lie nearly as the bent arm does.
+TEST(PoseSolver, TurnsAnArmThatIsBentBackwards) {
+  const Skeleton skeleton = arm();
+  std::vector<double> truth = skeleton.rest(), wrong;
+  truth[9] = 0.6;
+  wrong = truth;
+  wrong[8] = std::numbers::pi;
+  wrong[9] = -0.26;
+  wrong[10] = 3.1;
+  const auto seen = markers_at(skeleton, truth);
+  const auto elbow = [&](double at_limit_s) {
+    PoseSolver solver(skeleton, {.at_limit_s = at_limit_s});
+    solver.start_from(wrong);
+    for (int i = 0; i < 100; ++i) solver.step(0.01, seen);
+    return solver.pose().coordinates[9];
+  };
+  EXPECT_LT(elbow(1e9), 0) << "no trap: the test shows nothing";
+  EXPECT_NEAR(elbow(0.25), 0.6, 0.01);
+}
+
 TEST(PoseSolver, RefusesASkeletonThatCannotBeSolved) {
   std::mt19937 random(1);
   Skeleton skeleton = body(random);

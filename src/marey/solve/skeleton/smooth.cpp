@@ -77,6 +77,7 @@ void smooth_window(PoseSolver& solver, std::span<SkeletonState> states, std::spa
   PoseEquations equations;
   for (std::size_t t = 0; t < states.size(); ++t) {
     solver.linearise(states[t], frames[t], equations);
+    solver.add_limits(states[t], equations);
     system.diagonal(t) += equations.information;
     system.diagonal(t).diagonal().array() += kHeld;
     system.right(t) += equations.gradient;
