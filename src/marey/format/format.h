@@ -14,6 +14,7 @@
 #include "marey/core/recording_reader.h"
 #include "marey/core/rig.h"
 #include "marey/core/sink.h"
+#include "marey/format/beside_points.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::format {
@@ -59,11 +60,15 @@ enum class UpAxis { y, z };
 
 /// What a reader must be told where the file does not tell it.
 struct ReadOptions {
-  std::string metadata;       ///< of a match, the file that belongs to it; empty: beside it, under a like name
+  std::string metadata;       ///< the file that belongs to a match, or an AMC file's .asf; empty: beside it, under a like name
   geometry::PitchSize pitch;  ///< of a match
   double rate_hz = 25;
   bool as_recorded = false;  ///< of a take: without its edits, which are then told beside it
   UpAxis up = UpAxis::z;     ///< of points in space, the axis that is up in the file
+  // Of a skeleton's motion, whose joints are the points: its z is up when it is read.
+  double skeleton_unit_m = 0.01;   ///< of a BVH file: how many metres its unit has
+  UpAxis skeleton_up = UpAxis::y;  ///< the axis that is up in a BVH or ASF file
+  double amc_rate_hz = 120;        ///< of an AMC file, which does not say
 };
 
 /// The beginning of a file, by which its format is known.
@@ -89,6 +94,7 @@ struct FileInfo {
   std::optional<std::int64_t> head;         ///< of the edits
   std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing where only reading would tell
   std::optional<UpAxis> up;                 ///< what the file itself says of its world, where it says anything
+  BesidePoints beside = {};                 ///< of a C3D file
 };
 
 /// A file that is read instant by instant. Units and axes are Marey's.
@@ -112,6 +118,7 @@ struct WritePlan {
   double farthest_m = 0;                          ///< the largest coordinate by amount
   bool tells_measured = false;                    ///< some point is filled or predicted, or brings a residual or its cameras
   UpAxis up = UpAxis::z;                          ///< of the file's world; instants come turned
+  std::optional<MotionFindings> found = {};       ///< for C3D; others hold no such thing
 };
 
 /// One thing that is said of a file that holds no recording and no rig: for people, and for programs.
@@ -148,11 +155,15 @@ struct Format {
   bool while_recording = false;
   /// It holds bodies' poses beside points.
   bool poses = false;
+  /// It holds what stands beside points in a C3D file.
+  bool beside_points = false;
   /// Its places on the ground count from the corner of the pitch that is below on the left when it is seen from above with the home
   /// stand at the bottom, y upwards; those of others are as the user has them.
   bool from_corner = false;
-  /// z is up in it always.
+  /// z is up in it always, or its reader turns it so.
   bool z_up = false;
+  /// A skeleton's motion: y is up in it unless the user says otherwise.
+  bool skeleton = false;
   /// Files come in pairs: the endings of a name and of the file that is beside it.
   std::vector<std::pair<std::string_view, std::string_view>> beside = {};
 

@@ -82,7 +82,8 @@ class WholeReader : public FileReader {
              .edits = recording.edits,
              .head = recording.head,
              .frame_count = reader_.instant_count(),
-             .up = {}};
+             .up = {},
+             .beside = {}};
   }
   const FileInfo& info() const override { return info_; }
   std::optional<Instant> next() override { return reader_.next(); }
@@ -240,8 +241,17 @@ std::vector<std::string> write_whole(const std::string& path, const Format& form
 
 std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format) {
   if (header.bodies.empty() || format.poses) return std::nullopt;
-  return fmt::format("{}: {} holds points alone, not the poses of the {} {}; a take (.marey), .mcap, or CSV by --format poses does",
-                     path, format.title, header.bodies.size(), header.bodies.size() == 1 ? "body" : "bodies");
+  return fmt::format(
+      "{}: {} holds points alone, not the poses of the {} {}; a take (.marey), .c3d, .mcap, or CSV by --format poses does", path,
+      format.title, header.bodies.size(), header.bodies.size() == 1 ? "body" : "bodies");
+}
+
+std::optional<std::string> beside_lost(const BesidePoints& beside, const std::string& path, const Format& format) {
+  if (!beside.any() || format.beside_points) return std::nullopt;
+  const std::string channels = beside.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", beside.channels) : "";
+  const std::string events = beside.events > 0 ? fmt::format("{} events", beside.events) : "";
+  return fmt::format("{}: {} holds none of the {}{}{} of {}; they go along into .c3d alone", path, format.title, channels,
+                     channels.empty() || events.empty() ? "" : " and ", events, beside.path);
 }
 
 }  // namespace marey::format

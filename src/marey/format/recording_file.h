@@ -37,6 +37,9 @@ std::unique_ptr<Sink> create_recording(const std::string& path, const Format& fo
 /// What a user should know where a recording has bodies and `format` holds no poses; nothing where it does, or there are none.
 std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format);
 
+/// The same of what stood beside the points of a file that was read.
+std::optional<std::string> beside_lost(const BesidePoints& beside, const std::string& path, const Format& format);
+
 /// Writes a recording that is whole, and says what the format could not hold.
 std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match,
                                      UpAxis up = UpAxis::z);

@@ -14,6 +14,9 @@
 #define MAREY_FORMATS(row) \
   row(format::take, take) \
   row(format::mcap, mcap) \
+  row(format::skeleton, bvh) \
+  row(format::skeleton, acclaim) \
+  row(format::skeleton, glb) \
   row(format::bodies, poses) \
   row(format::motion, trc) \
   row(format::motion, motive) \

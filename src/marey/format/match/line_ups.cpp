@@ -74,9 +74,14 @@ std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& line_ups
   return pair;
 }
 
-/// The label where it is a shirt's number and still free, else the id, else the next free one.
+/// The shirt's number that a label is, "7", or begins with, "7 Kane".
+std::optional<std::int64_t> shirt_number_in(const std::string& label) {
+  return whole_number_of(std::string_view(label).substr(0, label.find(' ')));
+}
+
+/// The label's number where it has one that is still free, else the id, else the next free one.
 int number_for(const TrackName& person, std::set<int>& taken) {
-  const auto label = whole_number_of(person.label);
+  const auto label = shirt_number_in(person.label);
   int number = label && *label >= 0 && *label <= 999 ? static_cast<int>(*label) : marey::number(person.id);
   while (!taken.insert(number).second) ++number;
   return number;

@@ -16,7 +16,8 @@ enum class Side { home, away, referee, other };
 struct LineUps {
   struct Member {
     Side side = Side::other;
-    int number = 0;    ///< of the shirt, unique in the team: the label where it is one, else the id or what is free
+    int number = 0;    ///< of the shirt, unique in the team: the label where it is one or begins with one, "7 Kane", else the id or
+                       ///< what is free
     std::string name;  ///< the label, or "Player No.7"; never a bare number, which some readers choke on
   };
   std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" where there are none

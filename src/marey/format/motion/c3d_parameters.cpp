@@ -59,13 +59,13 @@ class ParameterWalk {
     // A group without a name is legal (BTS writes one); a parameter without one is the end.
     if (name_length == 0 && id >= 0) return false;
     if (!has(2 + name_length + 2)) return warn("its parameters are cut off");
-    const std::string name = upper(trimmed(bytes_.text(at_ + 2, name_length)));
+    const std::string written = trimmed(bytes_.text(at_ + 2, name_length)), name = upper(written);
     const std::size_t link = at_ + 2 + name_length;
     const std::size_t offset = bytes_.word(link);
     if (id < 0) {
       groups_.try_emplace(-id, name);
     } else {
-      parameter(id, name, link + 2);
+      parameter(id, written, link + 2);
     }
     if (offset == 0) return false;
     // A link that leads out of the section ends the list too: files are written so.
@@ -74,7 +74,8 @@ class ParameterWalk {
     return true;
   }
 
-  void parameter(int group, const std::string& name, std::size_t at) {
+  void parameter(int group, const std::string& written, std::size_t at) {
+    const std::string name = upper(written);
     if (at + 2 > end_) return;
     const int type = static_cast<std::int8_t>(bytes_.byte(at));
     const std::size_t dimensions = bytes_.byte(at + 1);
@@ -86,6 +87,8 @@ class ParameterWalk {
     std::size_t count = 1;
     for (std::size_t i = 0; i < dimensions && count <= kMostValues; ++i) count *= bytes_.byte(at + i);
     const std::size_t width = dimensions > 0 ? bytes_.byte(at) : 1;
+    std::vector<std::size_t> sizes;
+    for (std::size_t i = 0; i < dimensions; ++i) sizes.push_back(bytes_.byte(at + i));
     at += dimensions;
     const std::size_t size = type == 4 ? 4 : type == 2 ? 2 : 1;
     values_ += count;
@@ -93,7 +96,11 @@ class ParameterWalk {
       warn("parameter " + shown(name) + " is damaged");
       return;
     }
-    parameters_.try_emplace({group, name}, type == -1 ? texts(at, count, width) : numbers(at, count, type));
+    C3dParameter read = type == -1 ? texts(at, count, width) : numbers(at, count, type);
+    read.name = written;
+    read.type = type == -1 || type == 2 || type == 4 ? type : 1;
+    read.dimensions = std::move(sizes);
+    parameters_.try_emplace({group, name}, std::move(read));
   }
 
   C3dParameter texts(std::size_t at, std::size_t count, std::size_t width) const {
@@ -132,6 +139,17 @@ class ParameterWalk {
   std::map<std::pair<int, std::string>, C3dParameter> parameters_;
 };
 
+template <typename Value>
+std::vector<Value> all_parts(const std::map<std::string, C3dParameter, std::less<>>& parameters, std::string_view name,
+                             std::vector<Value> C3dParameter::* values) {
+  std::vector<Value> all;
+  for (int part = 1;; ++part) {
+    const auto found = parameters.find(part == 1 ? std::string(name) : fmt::format("{}{}", name, part));
+    if (found == parameters.end()) return all;
+    all.insert(all.end(), (found->second.*values).begin(), (found->second.*values).end());
+  }
+}
+
 C3dProcessor processor_of(std::uint8_t mark, C3dHead& head) {
   if (mark == 84 || mark == 85 || mark == 86) return static_cast<C3dProcessor>(mark);
   head.warnings.push_back("it does not say whose numbers it holds; a PC's are assumed");
@@ -163,6 +181,14 @@ std::optional<double> C3dHead::number(std::string_view name, std::size_t index) 
 std::string C3dHead::text(std::string_view name) const {
   const auto found = parameters.find(name);
   return found == parameters.end() || found->second.texts.empty() ? std::string() : found->second.texts.front();
+}
+
+std::vector<std::string> C3dHead::texts(std::string_view name) const {
+  return all_parts(parameters, name, &C3dParameter::texts);
+}
+
+std::vector<double> C3dHead::numbers(std::string_view name) const {
+  return all_parts(parameters, name, &C3dParameter::numbers);
 }
 
 C3dHead read_c3d_head(std::span<const std::byte> bytes, const std::string& name) {

@@ -44,6 +44,9 @@ class C3dBytes {
 struct C3dParameter {
   std::vector<std::string> texts;  ///< trimmed
   std::vector<double> numbers;
+  std::string name = {};                     ///< as it is written there, without its group
+  int type = -1;                             ///< −1 texts, 1 bytes, 2 words, 4 reals
+  std::vector<std::size_t> dimensions = {};  ///< of texts their width is the first
 };
 
 /// A C3D file's first block and its parameters.
@@ -58,6 +61,9 @@ struct C3dHead {
   /// Nothing where it is missing, or is text.
   std::optional<double> number(std::string_view name, std::size_t index = 0) const;
   std::string text(std::string_view name) const;
+  /// Of a parameter that goes on in others of its name, with a number behind it.
+  std::vector<std::string> texts(std::string_view name) const;
+  std::vector<double> numbers(std::string_view name) const;
 };
 
 /// Throws Error, with `name` for the file, where the bytes are no C3D file's.

@@ -1,7 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -9,98 +10,57 @@
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/motion/c3d_parameters.h"
+#include "marey/format/motion/c3d_beside.h"
+#include "marey/format/motion/c3d_section.h"
 #include "marey/format/motion/point_sink.h"
 
 namespace marey::format::motion {
 namespace {
 
-constexpr std::size_t kMostNames = 255;  // in one parameter
 constexpr std::size_t kLongestName = 127;
 constexpr std::size_t kMostPoints = 65535;
+constexpr std::size_t kC3dMostBlocks = 260;  // before the frames
+/// What goes along from the file that was read; events where none were found anew.
+constexpr std::array<const char*, 6> kGroupsAlong = {"EVENT",          "EVENT_CONTEXT", "ANALOG",
+                                                     "FORCE_PLATFORM", "PROCESSING",    "SUBJECTS"};
 
-void put_byte(std::string& bytes, std::size_t value) {
-  bytes += static_cast<char>(static_cast<std::uint8_t>(value));
-}
-void put_word(std::string& bytes, std::int64_t value) {
-  put_byte(bytes, static_cast<std::uint64_t>(value) & 0xff);
-  put_byte(bytes, static_cast<std::uint64_t>(value) >> 8 & 0xff);
-}
-void put_real(std::string& bytes, double value) {
-  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  put_word(bytes, bits & 0xffff);
-  put_word(bytes, bits >> 16);
-}
-
-/// The section of parameters, built up group by group.
-class ParameterSection {
+/// Rows that stand behind all others in the file, kept in a nameless one until then.
+class RowsBehind {
  public:
-  void group(const std::string& name) {
-    ++group_;
-    put_byte(bytes_, name.size());
-    put_byte(bytes_, static_cast<std::size_t>(-group_));
-    bytes_ += name;
-    put_word(bytes_, 3);
-    put_byte(bytes_, 0);
+  explicit RowsBehind(std::string path) : path_(std::move(path)), file_(std::tmpfile()) {
+    if (file_ == nullptr) throw Error("{}: no temporary file can be made; is the folder for them full?", path_);
   }
-  void words(const std::string& name, const std::vector<std::int64_t>& values, bool scalar) {
-    std::string data;
-    for (const std::int64_t value : values) put_word(data, value);
-    parameter(name, 2, scalar ? std::vector<std::size_t>{} : std::vector<std::size_t>{values.size()}, data);
+  void add(std::span<const float> row) {
+    if (std::fwrite(row.data(), sizeof(float), row.size(), file_.get()) != row.size())
+      throw Error("{}: the folder for temporary files is full", path_);
   }
-  void word(const std::string& name, std::int64_t value) { words(name, {value}, true); }
-  void real(const std::string& name, double value) {
-    std::string data;
-    put_real(data, value);
-    parameter(name, 4, {}, data);
-  }
-  void text(const std::string& name, const std::string& text) { parameter(name, -1, {text.size()}, text); }
-  /// All of one width.
-  void texts(const std::string& name, std::span<const std::string> texts, std::size_t width) {
-    std::string data;
-    for (const std::string& text : texts) data += text.substr(0, width) + std::string(width - std::min(width, text.size()), ' ');
-    parameter(name, -1, {width, texts.size()}, data);
-  }
-  /// Whole blocks. Throws where it is longer than the format allows.
-  std::string blocks(const std::string& path) {
-    std::string section("\x01\x50", 2);
-    const std::size_t count = (4 + bytes_.size() + 2 + kC3dBlock - 1) / kC3dBlock;
-    if (count > 255)
-      throw Error("{}: its names take {} blocks, and a C3D file has room for 255; use shorter or fewer", path, count);
-    put_byte(section, count);
-    put_byte(section, 84);
-    section += bytes_;
-    section.resize(count * kC3dBlock, '\0');
-    return section;
+  void copy_to(WholeFile& file) {
+    std::rewind(file_.get());
+    std::array<char, 65536> bytes{};
+    while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file_.get())) file.write({bytes.data(), count});
+    if (std::ferror(file_.get()) != 0) throw Error("{}: its temporary file cannot be read again", path_);
   }
 
  private:
-  void parameter(const std::string& name, int type, const std::vector<std::size_t>& dimensions, const std::string& data) {
-    put_byte(bytes_, name.size());
-    put_byte(bytes_, static_cast<std::size_t>(group_));
-    bytes_ += name;
-    put_word(bytes_, static_cast<std::int64_t>(2 + 2 + dimensions.size() + data.size() + 1));
-    put_byte(bytes_, static_cast<std::size_t>(type));
-    put_byte(bytes_, dimensions.size());
-    for (const std::size_t dimension : dimensions) put_byte(bytes_, dimension);
-    bytes_ += data;
-    put_byte(bytes_, 0);
-  }
-
-  std::string bytes_;
-  int group_ = 0;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string path_;
+  std::unique_ptr<std::FILE, Close> file_;
 };
 
 class C3dWriter : public PointSink {
  public:
   C3dWriter(const std::string& path, const WritePlan& plan)
-      : PointSink(path), plan_(plan), points_(plan.info.tracks.size()), next_(plan.first_frame) {
+      : PointSink(path), plan_(plan), tracks_(plan.info.tracks.size()), next_(plan.first_frame) {
+    if (plan.found) angles_ = plan.found->angles;
+    points_ = tracks_ + angles_.size();
     if (points_ > kMostPoints) {
       throw Error("{}: {} tracks, and a C3D file has room for {}; write fewer", path, points_, kMostPoints);
     }
     // What integers of 16 bits would need, and fine enough that a residual, 255 steps at most, says something.
     scale_mm_ = std::max(plan.farthest_m * 1000 / 32000, 0.01);
-    for (std::size_t i = 0; i < points_; ++i) column_[plan.info.tracks[i].id] = i;
+    for (std::size_t i = 0; i < tracks_; ++i) column_[plan.info.tracks[i].id] = i;
   }
 
   void write(const Instant& frame) override {
@@ -108,34 +68,84 @@ class C3dWriter : public PointSink {
       throw Error("{}: frame {} comes out of order, or beyond what was planned", path(), frame.index);
     }
     while (next_ < frame.index) put_frame({});
-    put_frame(frame.samples);
+    put_frame(frame);
   }
 
   void finish() override {
     while (next_ <= plan_.last_frame) put_frame({});
+    if (poses_) {
+      file_->write(std::string(poses_begin() - points_begin() - frame_count() * frame_bytes(), '\0'));
+      poses_->copy_to(*file_);
+    }
     file_->finish();
   }
 
  private:
-  void start(const RecordingHeader&) override {
+  void start(const RecordingHeader& header) override {
+    if (!plan_.info.beside.path.empty()) beside_.emplace(plan_.info.beside);
+    if (analog_channels() > 0 && std::abs(beside_->rate_hz() / plan_.info.header.rate_hz - 1) > 1e-6)
+      throw Error("{}: {} has {:g} frames a second, and what is written {:g}; analog channels of another rate do not fit", path(),
+                  plan_.info.beside.path, beside_->rate_hz(), plan_.info.header.rate_hz);
+    bodies_ = header.bodies;
+    if (!bodies_.empty()) poses_.emplace(path());
     file_.emplace(path());
-    write_head(plan_.up);
+    write_head();
   }
 
-  void put_frame(std::span<const Sample> points) {
+  std::size_t analog_channels() const { return beside_ ? beside_->channels() : 0; }
+  std::size_t analog_samples() const { return analog_channels() > 0 ? beside_->samples() : 0; }
+  std::size_t frame_bytes() const { return (4 * points_ + analog_channels() * analog_samples()) * sizeof(float); }
+  std::size_t frame_count() const { return static_cast<std::size_t>(plan_.last_frame - plan_.first_frame + 1); }
+  std::size_t points_begin() const { return (data_block_ - 1) * kC3dBlock; }
+  /// The block behind the frames.
+  std::size_t poses_begin() const {
+    return points_begin() + (frame_count() * frame_bytes() + kC3dBlock - 1) / kC3dBlock * kC3dBlock;
+  }
+
+  void put_frame(const Instant& frame) {
     row_.clear();
     row_.resize(points_ * 4, 0.0F);
     for (std::size_t i = 0; i < points_; ++i) row_[4 * i + 3] = -1;
-    for (const Sample& point : points) {
+    for (const Sample& point : frame.samples) {
       const auto column = column_.find(point.track);
-      if (column == column_.end()) continue;
-      float* out = row_.data() + 4 * column->second;
-      for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<float>(point.position[axis] * 1000);
-      out[3] = static_cast<float>(fourth_word(point));
+      if (column != column_.end()) put_point(column->second, point.position * 1000, fourth_word(point));
+    }
+    const auto row = static_cast<std::size_t>(next_ - plan_.first_frame);
+    for (std::size_t i = 0; i < angles_.size(); ++i) {
+      if (row < angles_[i].rows.size() && angles_[i].rows[row]) put_point(tracks_ + i, *angles_[i].rows[row], 0);
+    }
+    if (analog_channels() > 0) {
+      const std::span<const float> values = beside_->frame(next_);
+      row_.insert(row_.end(), values.begin(), values.end());
     }
     static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
     file_->write({reinterpret_cast<const char*>(row_.data()), row_.size() * sizeof(float)});
+    if (poses_) put_poses(frame.bodies);
     ++next_;
+  }
+
+  void put_point(std::size_t column, const Vector<3>& place, int word) {
+    float* out = row_.data() + 4 * column;
+    for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<float>(place[axis]);
+    out[3] = static_cast<float>(word);
+  }
+
+  void put_poses(std::span<const BodyPose> poses) {
+    row_.assign(bodies_.size() * kC3dMatrixFloats, 0.0F);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      float* out = row_.data() + i * kC3dMatrixFloats;
+      out[16] = -1;
+      const auto pose = std::find_if(poses.begin(), poses.end(), [&](const BodyPose& one) { return one.body == bodies_[i].id; });
+      if (pose == poses.end()) continue;
+      for (int column = 0; column < 3; ++column) {
+        for (int line = 0; line < 3; ++line)
+          out[4 * column + line] = static_cast<float>(pose->world_from_body.rotation(line, column));
+      }
+      for (int line = 0; line < 3; ++line) out[12 + line] = static_cast<float>(pose->world_from_body.translation[line] * 1000);
+      out[15] = 1;
+      out[16] = 0;
+    }
+    poses_->add(row_);
   }
 
   /// 0 says "not measured", so that what was measured must say something else.
@@ -147,74 +157,167 @@ class C3dWriter : public PointSink {
     return word == 0 ? 1 : word;
   }
 
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const TrackName& track : plan_.info.tracks) {
-      names.push_back(track.label.empty() ? fmt::format("*{}", number(track.id)) : plain_text(track.label).substr(0, kLongestName));
-    }
-    return names;
-  }
-
-  void write_head(UpAxis up) {
-    const std::int64_t frames = plan_.last_frame - plan_.first_frame + 1;
+  void write_head() {
     const std::int64_t first = plan_.first_frame + 1, last = plan_.last_frame + 1;
-    const std::string section = parameters(up, frames, first, last, 0).blocks(path());
-    const std::size_t data_block = 2 + section.size() / kC3dBlock;
+    data_block_ = 2 + parameters().blocks(path()).size() / kC3dBlock;
     std::string head("\x02\x50", 2);
     put_word(head, static_cast<std::int64_t>(points_));
-    put_word(head, 0);
+    put_word(head, static_cast<std::int64_t>(analog_channels() * analog_samples()));
     put_word(head, std::min<std::int64_t>(first, 65535));
     put_word(head, std::min<std::int64_t>(last, 65535));
     put_word(head, 0);
     put_real(head, -scale_mm_);
-    put_word(head, static_cast<std::int64_t>(data_block));
-    put_word(head, 0);
+    put_word(head, static_cast<std::int64_t>(data_block_));
+    put_word(head, static_cast<std::int64_t>(analog_samples()));
     put_real(head, plan_.info.header.rate_hz);
     head.resize(kC3dBlock, '\0');
     file_->write(head);
-    file_->write(parameters(up, frames, first, last, data_block).blocks(path()));
+    file_->write(parameters().blocks(path()));
   }
 
-  ParameterSection parameters(UpAxis up, std::int64_t frames, std::int64_t first, std::int64_t last, std::size_t data_block) const {
-    ParameterSection section;
+  C3dSection parameters() const {
+    const std::int64_t frames = static_cast<std::int64_t>(frame_count());
+    C3dSection section;
     section.group("POINT");
     section.word("USED", static_cast<std::int64_t>(points_));
     section.real("SCALE", -scale_mm_);
     section.real("RATE", plan_.info.header.rate_hz);
-    section.word("DATA_START", static_cast<std::int64_t>(data_block));
+    section.word("DATA_START", static_cast<std::int64_t>(data_block_));
     section.word("FRAMES", std::min<std::int64_t>(frames, 65535));
     section.text("UNITS", "mm");
     section.text("X_SCREEN", "+X");
-    section.text("Y_SCREEN", up == UpAxis::y ? "+Y" : "+Z");
+    section.text("Y_SCREEN", plan_.up == UpAxis::y ? "+Y" : "+Z");
     put_names(section);
     if (frames > 65535) section.real("LONG_FRAMES", static_cast<double>(frames));
-    section.group("ANALOG");
-    section.word("USED", 0);
-    section.real("RATE", 0);
-    section.real("GEN_SCALE", 1);
-    section.group("TRIAL");
-    section.words("ACTUAL_START_FIELD", {first & 0xffff, first >> 16}, false);
-    section.words("ACTUAL_END_FIELD", {last & 0xffff, last >> 16}, false);
-    section.group("MANUFACTURER");
-    section.text("SOFTWARE", "Marey");
+    put_groups_along(section);
+    if (plan_.found) put_events(section, plan_.found->events);
+    if (!bodies_.empty()) put_bodies(section);
+    put_trial(section);
     return section;
   }
 
-  void put_names(ParameterSection& section) const {
-    const std::vector<std::string> all = names();
-    std::size_t width = 4;
-    for (const std::string& name : all) width = std::max(width, name.size());
-    for (std::size_t begin = 0, part = 1; begin < all.size() || part == 1; begin += kMostNames, ++part) {
+  void put_trial(C3dSection& section) const {
+    const std::int64_t first = plan_.first_frame + 1, last = plan_.last_frame + 1;
+    section.group("TRIAL");
+    section.words("ACTUAL_START_FIELD", std::array{first & 0xffff, first >> 16});
+    section.words("ACTUAL_END_FIELD", std::array{last & 0xffff, last >> 16});
+    section.group("MANUFACTURER");
+    section.text("SOFTWARE", "Marey");
+  }
+
+  void put_names(C3dSection& section) const {
+    std::vector<std::string> labels, descriptions(tracks_), names_of_angles;
+    for (const TrackName& track : plan_.info.tracks)
+      labels.push_back(track.label.empty() ? fmt::format("*{}", number(track.id))
+                                           : plain_text(track.label).substr(0, kLongestName));
+    for (const AngleTriple& triple : angles_) {
+      labels.push_back(triple.label);
+      names_of_angles.push_back(triple.label);
+      descriptions.push_back(triple.description);
+    }
+    section.texts("LABELS", labels);
+    section.texts("DESCRIPTIONS", descriptions);
+    if (angles_.empty()) return;
+    section.texts("ANGLES", names_of_angles);
+    section.text("ANGLE_UNITS", "deg");
+    section.texts("TYPE_GROUPS", std::array<std::string, 2>{"ANGLES", "ANGLE"});
+  }
+
+  void put_groups_along(C3dSection& section) const {
+    if (analog_channels() == 0) {
+      section.group("ANALOG");
+      section.word("USED", 0);
+      section.real("RATE", 0);
+      section.real("GEN_SCALE", 1);
+    }
+    for (const std::string_view name : kGroupsAlong) {
+      const auto parameters = beside_ ? beside_->group(name, plan_.up) : std::vector<C3dParameter>();
+      if (parameters.empty() || (plan_.found && name.starts_with("EVENT"))) continue;
+      const bool analog = name == "ANALOG";
+      if (analog && analog_channels() == 0) continue;
+      section.group(std::string(name));
+      for (const C3dParameter& parameter : parameters) {
+        if (!analog || (parameter.name != "USED" && parameter.name != "RATE")) section.copy(parameter);
+      }
+      if (!analog) continue;
+      put_absent_scales(section, parameters);
+      section.word("USED", static_cast<std::int64_t>(analog_channels()));
+      section.real("RATE", plan_.info.header.rate_hz * static_cast<double>(analog_samples()));
+    }
+  }
+
+  /// What a file may leave out, and readers (ezc3d) take to be there once a rate is: values as they stand. Parts of 255.
+  void put_absent_scales(C3dSection& section, std::span<const C3dParameter> parameters) const {
+    const auto absent = [&](std::string_view name) {
+      return std::none_of(parameters.begin(), parameters.end(), [&](const C3dParameter& one) { return one.name == name; });
+    };
+    if (absent("GEN_SCALE")) section.real("GEN_SCALE", 1);
+    const bool scale = absent("SCALE"), offset = absent("OFFSET");
+    for (std::size_t begin = 0, part = 1; begin < analog_channels(); begin += kC3dMostNames, ++part) {
+      const std::size_t here = std::min(analog_channels() - begin, kC3dMostNames);
       const std::string number = part == 1 ? "" : std::to_string(part);
-      const auto here = std::span(all).subspan(begin, std::min(kMostNames, all.size() - begin));
-      section.texts("LABELS" + number, here, width);
-      section.texts("DESCRIPTIONS" + number, std::vector<std::string>(here.size()), 1);
+      if (scale) section.reals("SCALE" + number, std::vector<double>(here, 1), {here});
+      if (offset) section.words("OFFSET" + number, std::vector<std::int64_t>(here, 0));
+    }
+  }
+
+  /// Parts of 255, as labels have them.
+  void put_events(C3dSection& section, std::span<const MotionEvent> events) const {
+    section.group("EVENT");
+    section.word("USED", std::ssize(events));
+    std::vector<std::string> contexts, labels;
+    for (const MotionEvent& event : events) {
+      contexts.push_back(event.context);
+      labels.push_back(event.label);
+    }
+    section.texts("CONTEXTS", contexts);
+    section.texts("LABELS", labels);
+    section.texts("SUBJECTS", std::vector<std::string>(events.size(), beside_ ? beside_->subject() : std::string()));
+    for (std::size_t begin = 0, part = 1; begin < events.size() || part == 1; begin += kC3dMostNames, ++part) {
+      const auto here = events.subspan(begin, std::min(kC3dMostNames, events.size() - begin));
+      const std::string number = part == 1 ? "" : std::to_string(part);
+      std::vector<double> times;
+      std::vector<std::int64_t> icons;
+      for (const MotionEvent& event : here) {
+        const double minutes = std::floor(event.time_s / 60);
+        times.insert(times.end(), {minutes, event.time_s - 60 * minutes});
+        icons.push_back(event.label == "Foot Strike" ? 1 : event.label == "Foot Off" ? 2 : 0);
+      }
+      section.reals("TIMES" + number, times, {2, here.size()});
+      section.words("ICON_IDS" + number, icons);
+    }
+    section.group("EVENT_CONTEXT");
+    section.word("USED", 3);
+    section.words("ICON_IDS", std::array<std::int64_t, 3>{0, 1, 2});
+    section.texts("LABELS", std::array<std::string, 3>{"General", "Left", "Right"});
+    section.texts("DESCRIPTIONS", std::array<std::string, 3>{"For other events", "Left side", "Right side"});
+  }
+
+  void put_bodies(C3dSection& section) const {
+    std::vector<std::string> labels;
+    for (const Body& body : bodies_) labels.push_back(plain_text(body.label).substr(0, kLongestName).append(kC3dMatrixEnding));
+    // Said as a real number where a word has no room for it, as LONG_FRAMES is; the section is as long whatever comes before.
+    const bool fits = frame_count() * frame_bytes() / kC3dBlock + kC3dMostBlocks < 65535;
+    const std::size_t block = 1 + poses_begin() / kC3dBlock;
+    section.group("ROTATION");
+    section.word("USED", std::ssize(bodies_));
+    section.texts("LABELS", labels);
+    section.real("RATE", plan_.info.header.rate_hz);
+    section.word("RATIO", 1);
+    if (fits) {
+      section.word("DATA_START", static_cast<std::int64_t>(block));
+    } else {
+      section.real("DATA_START", static_cast<double>(block));
     }
   }
 
   WritePlan plan_;
   std::optional<WholeFile> file_;
-  std::size_t points_;
+  std::optional<C3dBeside> beside_;
+  std::optional<RowsBehind> poses_;
+  std::vector<AngleTriple> angles_;
+  std::vector<Body> bodies_;
+  std::size_t tracks_, points_ = 0, data_block_ = 2;
   std::int64_t next_;
   double scale_mm_ = 1;
   std::map<TrackId, std::size_t> column_;
@@ -234,13 +337,17 @@ Format c3d_format() {
           .holds = Content::space,
           .detail =
               "mm; points, residuals in space, the first seven cameras, whether a point was measured. Written as a PC's floats; "
-              "PC, DEC and SGI, integer and real, are read. Analog channels are passed over",
+              "PC, DEC and SGI, integer and real, are read. Bodies' poses as matrices (ROTATION); analog channels, force plates "
+              "and events "
+              "go along from C3D to C3D",
           .is =
               [](const Beginning& file) {
                 return file.bytes.size() >= 2 && file.bytes[1] == 0x50 && file.bytes[0] > 0 && !file.bytes.starts_with("PP");
               },
-          .open = [](const std::string& path, const ReadOptions&) { return motion::open_c3d(path); },
-          .create = [](const std::string& path, const WritePlan& plan) { return motion::create_c3d(path, plan); }};
+          .open = [](const std::string& path, const ReadOptions& how) { return motion::open_c3d(path, C3dPoints::places, how.up); },
+          .create = [](const std::string& path, const WritePlan& plan) { return motion::create_c3d(path, plan); },
+          .poses = true,
+          .beside_points = true};
 }
 
 }  // namespace marey::format::motion

@@ -157,17 +157,33 @@ void WideTableWriter::start(const RecordingHeader& header) {
 }
 
 void WideTableWriter::write(const Instant& frame) {
-  fill_to(frame.index);
+  fill_to(frame.index, frame.time);
   put(frame.index, frame.time, frame.samples);
+  last_time_ = frame.time;
 }
 
 void WideTableWriter::finish() {
-  fill_to(plan_.last_frame + 1);
+  fill_to(plan_.last_frame + 1, std::nullopt);
   file_->finish();
 }
 
-void WideTableWriter::fill_to(std::int64_t index) {
-  while (next_ < index) put(next_, timestamp_from_seconds(static_cast<double>(next_) / rate_hz_), {});
+void WideTableWriter::fill_to(std::int64_t index, std::optional<Timestamp> time) {
+  const std::int64_t before = next_ - 1;
+  const auto from = [&](Timestamp known, std::int64_t frames) {
+    return timestamp_from_seconds(seconds(known) + static_cast<double>(frames) / rate_hz_);
+  };
+  while (next_ < index) {
+    Timestamp here = timestamp_from_seconds(static_cast<double>(next_) / rate_hz_);
+    if (last_time_ && time) {
+      const double part = static_cast<double>(next_ - before) / static_cast<double>(index - before);
+      here = timestamp_from_seconds(seconds(*last_time_) + part * (seconds(*time) - seconds(*last_time_)));
+    } else if (last_time_) {
+      here = from(*last_time_, next_ - before);
+    } else if (time) {
+      here = from(*time, next_ - index);
+    }
+    put(next_, here, {});
+  }
 }
 
 void WideTableWriter::put(std::int64_t index, Timestamp time, std::span<const Sample> points) {

@@ -104,7 +104,9 @@ class WideTableWriter : public PointSink {
  private:
   void start(const RecordingHeader& header) final;
   void put(std::int64_t index, Timestamp time, std::span<const Sample> points);
-  void fill_to(std::int64_t index);
+  /// Rows of nothing up to `index`, whose time, where it is known, bounds theirs: between two known times they are spread evenly,
+  /// before the first and after the last by the rate.
+  void fill_to(std::int64_t index, std::optional<Timestamp> time);
 
   WritePlan plan_;
   std::optional<WholeFile> file_;
@@ -112,6 +114,7 @@ class WideTableWriter : public PointSink {
   std::map<TrackId, std::size_t> column_;
   double rate_hz_ = 1;
   std::int64_t next_ = 0;
+  std::optional<Timestamp> last_time_;  ///< of the row before next_, where that was an instant
   std::string text_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@ namespace marey::format::rig {
 namespace {
 
 constexpr double kLargestPicture = 1e5;                       // px, of either side
+constexpr std::size_t kMostMasks = 256;                       // of a camera
 constexpr double kSmallestGround = 10, kLargestGround = 500;  // m, from the middle to its lines
 
 bool whole(double value) {
@@ -40,16 +42,35 @@ std::optional<cv::Size> read_size(const Section& section) {
   return cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1]));
 }
 
-std::optional<cv::Rect> read_region(const Section& section) {
-  const auto r = section.numbers("region", 4, 4, "[x, y, width, height] in px");
-  if (!r) return std::nullopt;
+/// [x, y, width, height]; nothing, and a problem, where these are no whole px.
+std::optional<cv::Rect> rect_of(const Section& section, std::string_view key, std::span<const double> r) {
   for (std::size_t i = 0; i < 4; ++i) {
-    if (whole((*r)[i]) && (*r)[i] >= (i < 2 ? 0 : 1) && (*r)[i] <= kLargestPicture) continue;
-    section.problem("region", fmt::format("region is [{}]; it must be whole px, the corner not negative and the sides positive",
-                                          fmt::join(*r, ", ")));
+    if (whole(r[i]) && r[i] >= (i < 2 ? 0 : 1) && r[i] <= kLargestPicture) continue;
+    section.problem(key, fmt::format("{} is [{}]; it must be whole px, the corner not negative and the sides positive", key,
+                                     fmt::join(r, ", ")));
     return std::nullopt;
   }
-  return cv::Rect(static_cast<int>((*r)[0]), static_cast<int>((*r)[1]), static_cast<int>((*r)[2]), static_cast<int>((*r)[3]));
+  return cv::Rect(static_cast<int>(r[0]), static_cast<int>(r[1]), static_cast<int>(r[2]), static_cast<int>(r[3]));
+}
+
+std::optional<cv::Rect> read_region(const Section& section) {
+  const auto r = section.numbers("region", 4, 4, "[x, y, width, height] in px");
+  return r ? rect_of(section, "region", *r) : std::nullopt;
+}
+
+std::vector<cv::Rect> read_masks(const Section& section) {
+  std::vector<cv::Rect> masks;
+  for (const std::vector<double>& row : section.rows("masks", 4, kMostMasks, "[[x, y, width, height], …] in px")) {
+    if (const auto mask = rect_of(section, "masks", row)) masks.push_back(*mask);
+  }
+  return masks;
+}
+
+std::optional<double> read_not_negative(const Section& section, std::string_view key) {
+  const auto value = section.number(key);
+  if (!value || *value >= 0) return value;
+  section.problem(key, fmt::format("{} is {}; it must not be negative", key, *value));
+  return std::nullopt;
 }
 
 geometry::Lens blank_lens(const Section& section) {
@@ -115,7 +136,8 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", excerpt(camera.name)));
   section.only({"name",   "source", "detections", "region",     "rate",         "offset_s",    "size",
                 "model",  "focal",  "principal",  "distortion", "rotation",     "translation", "ground_from_image",
-                "rms_px", "turns",  "tripod",     "lean",       "nodal_offset", "bend"});
+                "rms_px", "turns",  "tripod",     "lean",       "nodal_offset", "bend",        "exposure",
+                "gain",   "masks",  "threshold"});
   check_name(section, camera.name);
   camera.source = source_beside(folder, section.text("source").value_or(""));
   camera.detections = source_beside(folder, section.text("detections").value_or(""));
@@ -135,6 +157,10 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   camera.camera_from_world = read_pose(section);
   camera.ground_from_image = section.invertible("ground_from_image");
   camera.rms_px = section.number("rms_px");
+  camera.exposure_ms = section.positive("exposure");
+  camera.gain = read_not_negative(section, "gain");
+  camera.threshold = read_not_negative(section, "threshold");
+  camera.masks = read_masks(section);
   return camera;
 }
 

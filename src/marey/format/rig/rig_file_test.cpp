@@ -165,7 +165,38 @@ TEST(RigFile, TellsAllProblemsAtOnceEachWithItsLine) {
       "rig.toml:15: camera \"left\": another camera has this name; each needs its own\n"
       "rig.toml:16: camera \"left\": unknown key \"focul\"; there are: name, source, detections, region, rate, offset_s, size, "
       "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px, turns, tripod, lean, nodal_offset, "
-      "bend");
+      "bend, exposure, gain, masks, threshold");
+}
+
+TEST(RigFile, KeepsHowALiveCameraIsSet) {
+  Rig rig = parse_rig(kExample, "rig.toml");
+  rig.cameras[1].exposure_ms = 2.5;
+  rig.cameras[1].gain = 0;
+  rig.cameras[1].threshold = 80;
+  rig.cameras[1].masks = {{0, 5, 20, 10}, {100, 200, 3, 4}};
+  const std::string text = rig_text(rig);
+  EXPECT_NE(text.find("masks = [[0, 5, 20, 10], [100, 200, 3, 4]]\n"), std::string::npos) << text;
+  const Rig again = parse_rig(text, "again");
+  EXPECT_EQ(again.cameras[1].exposure_ms, 2.5);
+  EXPECT_EQ(again.cameras[1].gain, 0.0);
+  EXPECT_EQ(again.cameras[1].threshold, 80.0);
+  EXPECT_EQ(again.cameras[1].masks, rig.cameras[1].masks);
+  EXPECT_TRUE(again.cameras[0].masks.empty());
+}
+
+TEST(RigFile, HowNoCameraCanBeSetIsRefused) {
+  const auto told = [](const std::string& line) {
+    return problems_of(replaced(kExample, "name = \"far\"", "name = \"far\"\n" + line));
+  };
+  EXPECT_NE(told("exposure = 0").find("exposure is 0; it must be positive"), std::string::npos);
+  EXPECT_NE(told("gain = -1").find("gain is -1; it must not be negative"), std::string::npos);
+  EXPECT_NE(told("threshold = -1").find("threshold is -1"), std::string::npos);
+  EXPECT_NE(told("masks = [[1, 2, 3]]").find("masks must be [[x, y, width, height], …] in px, 256 at most"), std::string::npos);
+  EXPECT_NE(told("masks = 3").find("masks must be"), std::string::npos);
+  EXPECT_NE(told("masks = [[1, 2, 0, 3]]").find("masks is [1, 2, 0, 3]; it must be whole px"), std::string::npos);
+  std::string many = "[1, 2, 3, 4]";
+  for (int i = 0; i < 256; ++i) many += ", [1, 2, 3, 4]";
+  EXPECT_NE(told("masks = [" + many + "]").find("256 at most"), std::string::npos);
 }
 
 TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {

@@ -111,6 +111,23 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
   return std::nullopt;
 }
 
+std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t each, std::size_t most,
+                                               std::string_view form) const {
+  const toml::node* node = table_.get(key);
+  if (node == nullptr) return {};
+  const toml::array* array = node->as_array();
+  std::vector<std::vector<double>> rows;
+  bool good = array != nullptr && array->size() <= most;
+  for (std::size_t i = 0; good && i < array->size(); ++i) {
+    auto row = numbers_of(*array->get(i));
+    good = row && row->size() == each;
+    if (good) rows.push_back(std::move(*row));
+  }
+  if (good) return rows;
+  problem(key, fmt::format("{} must be {}, {} at most", key, form, most));
+  return {};
+}
+
 std::optional<Matrix<3>> Section::matrix(std::string_view key) const {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return std::nullopt;

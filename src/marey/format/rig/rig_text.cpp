@@ -43,6 +43,16 @@ std::string rows(const Matrix<3>& m, std::string_view key) {
   return text + "]\n";
 }
 
+std::string rect_text(const cv::Rect& r) {
+  return fmt::format("[{}, {}, {}, {}]", r.x, r.y, r.width, r.height);
+}
+
+std::string rows_of(std::span<const cv::Rect> rects) {
+  std::string text;
+  for (const cv::Rect& rect : rects) text += (text.empty() ? "" : ", ") + rect_text(rect);
+  return "[" + text + "]";
+}
+
 std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -108,12 +118,15 @@ void add_lens(Lines& lines, const geometry::Lens& lens) {
 std::string camera_text(const RigCamera& camera, const std::string& folder, bool first) {
   Lines lines(first);
   lines.add("name", in_quotes(camera.name));
-  if (!camera.source.empty()) lines.add("source", in_quotes(seen_from(folder, camera.source)), "seen from this file");
+  if (!camera.source.empty())
+    lines.add("source", in_quotes(seen_from(folder, camera.source)), scheme_of(camera.source).empty() ? "seen from this file" : "");
   if (!camera.detections.empty()) lines.add("detections", in_quotes(seen_from(folder, camera.detections)), "seen from this file");
-  if (const auto& r = camera.region) {
-    lines.add("region", fmt::format("[{}, {}, {}, {}]", r->x, r->y, r->width, r->height), "x, y, width, height in px");
-  }
+  if (camera.region) lines.add("region", rect_text(*camera.region), "x, y, width, height in px");
   if (camera.rate_hz) lines.add("rate", number_text(*camera.rate_hz), "Hz");
+  if (camera.exposure_ms) lines.add("exposure", number_text(*camera.exposure_ms), "ms, of a live camera");
+  if (camera.gain) lines.add("gain", number_text(*camera.gain), "in the camera's own unit");
+  if (camera.threshold) lines.add("threshold", number_text(*camera.threshold), "grey level that a marker's pixels pass");
+  if (!camera.masks.empty()) lines.add("masks", rows_of(camera.masks), "[x, y, width, height] in px: no marker there");
   if (camera.offset_s) lines.add("offset_s", number_text(*camera.offset_s), "add to this camera's times to get the rig's");
   if (camera.size) lines.add("size", fmt::format("[{}, {}]", camera.size->width, camera.size->height), "px");
   if (camera.lens) add_lens(lines, *camera.lens);

@@ -12,7 +12,9 @@
 
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
+#include "marey/format/read_file.h"
 #include "marey/format/skeleton/skeleton_file.h"
+#include "marey/format/skeleton/skeleton_recording.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::skeleton {
@@ -20,6 +22,7 @@ namespace {
 
 constexpr double kInchM = 0.0254;
 constexpr std::size_t kMostBones = 10'000;
+constexpr std::size_t kFewNumbers = 1'000'000;
 
 std::vector<std::string> tokens_of(std::string_view line) {
   std::vector<std::string> tokens;
@@ -253,6 +256,9 @@ SkeletonMotion parse_amc(std::string_view text, const std::string& name, const S
       continue;
     }
     if (words.size() == 1 && whole_number_of(head)) {
+      // A frame names what moves in it, at two bytes a number and more.
+      if ((motion.rows.size() + 1) * asf.coordinates.size() > text.size() + kFewNumbers)
+        throw Error("{}:{}: frames without their bones; the file is damaged", name, lines.number());
       motion.times.push_back(timestamp_from_seconds(static_cast<double>(motion.rows.size()) / motion.rate_hz));
       motion.rows.push_back(motion.rows.empty() ? asf.rest() : motion.rows.back());
       continue;
@@ -274,6 +280,37 @@ SkeletonMotion parse_amc(std::string_view text, const std::string& name, const S
   }
   if (motion.rows.empty()) throw Error("{}: has no frames", name);
   return motion;
+}
+
+/// An .asf file alone rests in one frame; an .amc file moves the bones of its own.
+std::unique_ptr<FileReader> open_acclaim(const std::string& path, const ReadOptions& how) {
+  const SkeletonOptions options = skeleton_options(how);
+  const std::string text = read_file(path);
+  if (text.find(":bonedata") != std::string::npos) return recording_of(parse_asf(text, path, options), path);
+  const std::string asf = how.metadata.empty() ? asf_beside(path) : how.metadata;
+  SkeletonFile file = parse_asf(read_file(asf), asf, options);
+  file.motion = parse_amc(text, path, file, options);
+  return recording_of(std::move(file), path);
+}
+
+Format acclaim_format() {
+  return {
+      .name = "amc",
+      .title = "an AMC or ASF file",
+      .endings = "",
+      .holds = Content::space,
+      .detail =
+          "units as the .asf says, y up, 120 Hz where not told otherwise; joints as points, bones as bodies. Of an .amc file the "
+          ".asf beside it is read, or `--metadata`",
+      .is =
+          [](const Beginning& file) {
+            if (!file.is_text()) return false;
+            const bool motion = file.has(":FULLY-SPECIFIED") || file.has(":DEGREES") || file.has(":RADIANS");
+            return motion || (file.has(":bonedata") && file.has(":root"));
+          },
+      .open = open_acclaim,
+      .z_up = true,
+      .skeleton = true};
 }
 
 }  // namespace marey::format::skeleton

@@ -16,8 +16,10 @@
 #include "marey/core/skeleton.h"
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/read_file.h"
 #include "marey/format/skeleton/bvh.h"
 #include "marey/format/skeleton/skeleton_file.h"
+#include "marey/format/skeleton/skeleton_recording.h"
 
 namespace marey::format::skeleton {
 namespace {
@@ -236,6 +238,30 @@ std::map<std::string, std::string, std::less<>> bvh_names(const std::string& pro
     throw Error("\"{}\": names are known of mixamo and motionbuilder", program);
   for (const auto& [own, theirs] : kHumanIk) names[own] = (program == "mixamo" ? "mixamorig:" : "") + std::string(theirs);
   return names;
+}
+
+Format bvh_format() {
+  return {
+      .name = "bvh",
+      .title = "a BVH file",
+      .endings = ".bvh",
+      .holds = Content::space,
+      .detail =
+          "cm and y up where not told otherwise; joints as points, bones as bodies. Written: bones alone, with the skeleton's "
+          "motion; its dialects are options of `marey solve`",
+      .is =
+          [](const Beginning& file) {
+            std::string_view text = file.text();
+            text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+            return file.is_text() && text.starts_with("HIERARCHY");
+          },
+      .open = [](const std::string& path,
+                 const ReadOptions& how) { return recording_of(parse_bvh(read_file(path), path, skeleton_options(how)), path); },
+      .create = [](const std::string& path, const WritePlan&) { return create_bvh(path); },
+      .while_recording = true,
+      .poses = true,
+      .z_up = true,
+      .skeleton = true};
 }
 
 }  // namespace marey::format::skeleton

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <optional>
 #include <vector>
@@ -13,11 +14,15 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
 #include "marey/core/recording.h"
 #include "marey/core/text_safety.h"
 #include "marey/core/whole_file.h"
+#include "marey/format/format.h"
+#include "marey/format/mapped_file.h"
+#include "marey/format/nesting.h"
 #include "marey/format/skeleton/skeleton_file.h"
 
 namespace marey::format::skeleton {
@@ -298,6 +303,58 @@ class GlbSink final : public Sink {
 
 std::unique_ptr<Sink> create_glb(const std::string& path) {
   return std::make_unique<GlbSink>(path);
+}
+
+namespace {
+
+constexpr std::size_t kGlbHead = 20;  // magic, version, length; length and kind of the first chunk
+
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, sizeof word);
+  return word;
+}
+
+}  // namespace
+
+std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < kGlbHead || !bytes.starts_with("glTF") || word_at(bytes, 4) != 2)
+    throw Error("{}: is no glTF of version 2", name);
+  const std::uint32_t size = word_at(bytes, 12);
+  if (bytes.substr(16, 4) != "JSON" || size > bytes.size() - kGlbHead)
+    throw Error("{}: its description is cut off; copy it again", name);
+  const std::string_view description = bytes.substr(kGlbHead, size);
+  check_nesting(description, Notation::json, name);
+  const auto json = nlohmann::json::parse(description, nullptr, false);
+  if (!json.is_object()) throw Error("{}: its description is no JSON", name);
+  const auto count = [&](const char* what) {
+    const auto found = json.find(what);
+    return found != json.end() && found->is_array() ? std::ssize(*found) : std::ptrdiff_t{0};
+  };
+  std::vector<Fact> facts;
+  if (const auto asset = json.find("asset"); asset != json.end() && asset->is_object()) {
+    if (const auto maker = asset->find("generator"); maker != asset->end() && maker->is_string())
+      facts.push_back({"made_by", plain_text(maker->get<std::string>())});
+  }
+  for (const char* what : {"nodes", "skins", "animations"}) facts.push_back({what, static_cast<std::int64_t>(count(what))});
+  return facts;
+}
+
+Format glb_format() {
+  return {.name = "glb",
+          .title = "a glTF file",
+          .endings = ".glb",
+          .holds = Content::space,
+          .detail =
+              "glTF 2.0: m, y up; the bones of a skeleton, their motion, and a stick figure. Written; of one that is read, `marey "
+              "info` "
+              "tells what its description says",
+          .is = [](const Beginning& file) { return file.bytes.starts_with("glTF"); },
+          .facts = [](const std::string& path) { return facts_of_glb(MappedFile(path).text(), path); },
+          .create = [](const std::string& path, const WritePlan&) { return create_glb(path); },
+          .while_recording = true,
+          .poses = true,
+          .z_up = true};
 }
 
 }  // namespace marey::format::skeleton

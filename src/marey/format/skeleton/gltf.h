@@ -2,8 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "marey/core/sink.h"
+#include "marey/format/format.h"
 
 namespace marey::format::skeleton {
 
@@ -11,5 +14,8 @@ namespace marey::format::skeleton {
 /// motion as an animation, and a stick figure (an octahedron a bone) that is skinned to them, because programs show no skeleton
 /// without a mesh. Needs all of it, so that memory grows with the length.
 std::unique_ptr<Sink> create_glb(const std::string& path);
+
+/// What the description of a .glb file says, whoever wrote it. Throws Error, with `name` for the file, where it is none.
+std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name);
 
 }  // namespace marey::format::skeleton

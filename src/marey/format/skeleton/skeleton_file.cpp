@@ -23,10 +23,13 @@ SkeletonFile read_any(const std::string& path, const SkeletonOptions& options) {
   const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const std::string_view from_first = first == std::string::npos ? std::string_view() : std::string_view(text).substr(first);
   if (from_first.starts_with("HIERARCHY")) return parse_bvh(text, path, options);
+  if (from_first.starts_with('<') && text.find("<KinematicModel") != std::string::npos) return parse_vsk(text, path, options);
   if (from_first.starts_with('<')) return parse_osim(text, path);
   if (text.find(":bonedata") != std::string::npos) return parse_asf(text, path, options);
   if (text.find('\0') == std::string::npos && text.find("[[segment]]") != std::string::npos) return parse_toml(text, path);
-  throw Error("{}: is no skeleton that Marey knows: OpenSim's .osim, .bvh, .asf, or a skeleton.toml with [[segment]] tables", path);
+  throw Error(
+      "{}: is no skeleton that Marey knows: OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml with [[segment]] tables",
+      path);
 }
 
 }  // namespace

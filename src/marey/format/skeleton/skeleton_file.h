@@ -1,4 +1,5 @@
-// Skeletons in files: BVH, ASF/AMC, OpenSim's models, and our own skeleton.toml; and motions of them, as tables of angles.
+// Skeletons in files: BVH, ASF/AMC, OpenSim's models, Vicon's VSK, and our own skeleton.toml; and motions of them, as tables of
+// angles.
 #pragma once
 
 #include <optional>
@@ -14,7 +15,7 @@ namespace marey::format::skeleton {
 /// What files do not say themselves.
 struct SkeletonOptions {
   double unit_m = 0.01;   ///< of a BVH file: how many metres its unit has
-  UpAxis up = UpAxis::y;  ///< of a BVH or ASF file
+  UpAxis up = UpAxis::y;  ///< of a BVH, ASF or VSK file
   double rate_hz = 120;   ///< of an AMC file, which does not say
 };
 
@@ -37,6 +38,8 @@ SkeletonMotion parse_amc(std::string_view text, const std::string& name, const S
 /// OpenSim's model, version 2 to 4: bodies, joints (Weld, Pin, Slider, Universal, Ball, Gimbal, Planar, Free, Custom), coordinates,
 /// couplers and markers. What it has besides moves nothing or is named in a warning; joints of other kinds are refused.
 SkeletonFile parse_osim(std::string_view text, const std::string& name);
+/// Vicon's skeleton of a person, with its markers.
+SkeletonFile parse_vsk(std::string_view text, const std::string& name, const SkeletonOptions& options = {});
 SkeletonFile parse_toml(std::string_view text, const std::string& name);
 
 /// As parse_toml reads it: every joint, coordinate, marker.

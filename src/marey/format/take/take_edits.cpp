@@ -1,5 +1,6 @@
 #include "marey/format/take/take_edits.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "marey/core/error.h"
@@ -10,7 +11,18 @@
 
 namespace marey::format::take {
 
-void add_edits(const std::string& path, std::span<const Edit> more, std::optional<std::int64_t> head) {
+EditState edit_state(const std::vector<Edit>& edits, std::optional<std::int64_t> head) {
+  EditState state{.head = head.value_or(0)};
+  for (const Edit& edit : edits) state.newest = std::max(state.newest, edit.id);
+  return state;
+}
+
+void fail_edited_elsewhere(const std::string& path) {
+  throw Error("{}: another program has edited it meanwhile, and nothing was changed; look at it as it is now and do it again",
+              path);
+}
+
+void add_edits(const std::string& path, std::span<const Edit> more, std::optional<std::int64_t> head, const EditState& on) {
   const TakeReader whole(path);  // says what is wrong with it
   const FileLock lock(path);
   Database database(path, Database::Mode::create);
@@ -18,6 +30,12 @@ void add_edits(const std::string& path, std::span<const Edit> more, std::optiona
     throw Error("{}: is a take of an earlier version of Marey; bring it up to date with \"marey convert {} NEW.marey\"", path,
                 path);
   database.run("BEGIN IMMEDIATE");
+  const EditState now{.head = database.number("SELECT value FROM take WHERE key = 'head'"),
+                      .newest = database.number("SELECT max(id) FROM edit")};
+  if (now != on) {
+    database.roll_back();
+    fail_edited_elsewhere(path);
+  }
   Statement add(database, "INSERT INTO edit VALUES (?, ?, ?, ?)");
   for (const Edit& edit : more) {
     add.bind(0, edit.id);

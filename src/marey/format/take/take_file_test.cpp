@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
+#include "marey/format/take/take_edits.h"
 #include "marey/format/take/take_testing.h"
 
 #include "support/files.h"
@@ -199,6 +200,23 @@ TEST_F(TakeFile, SaysWhichEditsItCannotDoAndKeepsThem) {
   ASSERT_EQ(reader.warnings().size(), 1U);
   EXPECT_NE(reader.warnings()[0].find("\"paint\""), std::string::npos);
   EXPECT_EQ(reader.edits(), take.edits);
+}
+
+TEST_F(TakeFile, EditsThatWereDecidedOnOthersAreRefused) {
+  write_recording(path_, recording_of(every(0, 10)));
+  const auto edit = [](std::int64_t id, std::optional<std::int64_t> parent) {
+    return Edit{.id = id, .parent = parent, .operation = "note", .payload = "{}"};
+  };
+  const std::vector<Edit> first{edit(1, {})}, second{edit(2, 1)}, blind{edit(2, {})};
+  add_edits(path_, first, 1, {});
+  add_edits(path_, second, 2, {.head = 1, .newest = 1});
+  EXPECT_THROW(add_edits(path_, blind, 2, {}), Error);
+  EXPECT_THROW(add_edits(path_, {}, {}, {.head = 1, .newest = 2}), Error);
+  EXPECT_THROW(add_edits(path_, {}, {}, {.head = 2, .newest = 1}), Error);
+  const TakeReader take(path_);
+  EXPECT_EQ(take.edits(), (std::vector{first[0], second[0]}));
+  EXPECT_EQ(take.head(), 2);
+  EXPECT_EQ(edit_state(take.edits(), take.head()), (EditState{.head = 2, .newest = 2}));
 }
 
 TEST_F(TakeFile, SummaryCountsWhatIsThere) {

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "marey/core/frame_set.h"
 #include "marey/core/source.h"
+#include "marey/source/live/camera_controls.h"
 #include "marey/source/live_time.h"
 
 namespace marey::source::live {
@@ -38,6 +40,11 @@ class Connection {
   virtual const SourceInfo& info() const = 0;
   /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error where the camera is gone.
   virtual Came next(Shot& shot) = 0;
+
+  /// What of it can be set while it gives pictures, and how it is now.
+  virtual std::vector<ControlRange> controls() { return {}; }
+  /// Called between two calls of `next`. Throws Error where the camera refuses.
+  virtual void set(Control control, double value);
 };
 
 /// Connects the camera, or throws Error where it is not there. It may take a few seconds, and ends early where `stop` says so.

@@ -105,6 +105,18 @@ std::string id_of(const std::string& wanted) {
   return found.front();
 }
 
+std::vector<ControlRange> controls_of(ArvCamera& camera) {
+  std::vector<ControlRange> has;
+  Failure failure;
+  double least = 0, most = 0;
+  arv_camera_get_exposure_time_bounds(&camera, &least, &most, failure.out());
+  if (!failure.failed())
+    has.push_back({Control::exposure, least / 1000, most / 1000, arv_camera_get_exposure_time(&camera, nullptr) / 1000});
+  arv_camera_get_gain_bounds(&camera, &least, &most, failure.out());
+  if (!failure.failed()) has.push_back({Control::gain, least, most, arv_camera_get_gain(&camera, nullptr)});
+  return has;
+}
+
 class GigeCamera final : public Connection {
  public:
   explicit GigeCamera(const GigeOptions& options) : name_("gige:" + options.wanted) {
@@ -126,6 +138,17 @@ class GigeCamera final : public Connection {
   }
 
   const SourceInfo& info() const override { return info_; }
+
+  std::vector<ControlRange> controls() override { return controls_of(*camera_); }
+
+  void set(Control control, double value) override {
+    ArvCamera* camera = camera_.get();
+    if (control == Control::exposure) {
+      demand("that exposure", [&](GError** e) { arv_camera_set_exposure_time(camera, 1000 * value, e); });
+    } else {
+      demand("that gain", [&](GError** e) { arv_camera_set_gain(camera, value, e); });
+    }
+  }
 
   Came next(Shot& shot) override {
     if (lost_) throw Error("{}: is gone", name_);
@@ -153,9 +176,8 @@ class GigeCamera final : public Connection {
     if (options.width > 0)
       demand("that size", [&](GError** e) { arv_camera_set_region(camera, 0, 0, options.width, options.height, e); });
     if (options.rate_hz) demand("that rate", [&](GError** e) { arv_camera_set_frame_rate(camera, *options.rate_hz, e); });
-    if (options.exposure_ms)
-      demand("that exposure", [&](GError** e) { arv_camera_set_exposure_time(camera, 1000 * *options.exposure_ms, e); });
-    if (options.gain) demand("that gain", [&](GError** e) { arv_camera_set_gain(camera, *options.gain, e); });
+    if (options.exposure_ms) set(Control::exposure, *options.exposure_ms);
+    if (options.gain) set(Control::gain, *options.gain);
     if (!options.trigger.empty())
       demand("that trigger", [&](GError** e) { arv_camera_set_trigger(camera, options.trigger.c_str(), e); });
     if (options.ptp) enable_ptp();
@@ -246,13 +268,10 @@ void describe(const std::string& id, FoundCamera& found) {
     const double rate = arv_camera_get_frame_rate(camera.get(), failure.out());
     if (!failure.failed() && rate > 0) mode.rates_hz.push_back(rate);
   }
-  double least = 0, most = 0;
-  arv_camera_get_exposure_time_bounds(camera.get(), &least, &most, failure.out());
-  if (!failure.failed())
-    found.controls.push_back(
-        {"exposure (ms)", least / 1000, most / 1000, arv_camera_get_exposure_time(camera.get(), nullptr) / 1000});
-  arv_camera_get_gain_bounds(camera.get(), &least, &most, failure.out());
-  if (!failure.failed()) found.controls.push_back({"gain", least, most, arv_camera_get_gain(camera.get(), nullptr)});
+  for (const ControlRange& control : controls_of(*camera)) {
+    const char* name = control.control == Control::exposure ? "exposure (ms)" : "gain";
+    found.controls.push_back({name, control.least, control.most, control.now});
+  }
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ class LiveCamera final : public LiveSource {
       try {
         const auto connection = connect_(*time_, stop);
         connect_to(connection->info());
+        if (options_.controls != nullptr) options_.controls->begin(*connection);
         read(*connection, stop);
       } catch (const Stopped&) {
         return;
@@ -101,6 +102,7 @@ class LiveCamera final : public LiveSource {
     Timestamp last = time_->now();
     const double patience = std::max(options_.silent_s, 3 / std::max(1e-3, connection.info().rate_hz.value_or(kUsualRate)));
     while (!stop.stop_requested()) {
+      if (options_.controls != nullptr) options_.controls->apply(connection);
       Shot shot;
       const Came came = connection.next(shot);
       const Timestamp now = time_->now();

@@ -12,7 +12,8 @@ struct KeepOptions {
   int keep = 4;                ///< frames that nobody asked for yet
   double first_retry_s = 0.2;  ///< after a camera was lost, or could not be opened, so long until it is tried again
   double longest_retry_s = 1;  ///< each time it fails the wait doubles, up to this
-  double silent_s = 3;         ///< a camera that gave nothing for so long, and for three periods, is opened anew
+  std::shared_ptr<CameraControls> controls = {};  ///< null: nobody sets anything
+  double silent_s = 3;                            ///< a camera that gave nothing for so long, and for three periods, is opened anew
 };
 
 /// A camera that is read on a thread of its own and connected again, without end, whenever it is not there: from the first attempt

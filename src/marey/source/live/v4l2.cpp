@@ -23,6 +23,14 @@ constexpr unsigned kBuffers = 4;
 constexpr std::array<std::pair<const char*, std::uint32_t>, 3> kFormats{
     {{"GREY", V4L2_PIX_FMT_GREY}, {"YUYV", V4L2_PIX_FMT_YUYV}, {"MJPG", V4L2_PIX_FMT_MJPEG}}};
 
+struct SetControl {
+  Control control;
+  std::uint32_t id;
+  double unit;  ///< of ours
+};
+constexpr std::array<SetControl, 2> kControls{
+    {{Control::exposure, V4L2_CID_EXPOSURE_ABSOLUTE, 0.1}, {Control::gain, V4L2_CID_GAIN, 1}}};
+
 std::string letters(std::uint32_t format) {
   std::string text;
   for (int i = 0; i < 4; ++i) text += static_cast<char>(format >> (8 * i) & 0x7f);
@@ -107,9 +115,8 @@ class V4l2Camera final : public Connection {
     info_.name = options_.device;
     set_format();
     set_rate();
-    set_control(V4L2_CID_EXPOSURE_AUTO, options_.exposure_ms ? std::optional<double>(V4L2_EXPOSURE_MANUAL) : std::nullopt);
-    set_control(V4L2_CID_EXPOSURE_ABSOLUTE, options_.exposure_ms ? std::optional(*options_.exposure_ms * 10) : std::nullopt);
-    set_control(V4L2_CID_GAIN, options_.gain);
+    if (options_.exposure_ms) set(Control::exposure, *options_.exposure_ms);
+    if (options_.gain) set(Control::gain, *options_.gain);
     try {
       begin();
     } catch (...) {
@@ -120,6 +127,26 @@ class V4l2Camera final : public Connection {
   ~V4l2Camera() override { release(); }
 
   const SourceInfo& info() const override { return info_; }
+
+  std::vector<ControlRange> controls() override {
+    std::vector<ControlRange> has;
+    for (const auto& [control, id, unit] : kControls) {
+      auto query = blank<v4l2_queryctrl>();
+      query.id = id;
+      if (device_.ask(VIDIOC_QUERYCTRL, &query) < 0 || (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) continue;
+      v4l2_control now{.id = id, .value = query.default_value};
+      device_.ask(VIDIOC_G_CTRL, &now);
+      has.push_back({control, unit * query.minimum, unit * query.maximum, unit * now.value});
+    }
+    return has;
+  }
+
+  void set(Control control, double value) override {
+    if (control == Control::exposure) set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
+    for (const auto& [each, id, unit] : kControls) {
+      if (each == control) set_control(id, value / unit);
+    }
+  }
 
   Came next(Shot& shot) override {
     const int ready = kernel_->wait(device_.file(), static_cast<int>(kStopSlice.count()));
@@ -180,9 +207,8 @@ class V4l2Camera final : public Connection {
     if (period.numerator > 0 && period.denominator > 0) info_.rate_hz = static_cast<double>(period.denominator) / period.numerator;
   }
 
-  void set_control(std::uint32_t which, std::optional<double> value) {
-    if (!value) return;
-    v4l2_control control{.id = which, .value = static_cast<std::int32_t>(std::lround(*value))};
+  void set_control(std::uint32_t which, double value) {
+    v4l2_control control{.id = which, .value = static_cast<std::int32_t>(std::lround(std::clamp(value, -1e9, 1e9)))};
     device_.demand(VIDIOC_S_CTRL, &control, "does not take that exposure or gain; marey cameras lists what it takes");
   }
 

@@ -75,8 +75,19 @@ class FakeKernel final : public Kernel {
       case VIDIOC_G_PARM:
         static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe = {1, 50};
         return 0;
+      case VIDIOC_QUERYCTRL: {
+        auto& query = *static_cast<v4l2_queryctrl*>(argument);
+        if (query.id != V4L2_CID_EXPOSURE_ABSOLUTE) return -EINVAL;
+        query.minimum = 1;
+        query.maximum = 300;
+        return 0;
+      }
+      case VIDIOC_G_CTRL:
+        static_cast<v4l2_control*>(argument)->value = controls.empty() ? 50 : controls.back().second;
+        return 0;
       case VIDIOC_S_CTRL: {
         const auto& set = *static_cast<v4l2_control*>(argument);
+        if (set.value > 300) return -ERANGE;
         controls.emplace_back(set.id, set.value);
         return 0;
       }
@@ -218,6 +229,22 @@ TEST_F(V4l2Test, OneThatIsPulledOutIsAnErrorAndLeavesNothingOpen) {
   EXPECT_EQ(kernel_->open_files, 0);
   EXPECT_EQ(kernel_->mapped, 0);
   EXPECT_FALSE(kernel_->streaming);
+}
+
+TEST_F(V4l2Test, ItsExposureIsSetWhileItGivesPictures) {
+  const auto camera = connect("v4l2:/dev/video7");
+  const auto has = camera->controls();
+  ASSERT_EQ(has.size(), 1u) << "it has no gain";
+  EXPECT_EQ(has[0].control, Control::exposure);
+  EXPECT_NEAR(has[0].least, 0.1, 1e-12);
+  EXPECT_NEAR(has[0].most, 30, 1e-12);
+  EXPECT_NEAR(has[0].now, 5, 1e-12);
+  camera->set(Control::exposure, 2.5);
+  EXPECT_EQ(kernel_->controls, (std::vector<std::pair<std::uint32_t, int>>{{V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL},
+                                                                           {V4L2_CID_EXPOSURE_ABSOLUTE, 25}}));
+  EXPECT_NEAR(camera->controls()[0].now, 2.5, 1e-12);
+  EXPECT_THROW(camera->set(Control::exposure, 31), Error);
+  EXPECT_THROW(camera->set(Control::exposure, 1e300), Error);
 }
 
 TEST_F(V4l2Test, WhatCannotBeIsASentence) {

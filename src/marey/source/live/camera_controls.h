@@ -1,0 +1,56 @@
+// Exposure and gain of a camera while it gives pictures: between whoever asks for them and the thread that reads the camera.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace marey::source::live {
+
+enum class Control { exposure, gain };  ///< ms; the camera's own unit
+
+/// "exposure", "gain".
+std::string_view to_string(Control control);
+
+/// What a camera has, and between what it can be set.
+struct ControlRange {
+  Control control = Control::exposure;
+  double least = 0, most = 0, now = 0;
+};
+
+class Connection;
+
+class CameraControls {
+ public:
+  using Values = std::map<Control, double>;
+
+  /// What is set as soon as the camera is there, and again whenever it comes back.
+  explicit CameraControls(Values wanted = {}) : wanted_(std::move(wanted)) {}
+
+  // From any thread.
+  void ask(Control control, double value);
+  /// None where the camera has none, or was not there yet.
+  std::vector<ControlRange> has() const;
+  /// What was asked for and taken.
+  Values taken() const;
+  /// Why the last that was asked for was not taken, without the camera's name; empty where it was.
+  std::string refused() const;
+
+  // From the thread that reads the camera.
+  /// It is connected.
+  void begin(Connection& camera);
+  /// Sets what was asked for since the last call.
+  void apply(Connection& camera);
+
+ private:
+  Values set(Connection& camera, const Values& values);
+
+  mutable std::mutex mutex_;
+  Values wanted_, fresh_, taken_;
+  std::vector<ControlRange> has_;
+  std::string refused_;
+};
+
+}  // namespace marey::source::live
