@@ -144,6 +144,7 @@ FollowBodiesSummary follow_bodies(const std::string& recording, const std::strin
   summary.stopped = stopped;
   for (std::string& warning : reader->warnings()) summary.warnings.push_back(std::move(warning));
   if (auto sentence = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*sentence));
+  if (auto sentence = format::beside_lost(reader->info().beside, out, format)) summary.warnings.push_back(std::move(*sentence));
   return summary;
 }
 

@@ -27,10 +27,21 @@ class WavedWand {
       counted_s_ = now.seconds;
       count(now.blobs, now.feeds);
     }
-    seen_ = {.seconds = now.seconds, .cameras = {}, .enough = coverage_.is_enough()};
-    for (std::size_t c = 0; c < now.feeds.size(); ++c)
-      seen_.cameras.push_back({now.feeds[c].camera().name, now.feeds[c].state({}, now.policy), coverage_.coverage(c),
-                               coverage_.views(c), coverage_.is_covered(c)});
+    using calibrate::wand::WandCoverage;
+    seen_ = {.seconds = now.seconds, .cameras = {}, .shared = {}, .now = seen_now(now), .enough = coverage_.is_enough()};
+    for (std::size_t c = 0; c < now.feeds.size(); ++c) {
+      const auto& parts = coverage_.parts(c);
+      seen_.cameras.push_back({now.feeds[c].camera().name,
+                               now.feeds[c].state({}, now.policy),
+                               coverage_.coverage(c),
+                               coverage_.views(c),
+                               coverage_.is_covered(c),
+                               {parts.begin(), parts.end()}});
+      for (std::size_t other = c + 1; other < now.feeds.size(); ++other) {
+        const std::int64_t views = coverage_.shared(c, other);
+        seen_.shared.push_back({c, other, views, views >= WandCoverage::kEnoughShared});
+      }
+    }
     const bool go_on = !options_.waving || options_.waving(seen_);
     return seen_.enough || !go_on;
   }
@@ -46,6 +57,31 @@ class WavedWand {
   }
 
  private:
+  Instant seen_now(const LiveLook& now) {
+    Instant instant;
+    instant.index = looks_++;
+    instant.time = timestamp_from_seconds(now.seconds);
+    for (std::size_t c = 0; c < now.newest.size(); ++c) {
+      const CameraFrame& given = now.newest[c];
+      if (!given.detections) continue;
+      const CameraId camera{static_cast<int>(c)};
+      if (!given.frame.picture.empty()) instant.frames.push_back(given.frame);
+      calibrate::wand::BlobFrame frame;
+      for (const Detection& blob : *given.detections) frame.blobs.push_back(blob.centre);
+      const auto found =
+          calibrate::wand::find_marks({&frame, 1}, options_.wand, now.feeds[c].camera().lens, now.feeds[c].info().size);
+      for (const Vector<2>& blob : frame.blobs) {
+        SeenPoint& seen = instant.seen.emplace_back();
+        seen.camera = camera;
+        seen.pixel = blob;
+        for (std::size_t m = 0; !found.empty() && m < options_.wand.markers(); ++m) {
+          if (found.front().marks[m] == blob) seen.track = TrackId{static_cast<int>(m) + 1};
+        }
+      }
+    }
+    return instant;
+  }
+
   void count(const CameraBlobs& blobs, std::span<const Feed> feeds) {
     std::vector<calibrate::wand::WandCoverage::Seen> fresh;
     double rate_hz = kUsualRate;
@@ -62,6 +98,7 @@ class WavedWand {
   calibrate::wand::WandCoverage coverage_;
   std::vector<std::size_t> counted_;
   double counted_s_ = 0;
+  std::int64_t looks_ = 0;
   WandSeen seen_;
 };
 
@@ -71,6 +108,7 @@ CameraBlobs wave_wand(Rig& rig, const CalibrateWandOptions& options, const Hooks
       rig, {.markers = options.markers, .for_s = options.wave_s, .will_do = [&](const LiveLook& now) { return wand.look(now); }},
       hooks);
   blobs.warnings = wand.warnings();
+  if (options.waved) options.waved();
   return blobs;
 }
 

@@ -7,6 +7,7 @@
 #include "marey/calibrate/wand/wand.h"
 #include "marey/core/frame_set.h"
 #include "marey/core/hooks.h"
+#include "marey/core/instant.h"
 #include "marey/detect/markers/marker_detector.h"
 
 namespace marey::pipeline {
@@ -19,9 +20,20 @@ struct WandSeen {
     double coverage = 0;     ///< share of its picture in which the wand was
     std::int64_t views = 0;  ///< frames in which it was
     bool covered = false;    ///< that is enough
+    std::vector<int> parts;  ///< in which it was, of 10 × 8 row by row
+  };
+  /// Two cameras that saw it at the same time.
+  struct Shared {
+    std::size_t a = 0, b = 0;  ///< a < b, by `cameras`
+    std::int64_t views = 0;
+    bool enough = false;  ///< to tell how they stand to each other
   };
   double seconds = 0;
   std::vector<Camera> cameras;
+  std::vector<Shared> shared;  ///< of all pairs
+  /// What each camera sees now: pictures where it gives some, blobs, those that are the wand's as tracks 1, 2, 3. No time of it is
+  /// exact: cameras' newest frames.
+  Instant now;
   bool enough = false;  ///< every camera is covered, and all are chained by views that two of them share
 };
 
@@ -32,8 +44,10 @@ struct CalibrateWandOptions {
   calibrate::wand::WandOptions how;  ///< offsets are looked for unless `synced`, or nobody says the cameras' rate
   bool synced = false;               ///< the cameras' clocks are right
   double wave_s = 600;               ///< live cameras: the wand is waved until it was seen enough, at most so long
-  /// Some times a second while it is waved; false: what was seen will do. May be empty.
+  /// Ten times a second while it is waved; false: what was seen will do. May be empty.
   std::function<bool(const WandSeen& seen)> waving = {};
+  /// It has been waved: the rest is computed. May be empty.
+  std::function<void()> waved = {};
 };
 
 struct WandCalibration {

@@ -57,7 +57,7 @@ CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, 
   if (has_live_cameras(rig)) return see_live_blobs(rig, {.markers = options}, hooks);
   auto feeds = open_feeds(rig, {.steady_times = true, .ahead = 4});
   for (std::size_t c = 0; c < feeds.size(); ++c) {
-    feeds[c].find(std::make_unique<detect::markers::MarkerDetector>(options));
+    feeds[c].find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feeds[c].camera(), options)));
     rig.cameras[c] = feeds[c].camera();
   }
   CameraBlobs blobs;

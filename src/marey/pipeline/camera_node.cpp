@@ -131,7 +131,7 @@ NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hook
   told.look_at(feeds);
   std::vector<std::unique_ptr<Outgoing>> outgoing;
   for (Feed& feed : feeds) {
-    if (!options.quality) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.markers));
+    if (!options.quality) feed.find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options.markers)));
     outgoing.push_back(std::make_unique<Outgoing>(told.session()));
   }
   NodeServer server(

@@ -1,7 +1,9 @@
 #include "marey/pipeline/convert.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include <Eigen/LU>
@@ -90,6 +92,47 @@ void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
   });
 }
 
+/// Throws Error where no frame of `reader` is one of the plan's; warns of frames without channels, and of labels that are others.
+void compare_with_analog(format::FileReader& reader, const std::string& path, const std::string& from,
+                         const format::WritePlan& plan, std::vector<std::string>& warnings) {
+  const format::FileInfo& info = reader.info();
+  const auto begin = reader.next();
+  if (!begin || std::abs(info.header.rate_hz / plan.info.header.rate_hz - 1) > 1e-6) return;  // the writer refuses other rates
+  const std::int64_t first = begin->index, last = first + info.frame_count.value_or(1) - 1;
+  const std::int64_t frames = plan.last_frame - plan.first_frame + 1;
+  const std::int64_t shared = std::min(last, plan.last_frame) - std::max(first, plan.first_frame) + 1;
+  const std::string ranges =
+      fmt::format("{}: has frames {} to {}, and {} has {} to {}", path, first, last, from, plan.first_frame, plan.last_frame);
+  if (frames > 0 && shared <= 0) throw Error("{}: none is in both; --analog wants the file that the recording was made of", ranges);
+  if (shared < frames)
+    warnings.push_back(
+        fmt::format("{}: {} of {} frames have no values of its analog channels; is it the file that the recording was "
+                    "made of?",
+                    ranges, frames - shared, frames));
+  std::set<std::string> labels;
+  for (const TrackName& track : plan.info.tracks) labels.insert(track.label);
+  labels.erase("");
+  const auto known = [&](const TrackName& track) { return labels.contains(track.label); };
+  if (!labels.empty() && !info.tracks.empty() && std::none_of(info.tracks.begin(), info.tracks.end(), known))
+    warnings.push_back(
+        fmt::format("{}: none of its {} labels is among the {} of {}; is it the file that the recording was made of?", path,
+                    info.tracks.size(), labels.size(), from));
+}
+
+/// What stands beside the points of another C3D file, in place of what stands beside those of `from`.
+format::BesidePoints analog_of(const std::string& path, const std::string& from, const std::string& to, const Format& out,
+                               const format::WritePlan& plan, std::vector<std::string>& warnings) {
+  if (!out.beside_points) throw format::WrongFormat("{}: --analog is for C3D, which alone holds such channels", to);
+  const auto reader = format::open_recording(path, format::format_to_read(path, Content::space));
+  const format::BesidePoints beside = reader->info().beside, &own = plan.info.beside;
+  if (!beside.any()) throw Error("{}: holds neither analog channels nor events; --analog wants a C3D file that does", path);
+  compare_with_analog(*reader, path, from, plan, warnings);
+  if (own.any() && own.path != path)
+    warnings.push_back(fmt::format("{}: its own {} analog channels and {} events are left out; those of {} take their place", from,
+                                   own.channels, own.events, path));
+  return beside;
+}
+
 /// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with what is known only at the
 /// end.
 ConvertSummary convert_stream(const std::string& from, const std::string& to, const Format& in, const Format& out,
@@ -116,6 +159,8 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);
   }
   if (auto sentence = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*sentence));
+  if (!options.analog.empty()) plan.info.beside = analog_of(options.analog, from, to, out, plan, summary.warnings);
+  if (auto sentence = format::beside_lost(plan.info.beside, to, out)) summary.warnings.push_back(std::move(*sentence));
   const auto reader = format::open_recording(from, in, how);
   const auto sink = format::create_recording(to, out, plan);
   sink->begin(plan.info.header);
@@ -147,6 +192,7 @@ ConvertSummary convert(const std::string& from, const std::string& to, const Con
   }
   ConvertOptions how = options;
   how.read.as_recorded = true;
+  if (in.skeleton) how.read.skeleton_up = std::exchange(how.from_up, std::nullopt).value_or(UpAxis::y);
   const Content content = format::content_of(format::open_recording(from, in, how.read)->header().frame);
   if (content != Content::space) refuse_axes(from, options, "holds no points in space");
   const Format& out = format::format_to_write(to, options.format, content);

@@ -44,7 +44,7 @@ BlobSummary detect_markers(const RigCamera& camera, const BlobOutput& output, co
                            const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   Feed feed(camera, CameraId{});
-  auto owned = std::make_unique<detect::markers::MarkerDetector>(options);
+  auto owned = std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options));
   const detect::markers::MarkerDetector& detector = *owned;
   owned->prime(feed.sample_beginning());
   feed.find(std::move(owned));

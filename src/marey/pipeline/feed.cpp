@@ -285,6 +285,7 @@ CameraFrame Feed::by_rig_clock(CameraFrame given) const {
 }
 
 void Feed::search(CameraFrame& given) {
+  if (given.detections && tuning_ != nullptr) leave_out_masked(*given.detections, tuning_->values().masks);
   if (detector_ == nullptr || given.detections) return;
   const Stopwatch detecting;
   given.detections = detector_->detect(given.frame, {}).detections;

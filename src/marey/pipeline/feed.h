@@ -15,6 +15,7 @@
 #include "marey/core/source.h"
 #include "marey/core/stop.h"
 #include "marey/detect/detector.h"
+#include "marey/pipeline/marker_tuning.h"
 #include "marey/source/feed_health.h"
 
 namespace marey::pipeline {
@@ -55,6 +56,8 @@ class Feed {
 
   /// The feed looks for things itself from now on, in the frames' order.
   void find(std::unique_ptr<detect::Detector> detector);
+  /// Of markers that came ready found those are left out that lie in a mask.
+  void tune(std::shared_ptr<const MarkerTuning> tuning) { tuning_ = std::move(tuning); }
   /// Its own detector; nothing where it has none.
   const detect::Detector* detector() const { return detector_.get(); }
 
@@ -111,6 +114,7 @@ class Feed {
   SourceInfo live_info_;
   source::FeedHealth health_;
   std::unique_ptr<detect::Detector> detector_;
+  std::shared_ptr<const MarkerTuning> tuning_;
   std::optional<double> first_s_;
   FeedState state_ = FeedState::connecting;
 };

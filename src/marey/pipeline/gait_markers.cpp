@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "marey/core/error.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/c3d_parameters.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/solve/skeleton/human.h"
 
 namespace marey::pipeline {
 namespace {
@@ -69,17 +69,38 @@ std::optional<double> mostly_apart(const GaitMarkers& walk, std::string_view a, 
 
 }  // namespace
 
-GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks) {
+const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::string& name) {
+  const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), {});
+  std::set<std::string, std::less<>> labels;
+  const auto learn = [&](std::span<const TrackName> named) {
+    for (const TrackName& track : named) labels.insert(track.label.substr(track.label.find_last_of(':') + 1));
+  };
+  learn(reader->tracks());
+  while (const auto instant = reader->next()) learn(instant->named);
+  try {
+    if (name.empty()) return gait::recognised_marker_set(labels);
+    const gait::BodyMarkerSet& set = gait::body_marker_set(name);
+    const std::vector<std::string> lacking = set.missing(labels);
+    if (!lacking.empty()) throw Error("of {} it lacks {}", set.title(), fmt::join(lacking, ", "));
+    return set;
+  } catch (const Error& error) {
+    throw Error("{}: {}", path, error.what());
+  }
+}
+
+GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
+                              const gait::BodyMarkerSet& set) {
   format::ReadOptions how;
   how.up = up.value_or(format::UpAxis::z);
   const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
   GaitMarkers markers;
   markers.rate_hz = reader->header().rate_hz;
+  markers.set = &set;
   std::map<TrackId, std::string> labels;
   const auto learn = [&](std::span<const TrackName> named) {
     for (const TrackName& track : named) {
-      const std::string label = track.label.substr(track.label.find_last_of(':') + 1);
-      if (gait::segment_of_marker(label)) labels[track.id] = label;
+      if (const auto key = set.key_of(std::string_view(track.label).substr(track.label.find_last_of(':') + 1)))
+        labels[track.id] = *key;
     }
   };
   learn(reader->tracks());
@@ -87,7 +108,7 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
   while (const auto instant = reader->next()) {
     learn(instant->named);
     if (!first) {
-      first = instant->index;
+      first = markers.first_index = instant->index;
       markers.begin_s = seconds(instant->time);
     }
     const std::int64_t row = instant->index - *first;
@@ -115,7 +136,7 @@ gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string
   for (auto& [label, place] : means) place /= counts[label];
   for (const gait::MarkerPlaces& row : markers.rows) {
     for (const auto& [label, place] : row) {
-      const auto segment = *gait::segment_of_marker(label);
+      const auto segment = *markers.set->segment_of(label);
       const bool held =
           segment == gait::SegmentId::pelvis || label.ends_with("KNE") || label.ends_with("ANK") || label.ends_with("HEE");
       const double off = (place - means.at(label)).norm();
@@ -173,22 +194,6 @@ void take_soles(const std::string& path, gait::GaitSubject& subject) {
     if (!above || *above == 0) continue;
     subject.sole_from_ankle_toe[static_cast<std::size_t>(side)] = Eigen::AngleAxisd(-*above, Vector<3>::UnitY()).toRotationMatrix();
   }
-}
-
-Skeleton human_from_static(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks) {
-  gait::GaitSubject subject;
-  take_measures(path, subject);
-  const gait::MarkerPlaces standing = standing_places(read_gait_markers(path, up, hooks), path);
-  subject.learn_from(standing);
-  const gait::GaitPose pose = gait::pose_of(standing, subject);
-  std::vector<solve::skeleton::StandingSegment> segments;
-  for (std::size_t s = 0; s < gait::kSegments; ++s) {
-    if (pose.world_from[s]) segments.push_back({std::string(gait::name_of(static_cast<gait::SegmentId>(s))), *pose.world_from[s]});
-  }
-  std::vector<solve::skeleton::StandingMarker> markers;
-  for (const auto& [label, place] : standing)
-    markers.push_back({label, std::string(gait::name_of(*gait::segment_of_marker(label))), place});
-  return solve::skeleton::human_skeleton(std::filesystem::path(path).stem().string(), segments, markers);
 }
 
 }  // namespace marey::pipeline

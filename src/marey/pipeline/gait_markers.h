@@ -1,14 +1,14 @@
-// Plug-in Gait's markers of a recording, and what is known of the person; and the skeleton of a person who stands still.
+// Plug-in Gait's markers of a recording, or another set's in their place, and what is known of the person.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/analyse/gait/conventional_model.h"
 #include "marey/analyse/gait/gait_events.h"
 #include "marey/core/hooks.h"
-#include "marey/core/skeleton.h"
 #include "marey/format/format.h"
 
 namespace marey::pipeline {
@@ -18,6 +18,8 @@ namespace gait = analyse::gait;
 /// By row, one an instant from the first on. 0, 0, 0 is a marker that is missing; a subject's name before a label is left out.
 struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;
+  std::int64_t first_index = 0;
+  const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
   std::vector<gait::MarkerPlaces> rows;
   std::vector<std::string> warnings;
 
@@ -30,7 +32,12 @@ struct GaitMarkers {
   }
 };
 
-GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks);
+/// The set that a recording's labels are, subjects' names left out; `name`, where one is given. Throws Error with the file's name
+/// where they are none, or that one's lack.
+const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::string& name);
+
+GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
+                              const gait::BodyMarkerSet& set = gait::plug_in_gait());
 
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
 gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
@@ -45,9 +52,5 @@ void take_measures(const std::string& path, gait::GaitSubject& subject);
 /// How the feet stood in Vicon's own static trial, where a C3D file says so (PROCESSING, StaticPlantFlex): so far is the sole's
 /// line above the one from ankle to toe.
 void take_soles(const std::string& path, gait::GaitSubject& subject);
-
-/// The human skeleton of a person who stands still, with Plug-in Gait's markers, calibrated to it. Throws Error where the pelvis is
-/// not known.
-Skeleton human_from_static(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks);
 
 }  // namespace marey::pipeline

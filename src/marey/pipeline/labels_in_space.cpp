@@ -13,13 +13,14 @@
 namespace marey::pipeline {
 namespace {
 
-Recording points_in(const std::string& path, std::vector<std::string>* warnings) {
+Recording points_in(const std::string& path, std::vector<std::string>* warnings, format::BesidePoints* beside = nullptr) {
   const auto reader = format::open_recording(path);
   if (reader->header().frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: names are for points in space, and these positions are {}", path, to_string(reader->header().frame));
   Recording recording = read_all(*reader);
   recording.header.name = path;
   if (warnings != nullptr) *warnings = reader->warnings();
+  if (beside != nullptr) *beside = reader->info().beside;
   return recording;
 }
 
@@ -39,7 +40,8 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   LabelSummary summary;
   const format::Format& format = format::format_to_write(out, "", format::Content::space);
   const LearnedMarkers learned = format::bodies::read_label_set(set);
-  const Recording read = points_in(recording, &summary.warnings);
+  format::BesidePoints beside;
+  const Recording read = points_in(recording, &summary.warnings, &beside);
   solve::labels::Labelled labelled = solve::labels::label_recording(read, learned, options, hooks);
   Recording& named = labelled.recording;
   named.header.name = std::filesystem::path(recording).stem().string();
@@ -48,10 +50,12 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   summary.instants = std::ssize(named.instants());
   summary.points = named.samples();
   for (const auto& marker : labelled.health) summary.named += marker.seen;
-  const format::WritePlan plan = format::plan_of(*format::reader_of(named), out);
+  format::WritePlan plan = format::plan_of(*format::reader_of(named), out);
+  plan.info.beside = beside;
   const auto sink = format::create_recording(out, format, plan, &summary.warnings);
   MemoryReader reader(named);
   replay(reader, *sink);
+  if (auto sentence = format::beside_lost(beside, out, format)) summary.warnings.push_back(std::move(*sentence));
   summary.health = std::move(labelled.health);
   summary.unnamed = std::move(labelled.unnamed);
   summary.renamed = labelled.renamed;

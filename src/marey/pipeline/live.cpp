@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/source_name.h"
 #include "marey/pipeline/camera_films.h"
 #include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/named_in_take.h"
 #include "marey/pipeline/preview.h"
 
 namespace marey::pipeline {
@@ -51,20 +53,30 @@ bool feeds_find(LiveJob job, LiveTargets targets) {
   return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
 }
 
+void look_for_markers(std::vector<Feed>& feeds, LiveJob job, LiveOptions& options) {
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    if (options.targets == LiveTargets::markers) feeds[i].tune(options.desk->tuning(i));
+    if (feeds_find(job, options.targets))
+      feeds[i].find(std::make_unique<TunedMarkers>(options.space.markers, options.desk->tuning(i)));
+  }
+  options.markers.tuning = options.desk->tuning(0);
+}
+
 std::unique_ptr<Stage> stage_of(LiveJob job, const std::vector<Feed>& feeds, const Rig& rig, double rate_hz, LiveOptions& options) {
   switch (job) {
     case LiveJob::markers_in_space:
       options.space.live = true;
+      options.space.naming = options.naming;
       return markers_in_space(rig, rate_hz, options.space);
     case LiveJob::markers_in_picture:
       options.markers.live = true;
-      return markers_in_picture(feeds.front(), options.markers);
+      return with_naming(markers_in_picture(feeds.front(), options.markers), options.naming);
     case LiveJob::people_in_picture:
       options.people.live = true;
-      return people_in_picture(feeds.front(), options.people);
+      return with_naming(people_in_picture(feeds.front(), options.people), options.naming);
     case LiveJob::people_on_ground:
       options.on_ground.live = true;
-      return people_on_ground(feeds, rig, options.on_ground);
+      return with_naming(people_on_ground(feeds, rig, options.on_ground), options.naming);
     case LiveJob::preview:
       break;
   }
@@ -121,6 +133,15 @@ void report_cameras_live(LiveSummary& summary, const Clock& clock, const LiveMon
   for (Summary::StepTime& each : monitor.steps()) summary.steps.push_back(std::move(each));
 }
 
+/// The names in the take that all cameras are played from; empty where they are not.
+MarkerSet names_of_played(const Rig& rig) {
+  const std::string path = path_of_source(rig.cameras.front().source);
+  for (const RigCamera& camera : rig.cameras) {
+    if (scheme_of(camera.source) != "play" || path_of_source(camera.source) != path) return {};
+  }
+  return named_in_take(path);
+}
+
 }  // namespace
 
 std::string_view to_string(LiveJob job) {
@@ -151,13 +172,16 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   if (options.policy.time == nullptr) options.policy.time = source::steady_time();
   if (options.recording == nullptr) options.recording = std::make_shared<RecordSwitch>(true);
   const StopScope scope(hooks.stop);
-  std::vector<Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s);
+  if (options.desk == nullptr) options.desk = std::make_shared<CameraDesk>(rig, options.space.markers.threshold);
+  std::vector<Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.desk.get());
   const Rig fed = rig_as_fed(rig, feeds);
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
-  if (feeds_find(summary.job, options.targets)) {
-    for (Feed& feed : feeds) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.space.markers));
-  }
+  if (options.space.set.labels.empty()) options.space.set = names_of_played(fed);
+  if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space)
+    throw Error("a skeleton is solved from markers in space, of two calibrated cameras or more; these cameras give {}",
+                to_string(summary.job));
+  look_for_markers(feeds, summary.job, options);
   LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
   bool begun = false;

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "marey/core/rig.h"
+#include "marey/pipeline/camera_desk.h"
 #include "marey/pipeline/live_monitor.h"
 #include "marey/pipeline/markers_in_picture.h"
 #include "marey/pipeline/markers_in_space.h"
 #include "marey/pipeline/people_in_picture.h"
 #include "marey/pipeline/people_on_ground.h"
 #include "marey/pipeline/recorder.h"
+#include "marey/pipeline/track_naming.h"
 
 namespace marey::pipeline {
 
@@ -32,7 +34,9 @@ struct LiveOptions {
   PeopleInPictureOptions people;
   PeopleOnGroundOptions on_ground;
   source::LivePolicy policy = {.time = nullptr, .late_s = 0.05, .stalled_s = 0.5, .lost_s = 5};  ///< without a time: the steady one
-  double patience_s = 3;  ///< that is waited at the beginning for cameras that are not there
+  std::shared_ptr<CameraDesk> desk = {};     ///< what of the cameras is changed while they run; null: they are as the rig says
+  std::shared_ptr<TrackNaming> naming = {};  ///< names that tracks are given by hand; null: none
+  double patience_s = 3;                     ///< that is waited at the beginning for cameras that are not there
 
   std::string take;                         ///< what is recorded into, NAME.marey; empty: nothing
   std::string pictures;                     ///< a folder for what each camera saw while it was recorded; empty: not kept

@@ -14,14 +14,16 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kLookEvery = 0.25;   // s
+constexpr double kLookEvery = 0.1;    // s
 constexpr double kNothingAfter = 10;  // s without a frame of any camera
 
 /// What has come of one camera since the last call.
-void take_blobs(Feed& feed, const source::LivePolicy& policy, double offset_s, std::vector<calibrate::wand::BlobFrame>& frames) {
-  for (const CameraFrame& given : feed.arrived(policy)) {
+void take_blobs(Feed& feed, const source::LivePolicy& policy, double offset_s, std::vector<calibrate::wand::BlobFrame>& frames,
+                CameraFrame& newest) {
+  for (CameraFrame& given : feed.arrived(policy)) {
     auto& blobs = frames.emplace_back(calibrate::wand::BlobFrame{seconds(given.frame.time) - offset_s, {}});
     for (const Detection& blob : *given.detections) blobs.blobs.push_back(blob.centre);
+    newest = std::move(given);
   }
 }
 
@@ -55,15 +57,20 @@ CameraBlobs see_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hook
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
   std::vector<Feed> feeds = open_live_feeds(rig, policy, options.patience_s);
-  for (Feed& feed : feeds) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.markers));
+  for (Feed& feed : feeds) {
+    feed.find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options.markers)));
+    feed.tune(std::make_shared<MarkerTuning>(MarkerTuning::Values{.threshold = {}, .masks = feed.camera().masks}));
+  }
   CameraBlobs blobs;
   blobs.seen.resize(feeds.size());
+  std::vector<CameraFrame> newest(feeds.size());
   const double begin = seconds(policy.time->now());
   std::optional<double> first;
   double looked = begin;
   while (true) {
-    tbb::parallel_for(std::size_t{0}, feeds.size(),
-                      [&](std::size_t c) { take_blobs(feeds[c], policy, rig.cameras[c].offset_s.value_or(0), blobs.seen[c]); });
+    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t c) {
+      take_blobs(feeds[c], policy, rig.cameras[c].offset_s.value_or(0), blobs.seen[c], newest[c]);
+    });
     const double now = seconds(policy.time->now());
     std::int64_t frames = 0;
     for (const auto& seen : blobs.seen) frames += std::ssize(seen);
@@ -73,7 +80,7 @@ CameraBlobs see_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hook
     if (first && now - *first >= options.for_s) break;
     if (options.will_do && now - looked >= kLookEvery) {
       looked = now;
-      if (options.will_do({blobs, feeds, policy, first ? now - *first : 0})) break;
+      if (options.will_do({blobs, feeds, newest, policy, first ? now - *first : 0})) break;
     }
     if (std::all_of(feeds.begin(), feeds.end(), [](const Feed& feed) { return feed.has_ended(); })) break;
     policy.time->wait();

@@ -18,6 +18,7 @@ bool has_live_cameras(const Rig& rig);
 struct LiveLook {
   const CameraBlobs& blobs;  ///< what came so far
   std::span<const Feed> feeds;
+  std::span<const CameraFrame> newest;  ///< by camera, the last that came; without picture and detections where none did
   const source::LivePolicy& policy;
   double seconds = 0;  ///< since the first frame
 };
@@ -26,7 +27,7 @@ struct LiveBlobsOptions {
   detect::markers::MarkerOptions markers;
   double patience_s = 5;                              ///< that cameras are waited for at the beginning
   double for_s = 3;                                   ///< they are looked at for so long, from when the first frame came
-  std::function<bool(const LiveLook&)> will_do = {};  ///< called some times a second: whether that is enough; may be empty
+  std::function<bool(const LiveLook&)> will_do = {};  ///< called ten times a second: whether that is enough; may be empty
 };
 
 /// Sets sizes and rates that the rig lacks. Times are by the cameras' own clocks, as far as they differ by the rig's offsets.

@@ -44,6 +44,22 @@ Rig cameras_of(const source::live::Address& address) {
   return rig;
 }
 
+bool same_ground(const Rig& a, const Rig& b) {
+  return a.ground_from_world == b.ground_from_world && a.ground.middle == b.ground.middle && a.ground.half == b.ground.half &&
+         a.ground.terms() == b.ground.terms();
+}
+
+/// The ground that `some`, which `given` stands for, brings along is the rig's, where it brings one.
+void take_ground(Rig& rig, const Rig& some, const std::string& given) {
+  const auto has_ground = [](const Rig& of) { return of.ground_from_world || !of.ground.flat(); };
+  if (!has_ground(some)) return;
+  if (has_ground(rig) && !same_ground(rig, some))
+    throw Error("{}: its ground is another one than that of the sources before it; put the cameras into one rig",
+                shown_source(given));
+  rig.ground_from_world = some.ground_from_world;
+  rig.ground = some.ground;
+}
+
 /// When everything that is played begins: soon after it was asked for first.
 std::function<Timestamp()> common_begin(std::shared_ptr<source::LiveTime> time) {
   struct Begin {
@@ -86,6 +102,7 @@ Rig rig_of_sources(std::span<const std::string> sources) {
     const bool named = scheme_of(given).empty() && sign != std::string::npos && sign > 0 &&
                        std::none_of(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(sign), unfit_for_camera_name);
     Rig some = cameras_of(source::live::parse_address(live_name(named ? given.substr(sign + 1) : given)));
+    take_ground(rig, some, given);
     for (RigCamera& camera : some.cameras) {
       const bool has_name = !camera.name.empty() && !names.contains(camera.name);
       if (named || !has_name) camera.name = named ? given.substr(0, sign) : fmt::format("cam{}", rig.cameras.size() + 1);
@@ -97,7 +114,7 @@ Rig rig_of_sources(std::span<const std::string> sources) {
   return rig;
 }
 
-std::vector<Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s,
+std::vector<Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s, CameraDesk* desk,
                                   const std::stop_token& stop) {
   const std::vector<source::live::Kind> kinds = live_kinds();
   const auto begin = common_begin(policy.time);
@@ -118,14 +135,18 @@ std::vector<Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& poli
       sources.push_back(std::make_unique<NoCamera>());
       continue;
     }
-    sources.push_back(source::live::keep_connected(shown_source(rig.cameras[i].source), connects[i], policy.time, {.keep = kKeep}));
+    auto controls = desk != nullptr ? desk->controls(i) : controls_of(rig.cameras[i]);
+    sources.push_back(source::live::keep_connected(shown_source(rig.cameras[i].source), connects[i], policy.time,
+                                                   {.keep = kKeep, .controls = std::move(controls)}));
   }
   if (std::none_of(connects.begin(), connects.end(), [](const auto& connect) { return connect != nullptr; }))
     throw Error("{}", "no camera of the rig has a source; name them in the rig, or give CAMERA=SOURCE");
   wait_for(sources, patience_s, stop);
   std::vector<Feed> feeds;
-  for (std::size_t i = 0; i < sources.size(); ++i)
+  for (std::size_t i = 0; i < sources.size(); ++i) {
     feeds.push_back(Feed::live(rig.cameras[i], CameraId{static_cast<int>(i)}, std::move(sources[i])));
+    if (desk != nullptr) desk->fit(i, feeds.back().camera());
+  }
   return feeds;
 }
 

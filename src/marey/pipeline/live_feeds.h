@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/pipeline/camera_desk.h"
 #include "marey/pipeline/feed.h"
 #include "marey/source/live/kinds.h"
 
@@ -15,13 +16,15 @@ std::vector<source::live::Kind> live_kinds();
 
 /// A rig of sources as a command line names them, SOURCE or NAME=SOURCE: what is not named, and has no name of its own, is cam1,
 /// cam2, …; a path is a film, or a folder of pictures, that is played. A name that stands for several cameras brings them all, with
-/// their calibration where it is known. Throws Error for what names nothing, and for a name given twice.
+/// their calibration and their ground where they are known. Throws Error for what names nothing, for a name given twice, and where
+/// two bring grounds that differ.
 Rig rig_of_sources(std::span<const std::string> sources);
 
 /// The rig's cameras, each read on a thread of its own and connected again, without end, whenever it is not there. Returns when all
 /// are there, or after `patience_s`: those that are not yet are *connecting*. A camera without a source gives nothing. Throws Error
-/// where no camera has a source, a source cannot be meant, or a camera's pictures do not fit its calibration.
-std::vector<Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s,
+/// where no camera has a source, a source cannot be meant, or a camera's pictures do not fit its calibration. `desk` is what of
+/// them can be changed while they run; without it they are set as the rig says.
+std::vector<Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s, CameraDesk* desk = nullptr,
                                   const std::stop_token& stop = StopScope::current());
 
 }  // namespace marey::pipeline

@@ -24,9 +24,14 @@ using source::live::Address;
 using source::live::AddressOptions;
 using source::live::Came;
 using source::live::Connection;
+using source::live::Control;
+using source::live::ControlRange;
 using source::live::Kind;
 using source::live::Opening;
 using source::live::Shot;
+
+constexpr double kUsualExposure = 2;  // ms, for which pictures are drawn
+constexpr double kLeastExposure = 0.02, kMostGain = 16;
 
 /// How a room's cameras behave beside what they see.
 struct RoomBehaviour {
@@ -34,6 +39,9 @@ struct RoomBehaviour {
   double drift_ppm = 0;      ///< each camera's own clock is wrong by up to so much
   double jitter_ms = 0;      ///< mean delay of delivery, beside the exposure
   bool blobs = false;        ///< points come, not pictures
+  int lamps = 0;             ///< bright spots in each camera's picture that do not move
+  double exposure_ms = 0;    ///< of drawn pictures; 0: `kUsualExposure`
+  double gain = 1;           ///< likewise, times
   std::vector<double> away;  ///< camera from 1, from when to when it is not there, s
 };
 
@@ -63,6 +71,9 @@ RoomName::RoomName(const Address& address) {
   options.number("drift", behaviour.drift_ppm, 0, 500);
   options.number("jitter", behaviour.jitter_ms, 0, 1000);
   options.flag("blobs", behaviour.blobs);
+  options.whole("lamps", behaviour.lamps, 0, 50);
+  options.number("exposure", behaviour.exposure_ms, 0.01, 1000);
+  options.number("gain", behaviour.gain, 1, kMostGain);
   options.numbers("away", behaviour.away, 3);
   options.whole("camera", camera, 1, room.cameras);
   options.done();
@@ -84,6 +95,23 @@ struct SharedRoom {
   RoomScene scene;
   RoomBehaviour behaviour;
   double rate_hz() const { return scene.options().rate_hz; }
+  double longest_exposure_ms() const { return 1000 / rate_hz(); }
+  double usual_exposure_ms() const { return std::min(kUsualExposure, longest_exposure_ms()); }
+
+  /// What a camera sees: markers, and lamps.
+  std::vector<simulate::room::RoomBlob> seen_by(int camera, double time_s, std::uint64_t draw) const {
+    auto seen = scene.seen_by(camera, time_s, draw);
+    simulate::Random random(scene.options().seed * 1009 + static_cast<std::uint64_t>(camera));
+    const cv::Size size = scene.options().picture;
+    for (int i = 0; i < behaviour.lamps; ++i) {
+      const double x = random.uniform(0.05, 0.95) * size.width, y = random.uniform(0.05, 0.95) * size.height;
+      seen.push_back({.pixel = {x, y}, .marker = {}});
+    }
+    return seen;
+  }
+  cv::Mat drawn(int camera, double time_s, std::uint64_t draw) const {
+    return draw_room(scene, static_cast<std::size_t>(camera), time_s, seen_by(camera, time_s, draw), draw);
+  }
 };
 
 /// One of its cameras. Frame n is exposed at offset + n / rate by the camera's own clock.
@@ -97,6 +125,8 @@ class RoomCamera final : public Connection {
     info_.rate_hz = room_->rate_hz();
     simulate::Random random(room_->scene.options().seed * 977 + static_cast<std::uint64_t>(camera));
     if (room_->behaviour.drift_ppm > 0) drift_ = 1e-6 * random.uniform(-room_->behaviour.drift_ppm, room_->behaviour.drift_ppm);
+    exposure_ms_ = room_->behaviour.exposure_ms > 0 ? room_->behaviour.exposure_ms : room_->usual_exposure_ms();
+    gain_ = room_->behaviour.gain;
     offset_ = room_->scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
     check_presence();
     const double since = seconds(time_.now() - begin_) - offset_;
@@ -104,6 +134,23 @@ class RoomCamera final : public Connection {
   }
 
   const SourceInfo& info() const override { return info_; }
+
+  std::vector<ControlRange> controls() override {
+    if (room_->behaviour.blobs) return {};
+    return {{Control::exposure, kLeastExposure, room_->longest_exposure_ms(), exposure_ms_}, {Control::gain, 1, kMostGain, gain_}};
+  }
+  void set(Control control, double value) override {
+    for (const ControlRange& range : controls()) {
+      if (range.control != control) continue;
+      const char* unit = control == Control::exposure ? " ms" : "";
+      if (!(value >= range.least && value <= range.most))
+        throw Error("{}: does not take that {}; it must be {:g} to {:g}{}", info_.name, to_string(control), range.least, range.most,
+                    unit);
+      (control == Control::exposure ? exposure_ms_ : gain_) = value;
+      return;
+    }
+    Connection::set(control, value);
+  }
 
   Came next(Shot& shot) override {
     check_presence();
@@ -142,20 +189,29 @@ class RoomCamera final : public Connection {
     if (now >= away[1] && now < away[2]) throw Error("{}: the simulated camera is away until {} s", info_.name, away[2]);
   }
 
+  /// As bright as exposure and gain make it.
+  Picture exposed_picture(const cv::Mat& drawn) const {
+    const double times = exposure_ms_ / room_->usual_exposure_ms() * gain_;
+    if (times == 1) return Picture(drawn);
+    cv::Mat bright;
+    drawn.convertTo(bright, -1, times);
+    return Picture(bright);
+  }
+
   CameraFrame drawn(std::int64_t frame) const {
     CameraFrame given;
     if (drawn_ != nullptr && !drawn_->empty()) {
       const auto count = std::ssize(*drawn_), turn = std::max<std::int64_t>(1, 2 * count - 2), at = frame % turn;
-      given.frame.picture = Picture((*drawn_)[static_cast<std::size_t>(at < count ? at : turn - at)]);
+      given.frame.picture = exposed_picture((*drawn_)[static_cast<std::size_t>(at < count ? at : turn - at)]);
       return given;
     }
     const double t = exposed(frame);
     const auto draw = static_cast<std::uint64_t>(frame);
-    const auto seen = room_->scene.seen_by(camera_, t, draw);
     if (!room_->behaviour.blobs) {
-      given.frame.picture = Picture(draw_room(room_->scene, static_cast<std::size_t>(camera_), t, seen, draw));
+      given.frame.picture = exposed_picture(room_->drawn(camera_, t, draw));
       return given;
     }
+    const auto seen = room_->seen_by(camera_, t, draw);
     std::vector<Detection>& detections = given.detections.emplace();
     for (const simulate::room::RoomBlob& blob : seen) {
       Detection& detection = detections.emplace_back();
@@ -173,6 +229,7 @@ class RoomCamera final : public Connection {
   std::stop_token stop_;
   SourceInfo info_;
   double drift_ = 0, offset_ = 0;
+  double exposure_ms_, gain_;
   std::int64_t next_ = 0;
   std::optional<CameraFrame> prepared_;
 };
@@ -203,7 +260,7 @@ std::shared_ptr<const std::vector<cv::Mat>> draw_beforehand(const SharedRoom& ro
   const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
   tbb::parallel_for(std::size_t{0}, drawn->size(), [&](std::size_t i) {
     const double t = offset + static_cast<double>(i) / room.rate_hz();
-    (*drawn)[i] = draw_room(room.scene, static_cast<std::size_t>(camera), t, room.scene.seen_by(camera, t, i), i);
+    (*drawn)[i] = room.drawn(camera, t, i);
   });
   return drawn;
 }

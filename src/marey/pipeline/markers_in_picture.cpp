@@ -49,7 +49,8 @@ class FilledRows final : public InstantSource {
 
 class MarkersInPicture final : public Stage {
  public:
-  MarkersInPicture(const Feed& feed, const MarkersInPictureOptions& options) : options_(options), detector_(options.markers) {
+  MarkersInPicture(const Feed& feed, const MarkersInPictureOptions& options)
+      : options_(options), detector_(markers_of(feed.camera(), options.markers), options.tuning) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.made_by.program = "marey track";
@@ -92,7 +93,7 @@ class MarkersInPicture final : public Stage {
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
     const int fewest = static_cast<int>(std::min<std::size_t>(3, moments_.size()));  // a single picture has markers too
-    return std::make_unique<FilledRows>(track::fill_gaps(recording_, {}, fewest), std::move(moments_), std::move(labels_));
+    return std::make_unique<FilledRows>(track::rows_of_points(recording_, fewest), std::move(moments_), std::move(labels_));
   }
 
   void report(Summary& summary) const override {
@@ -114,7 +115,7 @@ class MarkersInPicture final : public Stage {
  private:
   /// A first look at the beginning of the recording, to learn how the markers move and how well they are seen.
   void fit(Feed feed) {
-    detect::markers::MarkerDetector detector(options_.markers);
+    TunedMarkers detector(markers_of(feed.camera(), options_.markers), nullptr);
     const auto tracker = track::make_roster_tracker<2>(options_.tracker);
     std::map<TrackId, filter::MeasuredPath<2>> paths;
     while (const auto given = feed.next()) {
@@ -133,8 +134,7 @@ class MarkersInPicture final : public Stage {
   }
 
   /// What is in the picture, or what another program saw there.
-  static std::vector<Observation<2>> observe(detect::markers::MarkerDetector& detector, const CameraFrame& given,
-                                             track::Tracker<2>& tracker) {
+  static std::vector<Observation<2>> observe(TunedMarkers& detector, const CameraFrame& given, track::Tracker<2>& tracker) {
     std::vector<Observation<2>> seen;
     if (given.detections) {
       for (const Detection& detection : *given.detections) seen.push_back(observation_of(detection));
@@ -150,7 +150,7 @@ class MarkersInPicture final : public Stage {
 
   MarkersInPictureOptions options_;
   RecordingHeader header_;
-  detect::markers::MarkerDetector detector_;
+  TunedMarkers detector_;
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<filter::NoiseFit> noise_;
   track::TrackletLog recording_;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "marey/detect/markers/marker_detector.h"
+#include "marey/pipeline/marker_tuning.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/roster_tracker.h"
 
@@ -16,6 +17,7 @@ struct MarkersInPictureOptions {
   bool fit_noise = false;  ///< read the filter's noise off the beginning of the recording; not where `live`
   /// Every frame's markers are told as they come, and nothing is improved by what came later.
   bool live = false;
+  std::shared_ptr<MarkerTuning> tuning = {};  ///< how the detector is changed while it runs; null: it stays as it is
 };
 
 /// After the last frame (not where `live`) false points are dropped, what is known to be gone is cut, and gaps are filled from both

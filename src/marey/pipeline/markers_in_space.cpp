@@ -12,6 +12,8 @@
 
 #include "marey/core/error.h"
 #include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/skeleton_in_space.h"
+#include "marey/pipeline/skeleton_stage.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/reconstruct/camera_watch.h"
 #include "marey/reconstruct/learned_noise.h"
@@ -339,7 +341,11 @@ track::RosterTrackerOptions space_tracker_options() {
 }
 
 std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {
-  return std::make_unique<MarkersInSpace>(rig, rate_hz, options);
+  auto markers = with_naming(std::make_unique<MarkersInSpace>(rig, rate_hz, options), options.naming);
+  if (options.skeleton == nullptr) return markers;
+  if (options.set.labels.empty())
+    throw Error("{}", "a skeleton is solved from markers that have names, and these have none: name them by --labels");
+  return with_skeleton(std::move(markers), options.skeleton, live_pose_options());
 }
 
 }  // namespace marey::pipeline

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "marey/core/rig.h"
+#include "marey/core/skeleton.h"
 #include "marey/detect/markers/marker_detector.h"
 #include "marey/format/motion/marker_set.h"
 #include "marey/pipeline/run.h"
+#include "marey/pipeline/track_naming.h"
 #include "marey/reconstruct/correspond.h"
 #include "marey/track/roster_tracker.h"
 
@@ -29,10 +31,13 @@ struct MarkersInSpaceOptions {
   /// Every instant is told as it comes, and no gap is filled; its first `predict_s` are told as they are expected. What a camera
   /// saw beside the moment is brought to it by the markers' motion.
   bool live = false;
+  std::shared_ptr<TrackNaming> naming = {};  ///< names that markers are given by hand; null: none
+  std::shared_ptr<const Skeleton> skeleton;  ///< is solved from the labelled markers, instant by instant; null: none
 };
 
 /// `rig` as its feeds are. Instants wait for as long as the longest gap that is filled; memory does not grow with the recording.
-/// Cameras without a calibration are left out, with a warning.
+/// Cameras without a calibration are left out, with a warning. Throws Error where a skeleton is to be solved and no marker has a
+/// name.
 std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options);
 
 }  // namespace marey::pipeline

@@ -13,6 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/gait_report.h"
+#include "marey/pipeline/gait_c3d.h"
 #include "marey/pipeline/gait_markers.h"
 
 namespace marey::pipeline {
@@ -185,6 +186,7 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   measure.frames = std::ssize(markers.rows);
   measure.rate_hz = markers.rate_hz;
   measure.begin_s = markers.begin_s;
+  measure.first_index = markers.first_index;
   take_measures(recording, measure.subject);
   if (!options.static_trial.empty()) {
     take_measures(options.static_trial, measure.subject);
@@ -221,6 +223,7 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
   GaitMeasure measure = measure_gait(recording, options, hooks);
   if (!output.angles.empty()) write_angles(output.angles, measure);
+  if (!output.c3d.empty()) write_gait_c3d(output.c3d, recording, options.up, measure);
   if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure);
   if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
   if (!output.report.empty()) write_gait_report(output.report, recording, measure);

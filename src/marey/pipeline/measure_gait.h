@@ -21,15 +21,17 @@ struct GaitOptions {
 };
 
 struct GaitOutput {
-  std::string cycles;  ///< CSV: curve, percent, mean, deviation
-  std::string angles;  ///< CSV: a row an instant
-  std::string report;  ///< HTML
+  std::string cycles;    ///< CSV: curve, percent, mean, deviation
+  std::string angles;    ///< CSV: a row an instant
+  std::string report;    ///< HTML
+  std::string c3d = {};  ///< the recording again, with angles and events
 };
 
 struct GaitMeasure {
   std::int64_t frames = 0;
   double rate_hz = 0;
-  double begin_s = 0;  ///< the recording's time of the first row
+  double begin_s = 0;            ///< the recording's time of the first row
+  std::int64_t first_index = 0;  ///< the recording's index of it
   analyse::gait::GaitSubject subject;
   std::vector<analyse::gait::AngleCurve> angles;
   std::vector<analyse::gait::GaitEvent> events;

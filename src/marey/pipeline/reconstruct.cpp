@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
+#include "marey/pipeline/named_in_take.h"
 
 namespace marey::pipeline {
 namespace {
@@ -39,36 +39,10 @@ Clock clock_of(const Rig& rig, const std::string& observations, const MarkersInS
                                 ? open_feeds(rig, {.rate_hz = options.rate_hz, .steady_times = true, .ahead = kAhead}, true)
                                 : open_observations(observations, rig, options.rate_hz);
   for (Feed& feed : feeds) {
-    if (feed.has_pictures()) feed.find(std::make_unique<detect::markers::MarkerDetector>(options.markers));
+    if (feed.has_pictures())
+      feed.find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options.markers)));
   }
   return Clock(std::move(feeds), {.pace = ClockOptions::Pace::even, .interpolate = !options.live});
-}
-
-/// The names that a take gave its markers, and how they lay at the moment of its first second that has most of them: for who solves
-/// it again. Empty where `observations` is no take, or has no names.
-MarkerSet named_in_take(const std::string& observations) {
-  constexpr double kBeginning = 1;  // s
-  MarkerSet set;
-  if (observations.empty() || !format::take::is_take(observations)) return set;
-  format::take::TakeReader take(observations);
-  std::map<TrackId, std::string> labels;
-  for (TrackName& track : take.tracks()) {
-    if (!track.label.empty()) labels.emplace(track.id, std::move(track.label));
-  }
-  std::optional<Timestamp> begin;
-  while (const auto instant = labels.empty() ? std::nullopt : take.next()) {
-    if (!begin) begin = instant->time;
-    if (seconds(instant->time - *begin) > kBeginning) break;
-    MarkerSet now;
-    for (const Sample& sample : instant->samples) {
-      const auto label = labels.find(sample.track);
-      if (label == labels.end()) continue;
-      now.labels.push_back(label->second);
-      now.places.push_back(sample.position);
-    }
-    if (now.labels.size() > set.labels.size()) set = std::move(now);
-  }
-  return set;
 }
 
 void report_cameras(const Clock& clock, const Rig& rig, Summary& summary) {

@@ -19,6 +19,7 @@
 #include "marey/format/match/ground_file.h"
 #include "marey/format/observations.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/format/skeleton/skeleton_file.h"
 
 namespace marey::pipeline {
 namespace {
@@ -308,6 +309,7 @@ void write_room(const simulate::room::RoomScene& scene, const std::string& folde
   for (const auto& film : films) film->finish();
   write_room_rigs(scene, place, options.videos);
   write_labels(scene, place);
+  if (const auto skeleton = scene.skeleton()) write_text(place / "skeleton.toml", format::skeleton::to_toml(*skeleton));
 }
 
 void write_match(const MatchFilesOptions& options, const std::string& folder, const Hooks& hooks) {

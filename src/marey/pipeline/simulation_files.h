@@ -41,6 +41,7 @@ struct RoomFilesOptions {
 ///   observations.csv  camera,frame,x,y: what the cameras report, from top to bottom in each picture
 ///   blobs.csv         the same rows with their markers: camera,frame,x,y,marker (blank for ghosts)
 ///   labels.csv        label,x,y,z: where each marker is at the beginning, m
+///   skeleton.toml     the body that bears the markers, where one does
 ///   truth.csv         frame,time,label,x,y,z,cameras: m, by the rig's clock; by how many cameras it can be seen
 /// Memory does not grow with the length. Throws Error where a file cannot be written.
 void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/track_names.h"
 #include "marey/core/whole_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
-#include "marey/pipeline/gait_markers.h"
+#include "marey/pipeline/skeleton_in_space.h"
 #include "marey/solve/skeleton/calibrate.h"
 #include "marey/solve/skeleton/smooth.h"
 
@@ -31,62 +27,6 @@ constexpr std::size_t kMostCalibrationFrames = 4096;
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
 }
-
-/// "Jane:LKNE" is LKNE of a subject Jane.
-std::string_view without_subject(std::string_view label) {
-  return label.substr(label.find_last_of(':') + 1);
-}
-
-/// "A, B, C …"
-std::string first_of(std::vector<std::string> labels) {
-  const bool more = labels.size() > 4;
-  labels.resize(std::min<std::size_t>(4, labels.size()));
-  return labels.empty() ? "none" : fmt::format("{}{}", fmt::join(labels, ", "), more ? " …" : "");
-}
-
-/// Which of the recording's tracks are the skeleton's markers.
-class MarkersByLabel {
- public:
-  MarkersByLabel(const Skeleton& skeleton, const std::vector<std::string>& leave_out) {
-    const std::set<std::string, std::less<>> without(leave_out.begin(), leave_out.end());
-    for (std::size_t j = 0; j < skeleton.markers.size(); ++j) {
-      if (!without.contains(skeleton.markers[j].label)) by_label_.emplace(skeleton.markers[j].label, j);
-    }
-    for (const std::string& label : leave_out) left_out_.insert(label);
-  }
-
-  void add(std::span<const TrackName> named) {
-    for (const TrackName& track : named) {
-      auto found = by_label_.find(std::string_view(track.label));
-      if (found == by_label_.end()) found = by_label_.find(without_subject(track.label));
-      if (found != by_label_.end()) {
-        marker_of_[track.id] = found->second;
-        recorded_.insert(found->first);
-      } else if (!track.label.empty() && !left_out_.contains(track.label)) {
-        unknown_.insert(track.label);
-      }
-    }
-  }
-
-  std::optional<std::size_t> marker(TrackId track) const {
-    const auto found = marker_of_.find(track);
-    return found == marker_of_.end() ? std::nullopt : std::optional(found->second);
-  }
-  std::vector<std::string> not_recorded() const {
-    std::vector<std::string> labels;
-    for (const auto& [label, j] : by_label_) {
-      if (!recorded_.contains(label)) labels.push_back(label);
-    }
-    return labels;
-  }
-  std::vector<std::string> unknown() const { return {unknown_.begin(), unknown_.end()}; }
-  bool any() const { return !recorded_.empty(); }
-
- private:
-  std::map<std::string, std::size_t, std::less<>> by_label_;
-  std::map<TrackId, std::size_t> marker_of_;
-  std::set<std::string, std::less<>> recorded_, unknown_, left_out_;
-};
 
 /// Sums up poses as they come.
 class SolveCounts {
@@ -174,26 +114,6 @@ std::unique_ptr<format::FileReader> open_markers(const std::string& path, const 
   return reader;
 }
 
-/// Bodies of one instant.
-std::vector<BodyPose> poses_of(const SolvedRecording& solved, const std::vector<Body>& bodies, const std::vector<Matrix<3>>& rest,
-                               std::size_t row) {
-  const std::vector<Rigid3> world_from = pose_of(solved.skeleton, solved.motion.rows[row]);
-  std::vector<BodyPose> poses;
-  for (std::size_t s = 0; s < bodies.size(); ++s) {
-    BodyPose pose{.body = bodies[s].id,
-                  .world_from_body = body_pose(world_from[s], rest[s]),
-                  .covariance = {},
-                  .residual_m = {},
-                  .tracked = true};
-    for (const JointAxis& axis : solved.skeleton.segments[s].joint.axes) {
-      if (axis.coordinate && !solved.observed[row][static_cast<std::size_t>(*axis.coordinate)]) pose.tracked = false;
-    }
-    if (solved.residual_m[row] > 0) pose.residual_m = solved.residual_m[row];
-    poses.push_back(std::move(pose));
-  }
-  return poses;
-}
-
 /// The recording again, with its bodies, into a sink.
 void replay_with_bodies(const std::string& recording, const SolvedRecording& solved, const SolveOptions& options, Sink& sink) {
   const auto reader = open_markers(recording, options);
@@ -205,22 +125,31 @@ void replay_with_bodies(const std::string& recording, const SolvedRecording& sol
   while (auto instant = reader->next()) {
     if (row >= solved.motion.rows.size()) break;
     if (row == 0) instant->named = reader->tracks();
-    instant->bodies = poses_of(solved, header.bodies, rest, row++);
+    instant->bodies =
+        segment_poses(solved.skeleton, header.bodies, rest, solved.motion.rows[row], solved.observed[row], solved.residual_m[row]);
+    ++row;
     sink.write(*instant);
   }
   sink.finish();
 }
 
-void write_output(const std::string& path, const std::string& recording, const SolvedRecording& solved,
-                  const SolveOptions& options) {
-  if (ends_with_any(path, {".mot", ".sto"})) return format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
-  if (path.ends_with(".glb")) return replay_with_bodies(recording, solved, options, *format::skeleton::create_glb(path));
-  if (path.ends_with(".bvh"))
-    return replay_with_bodies(recording, solved, options, *format::skeleton::create_bvh(path, options.bvh));
+/// Says what the file could not hold of what stands beside the recording's points.
+std::optional<std::string> write_output(const std::string& path, const std::string& recording, const SolvedRecording& solved,
+                                        const SolveOptions& options) {
+  if (ends_with_any(path, {".mot", ".sto"})) {
+    format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
+    return std::nullopt;
+  }
+  if (ends_with_any(path, {".glb", ".bvh"})) {
+    const auto sink = path.ends_with(".glb") ? format::skeleton::create_glb(path) : format::skeleton::create_bvh(path, options.bvh);
+    replay_with_bodies(recording, solved, options, *sink);
+    return std::nullopt;
+  }
   const format::Format& format = format::format_to_write(path, "", Content::space);
   format::WritePlan plan = format::plan_of(*open_markers(recording, options), recording);
   plan.info.header.bodies = bodies_of(solved.skeleton);
   replay_with_bodies(recording, solved, options, *format::create_recording(path, format, plan));
+  return format::beside_lost(plan.info.beside, path, format);
 }
 
 }  // namespace
@@ -239,43 +168,32 @@ void check_skeleton_output(const std::string& path) {
 
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& file,
                                 const SolveOptions& options, const Hooks& hooks) {
-  SolvedRecording solved{.skeleton = file.skeleton, .motion = {}, .observed = {}, .residual_m = {}, .summary = {}};
+  SolvedRecording solved;
+  solved.skeleton = file.skeleton;
   SolveSummary& summary = solved.summary;
   summary.warnings = file.warnings;
   summary.skeleton = file.skeleton.name;
   const auto reader = open_markers(recording, options);
-  MarkersByLabel labels(solved.skeleton, options.leave_out);
-  labels.add(reader->tracks());
-  solve::skeleton::PoseSolver solver(solved.skeleton, options.pose);
-  SolveCounts counts(solved.skeleton);
-  std::vector<std::optional<Vector<3>>> seen(solved.skeleton.markers.size());
-  std::vector<solve::skeleton::SeenMarkers> all;
   solved.motion.rate_hz = summary.rate_hz = reader->header().rate_hz;
-  std::optional<Timestamp> before;
+  SkeletonInSpace solver(std::make_shared<const Skeleton>(file.skeleton), solved.motion.rate_hz, options.pose, options.leave_out);
+  solver.name(reader->tracks());
+  SolveCounts counts(solved.skeleton);
+  std::vector<solve::skeleton::SeenMarkers> all;
   while (const auto instant = reader->next()) {
-    labels.add(instant->named);
-    std::fill(seen.begin(), seen.end(), std::nullopt);
-    for (const Sample& sample : instant->samples) {
-      // Some systems write 0, 0, 0 where a marker is missing.
-      if (sample.provenance == Provenance::predicted || sample.position.isZero()) continue;
-      if (const auto j = labels.marker(sample.track)) seen[*j] = sample.position;
-    }
-    const auto& pose = solver.step(before ? seconds(instant->time - *before) : 1 / solved.motion.rate_hz, seen);
-    before = instant->time;
+    const auto& pose = solver.solve(*instant);
     counts.add(pose);
     solved.motion.times.push_back(instant->time);
     solved.motion.rows.push_back(pose.coordinates);
     solved.observed.push_back(pose.observed);
     solved.residual_m.push_back(pose.rms_m);
-    if (options.smooth) all.push_back(seen);
+    if (options.smooth) all.push_back(solver.seen());
     if (hooks.report({.step = "solving", .done = ++summary.frames, .total = reader->instant_count()}) == Continue::no) {
       summary.stopped = true;
       break;
     }
   }
-  if (!labels.any())
-    throw Error("{}: none of its labels is a marker of the skeleton {}; it has {}, the skeleton {}", recording,
-                solved.skeleton.name, first_of(labels.unknown()), first_of(labels.not_recorded()));
+  const SkeletonMarkers& labels = solver.markers();
+  if (!labels.any()) throw Error("{}: {}", recording, labels.none_known(solved.skeleton.name));
   if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, all, solved.motion.rate_hz);
   for (const std::string& warning : reader->warnings()) summary.warnings.push_back(warning);
   summary.not_recorded = labels.not_recorded();
@@ -291,18 +209,15 @@ namespace {
 std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording, const Skeleton& skeleton,
                                                    const SolveOptions& options) {
   const auto reader = open_markers(recording, options);
-  MarkersByLabel labels(skeleton, options.leave_out);
-  labels.add(reader->tracks());
+  SkeletonMarkers labels(skeleton, options.leave_out);
+  labels.name(reader->tracks());
   std::vector<solve::skeleton::SeenMarkers> frames;
   std::size_t step = 1, count = 0;
   while (const auto instant = reader->next()) {
-    labels.add(instant->named);
+    labels.name(instant->named);
     if (count++ % step != 0) continue;
-    solve::skeleton::SeenMarkers seen(skeleton.markers.size());
-    for (const Sample& sample : instant->samples) {
-      if (sample.provenance == Provenance::predicted || sample.position.isZero()) continue;
-      if (const auto j = labels.marker(sample.track)) seen[*j] = sample.position;
-    }
+    solve::skeleton::SeenMarkers seen;
+    labels.take(*instant, seen);
     frames.push_back(std::move(seen));
     if (frames.size() < kMostCalibrationFrames) continue;
     for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
@@ -312,16 +227,22 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
   return frames;
 }
 
-format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const SolveOptions& options, const Hooks& hooks) {
+format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const SolveOptions& options, SolveSummary& found,
+                                           const Hooks& hooks) {
   if (!skeleton.empty()) {
     format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
     if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
     return file;
   }
   if (options.static_trial.empty())
-    throw Error("a skeleton is wanted: --skeleton FILE, or --static of the person standing with Plug-in Gait's markers");
+    throw Error("a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field");
   format::skeleton::SkeletonFile file;
-  file.skeleton = human_from_static(options.static_trial, options.up, hooks);
+  HumanSkeleton human = human_from_static(options.static_trial,
+                                          {.motion = options.motion, .marker_set = options.marker_set, .up = options.up}, hooks);
+  file.skeleton = std::move(human.skeleton);
+  file.warnings = std::move(human.warnings);
+  found.joints = std::move(human.joints);
+  found.marker_set = std::move(human.marker_set);
   return file;
 }
 
@@ -336,7 +257,8 @@ void write_skeleton_file(const std::string& path, const Skeleton& skeleton) {
 SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& given,
                                     const Hooks& hooks) {
   SolveOptions options = given;
-  format::skeleton::SkeletonFile file = skeleton_of(skeleton, options, hooks);
+  SolveSummary found;
+  format::skeleton::SkeletonFile file = skeleton_of(skeleton, options, found, hooks);
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
   if (options.calibrate) {
@@ -344,6 +266,8 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
+  solved.summary.joints = std::move(found.joints);
+  solved.summary.marker_set = std::move(found.marker_set);
   if (calibration) {
     solved.summary.overall_scale = calibration->overall_scale;
     solved.summary.rms_before_m = calibration->rms_before_m;
@@ -359,9 +283,12 @@ SolveSummary solve_skeleton(const std::string& recording, const std::string& ske
   if (solved.summary.stopped) return solved.summary;
   SolveOptions options = given;
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
-  for (const std::string& path : outputs) write_output(path, recording, solved, options);
+  SolveSummary summary = solved.summary;
+  for (const std::string& path : outputs) {
+    if (auto sentence = write_output(path, recording, solved, options)) summary.warnings.push_back(std::move(*sentence));
+  }
   if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
-  return solved.summary;
+  return summary;
 }
 
 }  // namespace marey::pipeline

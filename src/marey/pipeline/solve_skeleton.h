@@ -12,6 +12,7 @@
 #include "marey/format/format.h"
 #include "marey/format/skeleton/bvh.h"
 #include "marey/format/skeleton/skeleton_file.h"
+#include "marey/pipeline/human_skeleton.h"
 #include "marey/solve/skeleton/pose_solver.h"
 
 namespace marey::pipeline {
@@ -24,6 +25,8 @@ struct SolveOptions {
   solve::skeleton::PoseOptions pose;
   bool smooth = false;         ///< a second pass over the whole motion
   std::string static_trial;    ///< of the same person standing: makes the human skeleton, where none is given
+  std::string marker_set;      ///< its name; empty: known by the labels
+  std::string motion;          ///< and of its range of motion: where its joints are; empty: none
   bool calibrate = false;      ///< first fits the skeleton to the person, from the recording itself
   std::string write_skeleton;  ///< skeleton.toml of what was solved with; empty: none
 };
@@ -55,6 +58,8 @@ struct SolveSummary {
   std::vector<std::string> warnings;
   std::optional<double> overall_scale;  ///< of a calibration; with what it found:
   double rms_before_m = 0;
+  std::string marker_set;                 ///< whose human skeleton it is; empty where it is another one
+  std::vector<FoundJoint> joints;         ///< of the human skeleton that the range of motion was asked for
   std::vector<std::string> undetermined;  ///< segments whose size the recording does not determine
   bool stopped = false;
 };
