@@ -1,17 +1,15 @@
 #include "marey/pipeline/calibrate_wand.h"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/live_blobs.h"
 
@@ -22,6 +20,8 @@
 #include "live_screen.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
+#include "view_options.h"
+#include "wand_screen.h"
 
 namespace marey::cli {
 namespace {
@@ -30,6 +30,8 @@ struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
   pipeline::CalibrateWandOptions options;
+  bool view = false;
+  viewer::WebPlace web;
   bool json = false;
   bool quiet = false;
 };
@@ -113,74 +115,8 @@ void print_table(const calibrate::wand::WandResult& result) {
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
 }
 
-/// What is said while the wand is waved before live cameras: a line that is written over on a terminal, elsewhere a sentence for
-/// each camera that has seen enough.
-class WandScreen {
- public:
-  explicit WandScreen(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~WandScreen() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-  }
-  WandScreen(const WandScreen&) = delete;
-  WandScreen& operator=(const WandScreen&) = delete;
-
-  void begun(bool keys) { say(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : "")); }
-
-  void show(const pipeline::WandSeen& seen) {
-    covered_.resize(seen.cameras.size());
-    for (std::size_t c = 0; c < seen.cameras.size(); ++c) {
-      if (!seen.cameras[c].covered || covered_[c]) continue;
-      covered_[c] = true;
-      say(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its picture", seen.cameras[c].name,
-                      100 * seen.cameras[c].coverage));
-    }
-    if (seen.enough) say(fmt::format("all of them have, after {:.0f} s", seen.seconds));
-    if (quiet_ || !terminal_) return;
-    std::string line = fmt::format("{:.0f} s ", seen.seconds);
-    for (const pipeline::WandSeen::Camera& camera : seen.cameras) {
-      line += camera.state == FeedState::live || camera.state == FeedState::back
-                  ? fmt::format(" {} {:.0f} %", camera.name, 100 * camera.coverage)
-                  : fmt::format(" {} {}", camera.name, to_string(camera.state));
-    }
-    fmt::print(stderr, "\r\x1b[K{}", line.substr(0, static_cast<std::size_t>(std::max(20, terminal_columns() - 1))));
-    std::fflush(stderr);
-    shown_ = true;
-  }
-
- private:
-  void say(const std::string& sentence) {
-    if (quiet_) return;
-    fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", sentence);
-    shown_ = false;
-  }
-
-  bool quiet_, terminal_, shown_ = false;
-  std::vector<bool> covered_;
-};
-
-void run(const CalibrateWand& command) {
-  pipeline::CalibrateWandOptions options = command.options;
-  options.observations = observations_of(command.inputs);
-  options.wand = wand_of(command.wand);
-  options.how.distance = distance_of(command.distance);
-  const Rig rig = rig_of(command.inputs);
-  const bool live = options.observations.empty() && pipeline::has_live_cameras(rig);
-  std::atomic<bool> will_do = false;
-  std::optional<WandScreen> screen;
-  std::optional<Keys> keys;
-  if (live) {
-    screen.emplace(command.quiet);
-    keys.emplace([&](char key) { will_do = will_do || key == 'q'; });
-    screen->begun(keys->listens());
-    options.waving = [&](const pipeline::WandSeen& seen) {
-      screen->show(seen);
-      return !will_do;
-    };
-  }
-  const pipeline::WandCalibration result =
-      with_progress(command.quiet || live, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, options, hooks); });
-  keys.reset();
-  screen.reset();
+/// Writes the rig, and says how well it is known.
+void finish(const pipeline::WandCalibration& result, const CalibrateWand& command) {
   warn(result.warnings);
   format::rig::write_rig(result.found.rig, command.out);
   if (command.json) {
@@ -189,6 +125,45 @@ void run(const CalibrateWand& command) {
     print_table(result.found);
     fmt::print("rig: {}\n", command.out);
   }
+}
+
+/// Waved before live cameras, watched on the terminal and on a page.
+void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, const CalibrateWand& command) {
+  std::atomic<bool> will_do = false;
+  std::optional<WandPage> page;
+  if (command.view) page.emplace(command.web, rig, [&] { will_do = true; });
+  WandScreen screen(command.quiet);
+  const Keys keys([&](char key) { will_do = will_do || key == 'q'; });
+  screen.begun(keys.listens());
+  options.waving = [&](const pipeline::WandSeen& seen) {
+    screen.show(seen);
+    if (page) page->show(seen);
+    return !will_do;
+  };
+  options.waved = [&] {
+    if (page) page->computing();
+  };
+  try {
+    const pipeline::WandCalibration result =
+        with_progress(true, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, options, hooks); });
+    screen.end();
+    finish(result, command);
+    if (page) page->done(result.found.rig, as_json(result.found), command.out);
+  } catch (const Error& error) {
+    if (page) page->failed(error.what());
+    throw;
+  }
+}
+
+void run(const CalibrateWand& command) {
+  pipeline::CalibrateWandOptions options = command.options;
+  options.observations = observations_of(command.inputs);
+  options.wand = wand_of(command.wand);
+  options.how.distance = distance_of(command.distance);
+  const Rig rig = rig_of(command.inputs);
+  if (options.observations.empty() && pipeline::has_live_cameras(rig)) return calibrate_live(rig, options, command);
+  if (command.view) throw WrongUsage("--view: shows live cameras; those of this rig are not");
+  finish(with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, options, hooks); }), command);
 }
 
 }  // namespace
@@ -214,6 +189,11 @@ void add_calibrate_wand(Command& calibrate) {
                  "live cameras: the wand is waved until all have seen enough of it, at most so long");
   add_threshold(command, options->options.markers.threshold);
   command.flag("--dark", options->options.markers.dark, "markers are darker than what is around them");
+  command.group("To be watched");
+  command.flag("--view", options->view,
+               "live cameras: a page that shows them and what they saw of the wand; its address is printed");
+  add_web_place(command, options->web);
+  command.group("");
   command.reports(options->json, options->quiet, "table");
   command.runs([options] { run(*options); });
 }

@@ -65,10 +65,15 @@ std::vector<std::string> beside(const std::string& path) {
   return other.empty() ? std::vector<std::string>{} : std::vector{other};
 }
 
-void add_match_options(Command& command, ConvertCommand& options) {
+void add_reading_options(Command& command, ConvertCommand& options) {
   pipeline::ConvertOptions& how = options.options;
+  command.group("A skeleton's motion");
+  command.number("--unit", how.read.skeleton_unit_m, "m", above(0, 1000),
+                 "one unit of a BVH file that is read, in metres: 0.01 is cm, 0.0254 inches");
+  command.number("--amc-rate", how.read.amc_rate_hz, "Hz", kRates, "frames a second of an AMC file, which does not say");
+  command.input_file("--metadata", how.read.metadata,
+                     "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside A under a like name");
   command.group("People on the ground");
-  command.input_file("--metadata", how.read.metadata, "of TRACAB, EPTS or DFL, where it is not beside A under a like name");
   command.text("--size", options.size, "of the pitch, LENGTHxWIDTH in m, where A does not say").check(parse_pitch_size);
   command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where A does not say");
   command.text("--home", how.home, "the team that is at home; else of the two largest the one whose people come first");
@@ -107,10 +112,14 @@ void add_convert(Command& program) {
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", how.up, kAxes,
                  "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
-  command.choice("--from-up", how.from_up, kAxes, "the axis that is up in A, z where it is left out");
+  command.choice("--from-up", how.from_up, kAxes,
+                 "the axis that is up in A, z where it is left out; y of a skeleton's motion (.bvh, .asf)");
   command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
-  add_match_options(command, *options);
+  command.input_file("--analog", how.analog,
+                     "a C3D file whose analog channels, force plates and events go along into B, a C3D file too: the one that A, a "
+                     "take, was made of");
+  add_reading_options(command, *options);
   command.also_reads([options] { return beside(options->from); });
   command.also_writes([options] { return beside(options->to); });
   command.reports(options->json, options->quiet);

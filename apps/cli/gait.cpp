@@ -87,6 +87,12 @@ void add_gait(Command& program) {
   command.output_file("--angles", options->output.angles, "CSV: every angle at every frame, degrees").ends_in({".csv"});
   command.output_file("--report", options->output.report, "a page with the curves, the walk's figures and its events")
       .ends_in({".html"});
+  command
+      .output_file(
+          "--c3d", options->output.c3d,
+          "RECORDING again, with the angles among its points, strikes and offs as events; what stands beside the points of a "
+          "C3D file (forces, EMG) goes along")
+      .ends_in({".c3d"});
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING, z where it is left out");

@@ -33,6 +33,7 @@ struct InfoOptions {
 void report_recording(const InfoOptions& options, const format::Format& format) {
   format::ReadOptions how;
   how.as_recorded = true;
+  how.metadata = options.metadata;
   const auto reader = format::open_recording(options.file, format, how);
   const RecordingSummary summary = reader->summary();
   print_warnings(reader->warnings());
@@ -125,7 +126,8 @@ void add_info(Command& program) {
   auto options = std::make_shared<InfoOptions>();
   Command command = program.subcommand("info", "Say what is in a file");
   command.input_file("FILE", options->file, "a film, pictures, or a file of: " + files_that_are_known()).required();
-  command.input_file("--metadata", options->metadata, "of TRACAB, EPTS or DFL, where it is not beside FILE under a like name");
+  command.input_file("--metadata", options->metadata,
+                     "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");
   command.reports(options->json, options->quiet, "contents");
   command.runs([options] { run(*options); });
 }

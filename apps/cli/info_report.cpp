@@ -165,8 +165,10 @@ void print_recording(const std::string& path, const format::Format& format, cons
   print_row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.samples),
                                   percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
                                   percent(predicted, summary.samples)));
-  if (format.z_up) print_row("observations", counted(summary.seen));
+  if (format.name == "take") print_row("observations", counted(summary.seen));
   if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
+  if (info.beside.channels > 0) print_row("analog", fmt::format("{} channels", info.beside.channels));
+  if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
   print_row("positions", to_string(info.header.frame));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
   for (const Edit& edit : info.edits) print_row("edit", fmt::format("{} {}", edit.operation, edit.payload));
@@ -220,6 +222,8 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   result["frame"] = to_string(info.header.frame);
   for (const Body& body : info.header.bodies)
     result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
+  if (info.beside.channels > 0) result["analog_channels"] = info.beside.channels;
+  if (info.beside.events > 0) result["events"] = info.beside.events;
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = info_json(*info.header.rig);

@@ -27,6 +27,7 @@
 #include "people_options.h"
 #include "realtime.h"
 #include "run_hooks.h"
+#include "skeleton_option.h"
 #include "summary_figures.h"
 
 namespace marey::cli {
@@ -43,7 +44,7 @@ struct LiveCommand {
   std::vector<std::string> sources;
   LiveTargets targets = LiveTargets::markers;
   bool ground = false;
-  std::string out, labels;
+  std::string out, labels, skeleton;
   Kept record = Kept::solved;
   bool armed = false, realtime = false;
   std::optional<double> for_s;
@@ -76,6 +77,7 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
             {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
+  add_skeleton_figures(summary, json);
   if (!summary.steps.empty()) json["stages"] = stages_of(summary);
   return json;
 }
@@ -91,6 +93,7 @@ void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command
   const pipeline::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
              drops.empty, drops.late_frames);
+  print_skeleton_figures(summary);
   print_stages(summary);
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
 }
@@ -118,6 +121,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.space.markers = options.markers.markers = command.markers;
   options.space.predict_s = 0.1;
   if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
+  options.space.skeleton = skeleton_of(command.skeleton);
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
   options.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
@@ -143,7 +147,10 @@ void run(const LiveCommand& command) {
   }
   const Rig rig = rig_of_live_sources(command.sources);
   pipeline::LiveOptions options = options_of(command);
-  LiveOutputs outputs(command.outputs, options.policy.time, options.recording, command.quiet);
+  options.desk = std::make_shared<pipeline::CameraDesk>(rig, command.markers.threshold);
+  options.naming = std::make_shared<pipeline::TrackNaming>();
+  LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
+                      command.targets == LiveTargets::markers, command.quiet);
   options.sinks = outputs.sinks();
   LiveEnd end;
   LiveScreen screen(command.quiet);
@@ -195,11 +202,13 @@ void add_live(Command& program) {
   command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
   command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
+  add_skeleton_option(command, options->skeleton);
   add_blob_options(command, options->markers);
   add_live_outputs(command, options->outputs);
   command.reports(options->json, options->quiet);
   command.runs([options] {
     options->outputs.take = options->out;
+    if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
     if (options->ground) options->targets = LiveTargets::people;
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");

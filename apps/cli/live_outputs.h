@@ -18,6 +18,15 @@ struct LiveOutputOptions {
   bool view = false;
   viewer::WebPlace web;
   std::string take;  ///< what the page's record button records into; empty: it has none
+  std::string rig;   ///< the rig file that the page's changes are saved in; empty: there is none
+};
+
+/// What of a live run its page may change.
+struct LiveHandles {
+  std::shared_ptr<source::LiveTime> time;             ///< the run's
+  std::shared_ptr<pipeline::RecordSwitch> recording;  ///< null: nothing is recorded
+  std::shared_ptr<pipeline::CameraDesk> desk;
+  std::shared_ptr<pipeline::TrackNaming> naming;
 };
 
 void add_live_outputs(Command& command, LiveOutputOptions& options);
@@ -25,9 +34,8 @@ void add_live_outputs(Command& command, LiveOutputOptions& options);
 /// The wires and the page of one live run. Their ports are taken, and their addresses told, from the beginning on.
 class LiveOutputs {
  public:
-  /// `time` is the run's; `recording` may be null.
-  LiveOutputs(const LiveOutputOptions& options, const std::shared_ptr<source::LiveTime>& time,
-              const std::shared_ptr<pipeline::RecordSwitch>& recording, bool quiet);
+  /// `finds_markers`: whether cameras' pictures are searched for markers.
+  LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, bool quiet);
 
   std::vector<std::unique_ptr<Sink>> sinks();
   /// What the page says of cameras and losses.
@@ -35,7 +43,11 @@ class LiveOutputs {
   const stream::Streams& streams() const { return streams_; }
 
  private:
+  viewer::LiveReport::Camera camera_of(const pipeline::LiveStatus::Camera& camera, std::size_t index) const;
+
   std::string take_;
+  LiveHandles handles_;
+  bool finds_markers_;
   stream::Streams streams_;
   std::unique_ptr<viewer::LiveViewer> viewer_;
 };

@@ -20,12 +20,31 @@ bool is_silent(FeedState state) {
   return state == FeedState::stalled || state == FeedState::lost || state == FeedState::connecting;
 }
 
-}  // namespace
-
+/// How wide the terminal is that standard error goes to; 120 where it is none.
 int terminal_columns() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 120;
 }
+
+/// "12.4 s  cam1 100 Hz 40  cam2 lost | 40 targets | dropped 3 | 4.1 / 9.8 ms | REC"
+std::string line_of(const pipeline::LiveStatus& status) {
+  std::string text = fmt::format("{:.0f} s ", status.seconds);
+  for (const auto& camera : status.cameras) {
+    const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
+    text += is_silent(camera.state) || camera.state == FeedState::ended
+                ? fmt::format(" {} {}", camera.name, to_string(camera.state))
+                : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
+    if (gone > 0) text += fmt::format(" -{}", gone);
+  }
+  const pipeline::LiveDrops& drops = status.drops;
+  text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);
+  if (status.latency_median_s)
+    text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
+  if (status.recording) text += " | REC";
+  return text;
+}
+
+}  // namespace
 
 /// Letters come one by one and are not shown; Ctrl-C stays what it is.
 struct Keys::Terminal {
@@ -65,22 +84,29 @@ Keys::~Keys() {
   reader_.join();
 }
 
-LiveScreen::LiveScreen(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
 
-LiveScreen::~LiveScreen() {
+StatusLine::~StatusLine() {
   if (shown_) fmt::print(stderr, "\r\x1b[K");
 }
 
-void LiveScreen::say(const std::string& sentence) {
+void StatusLine::say(const std::string& sentence) {
   if (quiet_) return;
-  fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", sentence);
+  fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", plain_text(sentence));
   shown_ = false;
 }
 
+void StatusLine::show(const std::string& line) {
+  if (quiet_ || !terminal_) return;
+  fmt::print(stderr, "\r\x1b[K{}", line.substr(0, static_cast<std::size_t>(std::max(20, terminal_columns() - 1))));
+  std::fflush(stderr);
+  shown_ = true;
+}
+
 void LiveScreen::begun(pipeline::LiveJob job, const Rig& rig, bool keys, bool records) {
-  say(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
-                  job == pipeline::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
-  if (keys) say(records ? "r: record, or pause; q: end" : "q: end");
+  out_.say(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
+                       job == pipeline::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
+  if (keys) out_.say(records ? "r: record, or pause; q: end" : "q: end");
 }
 
 void LiveScreen::show(const pipeline::LiveStatus& status) {
@@ -93,35 +119,14 @@ void LiveScreen::show(const pipeline::LiveStatus& status) {
     const bool told = is_silent(camera.state) || is_silent(states_[i]);
     states_[i] = camera.state;
     const std::string why = is_silent(camera.state) && !camera.trouble.empty() ? ": " + camera.trouble : "";
-    if (told) say(fmt::format("camera \"{}\" is {}{}", camera.name, to_string(camera.state), why));
+    if (told) out_.say(fmt::format("camera \"{}\" is {}{}", camera.name, to_string(camera.state), why));
   }
   for (const std::string& trouble : status.troubles) {
     if (std::find(troubles_.begin(), troubles_.end(), trouble.substr(0, trouble.find(':'))) != troubles_.end()) continue;
     troubles_.push_back(trouble.substr(0, trouble.find(':')));
-    say("marey: warning: " + trouble);
+    out_.say("marey: warning: " + trouble);
   }
-  if (quiet_ || !terminal_) return;
-  fmt::print(stderr, "\r\x1b[K{}", line(status));
-  std::fflush(stderr);
-  shown_ = true;
-}
-
-/// "12.4 s  cam1 100 Hz 40  cam2 lost | 40 targets | dropped 3 | 4.1 / 9.8 ms | REC"
-std::string LiveScreen::line(const pipeline::LiveStatus& status) const {
-  std::string text = fmt::format("{:.0f} s ", status.seconds);
-  for (const auto& camera : status.cameras) {
-    const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
-    text += is_silent(camera.state) || camera.state == FeedState::ended
-                ? fmt::format(" {} {}", camera.name, to_string(camera.state))
-                : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
-    if (gone > 0) text += fmt::format(" -{}", gone);
-  }
-  const pipeline::LiveDrops& drops = status.drops;
-  text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);
-  if (status.latency_median_s)
-    text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
-  if (status.recording) text += " | REC";
-  return text.substr(0, static_cast<std::size_t>(std::max(20, terminal_columns() - 1)));
+  out_.show(line_of(status));
 }
 
 }  // namespace marey::cli

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,9 +9,6 @@
 #include "marey/pipeline/live.h"
 
 namespace marey::cli {
-
-/// How wide the terminal is that standard error goes to; 120 where it is none.
-int terminal_columns();
 
 /// The keys of a terminal while something live runs, read on a thread of its own: one at a time, without Enter. Where standard
 /// input is no terminal nothing is read. The terminal is as before when this is gone.
@@ -31,22 +27,33 @@ class Keys {
   std::jthread reader_;
 };
 
-/// What a live run says on standard error: a line that is written over where that is a terminal, and a sentence for each camera
-/// whose state changes, everywhere.
+/// Standard error while something live runs: sentences everywhere, and under them, where that is a terminal, a line that is written
+/// over. It is gone when this is.
+class StatusLine {
+ public:
+  explicit StatusLine(bool quiet);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  void say(const std::string& sentence);
+  /// As much of it as the terminal is wide.
+  void show(const std::string& line);
+
+ private:
+  bool quiet_, terminal_, shown_ = false;
+};
+
+/// What a live run says: how it goes, and a sentence for each camera whose state changes.
 class LiveScreen {
  public:
-  explicit LiveScreen(bool quiet);
-  ~LiveScreen();
+  explicit LiveScreen(bool quiet) : out_(quiet) {}
 
   void begun(pipeline::LiveJob job, const Rig& rig, bool keys, bool records);
   void show(const pipeline::LiveStatus& status);
 
  private:
-  void say(const std::string& sentence);
-  std::string line(const pipeline::LiveStatus& status) const;
-
-  bool quiet_, terminal_;
-  bool shown_ = false;
+  StatusLine out_;
   std::vector<FeedState> states_;
   std::vector<std::string> troubles_;
 };

@@ -8,13 +8,10 @@
 #include "rig_inputs.h"
 
 namespace marey::cli {
-namespace {
 
-bool is_rig(const std::string& source) {
+bool is_rig_file(const std::string& source) {
   return scheme_of(source).empty() && source.ends_with(".toml");
 }
-
-}  // namespace
 
 void add_live_sources(Command& command, std::vector<std::string>& sources) {
   std::string forms;
@@ -28,7 +25,7 @@ void add_live_sources(Command& command, std::vector<std::string>& sources) {
 }
 
 Rig rig_of_live_sources(const std::vector<std::string>& sources) {
-  if (!is_rig(sources.front())) return pipeline::rig_of_sources(sources);
+  if (!is_rig_file(sources.front())) return pipeline::rig_of_sources(sources);
   return rig_of(RigAndSources{sources.front(), {sources.begin() + 1, sources.end()}});
 }
 

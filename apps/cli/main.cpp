@@ -20,6 +20,7 @@ int run_program(int argc, char** argv) {
   add_convert(root);
   add_info(root);
   add_edit(root);
+  add_who(root);
   add_view(root);
   add_play(root);
   add_reconstruct(root);

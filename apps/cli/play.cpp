@@ -5,24 +5,27 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/skeleton_in_space.h"
 
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
 #include "pitch_size.h"
 #include "run_hooks.h"
+#include "skeleton_option.h"
 #include "stream_options.h"
 
 namespace marey::cli {
 namespace {
 
 struct PlayCommand {
-  std::string recording;
+  std::string recording, skeleton;
   std::string size = "105x68";
   format::ReadOptions read;
   pipeline::PlayOptions how;
@@ -57,7 +60,11 @@ void report(const PlayCommand& command, const pipeline::PlaySummary& done, const
 void run(PlayCommand& command) {
   command.read.pitch = parse_pitch_size(command.size);
   if (command.streams.streams.empty()) command.streams.streams = {"json"};
-  const auto open = [&]() -> std::unique_ptr<RecordingReader> { return format::open_recording(command.recording, command.read); };
+  const auto skeleton = skeleton_of(command.skeleton);
+  const auto open = [&]() -> std::unique_ptr<RecordingReader> {
+    std::unique_ptr<RecordingReader> reader = format::open_recording(command.recording, command.read);
+    return skeleton == nullptr ? std::move(reader) : pipeline::with_skeleton(std::move(reader), skeleton);
+  };
   command.how.name = std::filesystem::path(command.recording).filename();
   open();  // what cannot be read is told before a port is taken
   const stream::Streams streams = open_streams(command.streams, command.quiet);
@@ -78,13 +85,15 @@ void add_play(Command& program) {
   command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
   command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
   command.number("--rate", how.rate_hz, "Hz", kRates, "at most so many instants a second of the recording");
+  add_skeleton_option(command, options->skeleton);
   add_stream_options(command, options->streams);
   command.group("The recording");
   constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--from-up", options->read.up, kAxes,
                  "the axis that is up in a file of points; streams have z up, or what they want");
   command.number("--recorded-rate", options->read.rate_hz, "Hz", kRates, "frames a second, where the file does not say");
-  command.input_file("--metadata", options->read.metadata, "of TRACAB, EPTS or DFL, where it is not beside it under a like name");
+  command.input_file("--metadata", options->read.metadata,
+                     "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside it under a like name");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m, where a match does not say").check(parse_pitch_size);
   command.group("");
   command.reports(options->json, options->quiet);

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/core/error.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/solve_skeleton.h"
@@ -72,6 +73,8 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
     if (!summary.undetermined.empty())
       fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
   }
+  if (!summary.marker_set.empty()) fmt::print(stderr, "the human skeleton, by {}\n", summary.marker_set);
+  for (const pipeline::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.said);
   if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
   if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
   if (!summary.not_recorded.empty())
@@ -81,7 +84,17 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
 }
 
 Json as_json(const SolveSummary& summary, const std::vector<std::string>& outputs) {
-  Json markers = Json::array(), coordinates = Json::array();
+  Json markers = Json::array(), coordinates = Json::array(), joints = Json::array();
+  for (const pipeline::FoundJoint& j : summary.joints) {
+    const bool hinge = !j.name.ends_with("hip");
+    const double unit = hinge ? 180 / std::numbers::pi : 1000;
+    joints.push_back({{"name", j.name},
+                      {"by_motion", j.by_motion},
+                      {"unit", hinge ? "deg" : "mm"},
+                      {"deviation", j.deviation * unit},
+                      {"moved", j.moved * unit},
+                      {"said", j.said}});
+  }
   for (const SolveSummary::Marker& m : summary.markers)
     markers.push_back({{"label", m.label}, {"seen", m.seen}, {"rms_mm", 1000 * m.rms_m}, {"worst_mm", 1000 * m.worst_m}});
   for (const SolveSummary::Coordinate& c : summary.coordinates) {
@@ -94,6 +107,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
                            {"observed", c.observed}});
   }
   return {{"skeleton", summary.skeleton},
+          {"marker_set", summary.marker_set.empty() ? Json() : Json(summary.marker_set)},
           {"frames", summary.frames},
           {"frames_without_markers", summary.empty},
           {"rate_hz", summary.rate_hz},
@@ -104,6 +118,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"overall_scale", summary.overall_scale},
           {"markers", markers},
           {"coordinates", coordinates},
+          {"joints", joints},
           {"not_recorded", summary.not_recorded},
           {"not_known", summary.not_known},
           {"outputs", outputs},
@@ -138,7 +153,7 @@ void add_file_options(Command& command, SolveCommand& options) {
   command.group("BVH");
   command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
                  "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
-  command.choice("--skeleton-up", options.options.read_skeleton.up, kBvhAxes, "the axis that is up in a BVH or ASF skeleton");
+  command.choice("--skeleton-up", options.options.read_skeleton.up, kBvhAxes, "the axis that is up in a BVH, ASF or VSK skeleton");
   command.number("--bvh-unit", options.options.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
   command.choice("--bvh-up", options.options.bvh.up, kBvhAxes, "the axis that is up in it");
   command.choice("--bvh-order", options.options.bvh.order, kOrders, "of its turns");
@@ -154,10 +169,18 @@ void add_solve(Command& program) {
   Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file("--skeleton", options->skeleton, "OpenSim's .osim, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
+  command.input_file("--skeleton", options->skeleton,
+                     "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
   command.input_file(
       "--static", options->options.static_trial,
-      "the person standing still with Plug-in Gait's markers: makes the human skeleton, where no --skeleton is given");
+      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given");
+  command
+      .text("--marker-set", options->options.marker_set,
+            "whose labels --static has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left out: known by them")
+      .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
+  command.input_file(
+      "--motion", options->options.motion,
+      "beside --static: the same person moving hips, knees and elbows through their range; says where the joints are");
   command.flag("--calibrate", options->options.calibrate,
                "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
   command.flag(
@@ -176,7 +199,15 @@ void add_solve(Command& program) {
   command.texts("--leave-out", options->options.leave_out, "a marker that is not used, by its label; may be given often");
   add_file_options(command, *options);
   command.reports(options->json, options->quiet);
-  command.runs([options] { run(*options); });
+  command.runs([options] {
+    if (!options->skeleton.empty() && !options->options.static_trial.empty())
+      throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
+    if (!options->options.marker_set.empty() && options->options.static_trial.empty())
+      throw WrongUsage("{}", "--marker-set: is of a static trial; give --static too");
+    if (!options->options.motion.empty() && options->options.static_trial.empty())
+      throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
+    run(*options);
+  });
 }
 
 }  // namespace marey::cli

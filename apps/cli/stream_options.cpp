@@ -6,13 +6,13 @@
 
 namespace marey::cli {
 
-void add_stream_options(Command& command, StreamArguments& arguments) {
+void add_stream_options(Command& command, StreamArguments& arguments, const std::string& control) {
   command.group("Streams");
   command
       .texts("--stream", arguments.streams,
              fmt::format("WIRE[:HOST[:PORT]], once for each: {}; this host alone where no HOST is named", stream::wire_names(", ")))
       .check([](const std::string& text) { stream::parse_target(text); });
-  command.flag("--allow-control", arguments.allow_control, "clients of qtm may take control: start and stop a recording");
+  command.flag("--allow-control", arguments.allow_control, "clients of qtm may take control: start and stop a recording" + control);
   command.group("");
 }
 

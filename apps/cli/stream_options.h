@@ -11,13 +11,14 @@
 
 namespace marey::cli {
 
-/// `--stream` and `--allow-control`, for every command whose results others may listen to.
 struct StreamArguments {
   std::vector<std::string> streams;
   bool allow_control = false;
 };
 
-void add_stream_options(Command& command, StreamArguments& arguments);
+/// `--stream` and `--allow-control`, for every command whose results others may listen to; `control` is what the latter allows
+/// besides.
+void add_stream_options(Command& command, StreamArguments& arguments, const std::string& control = "");
 
 /// Opens the wires, and says on standard error where each is, but for `quiet`. `record` starts and stops a recording, where there
 /// is one to be had. Their sinks are `streams.sinks()`.

@@ -20,6 +20,19 @@ double percent_of(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
+void add_skeleton_figures(const pipeline::Summary& summary, Json& json) {
+  if (!summary.figures.contains("skeleton_rms_mm")) return;
+  json["skeleton"] = {{"rms_mm", figure_of(summary, "skeleton_rms_mm")},
+                      {"starts", static_cast<std::int64_t>(figure_of(summary, "skeleton_starts"))}};
+}
+
+void print_skeleton_figures(const pipeline::Summary& summary) {
+  if (!summary.figures.contains("skeleton_rms_mm")) return;
+  const auto lost = static_cast<std::int64_t>(figure_of(summary, "skeleton_starts")) - 1;
+  fmt::print(stderr, "skeleton: markers lie {:.1f} mm RMS from where it has them{}\n", figure_of(summary, "skeleton_rms_mm"),
+             lost > 0 ? fmt::format("; lost and found again {} times", lost) : "");
+}
+
 Json stages_of(const pipeline::Summary& summary) {
   Json stages;
   for (const pipeline::Summary::StepTime& step : summary.steps)

@@ -17,6 +17,11 @@ std::int64_t left_out_of(const pipeline::Summary& summary, std::string_view reas
 /// In per cent; 0 of nothing.
 double percent_of(std::int64_t part, std::int64_t whole);
 
+/// How well a skeleton that was solved with every instant fits, where there was one: "skeleton" of the JSON, a line on standard
+/// error.
+void add_skeleton_figures(const pipeline::Summary& summary, Json& json);
+void print_skeleton_figures(const pipeline::Summary& summary);
+
 /// How long each step took: its name → count, median and 99 %, in ms; null where no step was measured.
 Json stages_of(const pipeline::Summary& summary);
 /// The same, a line each on standard error.

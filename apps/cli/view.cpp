@@ -61,12 +61,14 @@ void add_view(Command& program) {
   command.input_file("FILE", options->file, "a recording, known by its content: " + format::names_of_read(format::kRecordings))
       .required();
   command.input_file("--film", how.film, "the film that was tracked, to be shown behind tracks in a picture");
+  command.flag("--edit", how.edit, "let the page change FILE, a take: what \"marey edit\" can do, each edit to be undone");
   add_web_place(command, how.place);
   using Axis = format::UpAxis;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", Axis::y}, {"z", Axis::z}}};
   command.choice("--up", how.read.up, kAxes, "the axis that is up in FILE, of points in space");
   command.group("People on the ground");
-  command.input_file("--metadata", how.read.metadata, "of TRACAB, EPTS or DFL, where it is not beside FILE under a like name");
+  command.input_file("--metadata", how.read.metadata,
+                     "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m; without it a pitch is drawn where people move on one")
       .check(parse_pitch_size);
   command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where FILE does not say");

@@ -50,15 +50,9 @@ struct CommandMissing {
 
 std::map<std::string, std::string> asked_for;  // of the command that runs
 
-/// A sentence may hold words of a file: its lines are told as plain text.
+/// One line: it may hold words of a file or of the command, which may hold anything.
 void say(std::string_view sentence) {
-  std::string text;
-  for (std::size_t begin = 0; begin <= sentence.size();) {
-    const std::size_t end = std::min(sentence.find('\n', begin), sentence.size());
-    text += (begin > 0 ? "\n" : "") + plain_text(sentence.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  fmt::print(stderr, "marey: {}\n", text);
+  fmt::print(stderr, "marey: {}\n", plain_text(sentence));
 }
 
 /// The exit code, after the last byte of standard output: what it did not take was lost.
@@ -192,7 +186,7 @@ int Program::run(int argc, char** argv) {
   } catch (const CLI::Success& said) {
     parser_->app.exit(said);
   } catch (const CLI::ParseError& error) {
-    say(plain_text(error.what()));  // it repeats words as they were given
+    say(error.what());
     code = 2;
   } catch (const WrongUsage& error) {
     say(error.what());

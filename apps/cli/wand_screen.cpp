@@ -1,0 +1,111 @@
+#include "wand_screen.h"
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/calibrate/wand/wand_coverage.h"
+
+#include "run_hooks.h"
+
+namespace marey::cli {
+namespace {
+
+using calibrate::wand::WandCoverage;
+constexpr int kToldEvery = 3;                               // of the looks, which are ten a second
+constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
+
+bool gives(FeedState state) {
+  return state == FeedState::live || state == FeedState::back;
+}
+
+Json seen_by(const pipeline::WandSeen::Camera& camera) {
+  return {{"name", camera.name},   {"state", to_string(camera.state)}, {"coverage", camera.coverage},
+          {"views", camera.views}, {"covered", camera.covered},        {"parts", Json(camera.parts)}};
+}
+
+}  // namespace
+
+void WandScreen::begun(bool keys) {
+  out_->say(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : ""));
+}
+
+void WandScreen::show(const pipeline::WandSeen& seen) {
+  covered_.resize(seen.cameras.size());
+  for (std::size_t c = 0; c < seen.cameras.size(); ++c) {
+    if (!seen.cameras[c].covered || covered_[c]) continue;
+    covered_[c] = true;
+    out_->say(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its picture", seen.cameras[c].name,
+                          100 * seen.cameras[c].coverage));
+  }
+  if (seen.enough) out_->say(fmt::format("all of them have, after {:.0f} s", seen.seconds));
+  std::string line = fmt::format("{:.0f} s ", seen.seconds);
+  for (const pipeline::WandSeen::Camera& camera : seen.cameras) {
+    line += gives(camera.state) ? fmt::format(" {} {:.0f} %", camera.name, 100 * camera.coverage)
+                                : fmt::format(" {} {}", camera.name, to_string(camera.state));
+  }
+  out_->show(line);
+}
+
+WandPage::WandPage(const viewer::WebPlace& place, const Rig& rig, std::function<void()> enough)
+    : viewer_({.place = place, .job = "wand", .enough = std::move(enough)}), sink_(viewer_.make_sink()) {
+  told_ = {{"wanted", WandCoverage::kWellCovered},
+           {"across", WandCoverage::kPartsAcross},
+           {"down", WandCoverage::kPartsDown},
+           {"needed", WandCoverage::kEnoughShared}};
+  show_rig(rig);
+  fmt::print(stderr, "marey: open {} in a browser\n", viewer_.address());
+}
+
+void WandPage::show_rig(const Rig& rig) {
+  RecordingHeader header;
+  header.name = "wand";
+  header.frame.kind = FrameOfReference::Kind::space;
+  header.made_by.program = "marey calibrate wand";
+  header.rate_hz = 10;
+  header.rig = rig;
+  sink_->begin(header);
+}
+
+void WandPage::tell(const char* phase) {
+  told_["phase"] = phase;
+  viewer_.wand(compact(told_));
+}
+
+void WandPage::show(const pipeline::WandSeen& seen) {
+  sink_->write(seen.now);
+  if (shown_++ % kToldEvery != 0 && !seen.enough) return;
+  told_["seconds"] = seen.seconds;
+  told_["cameras"] = Json::array();
+  told_["shared"] = Json::array();
+  for (const pipeline::WandSeen::Camera& camera : seen.cameras) told_["cameras"].push_back(seen_by(camera));
+  for (const pipeline::WandSeen::Shared& pair : seen.shared)
+    told_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"enough", pair.enough}});
+  tell("waving");
+}
+
+void WandPage::computing() {
+  tell("computing");
+}
+
+void WandPage::failed(const std::string& why) {
+  told_["why"] = why;
+  tell("failed");
+  std::this_thread::sleep_for(kToBeSent);
+}
+
+void WandPage::done(const Rig& rig, Json report, const std::string& file) {
+  show_rig(rig);
+  told_["report"] = std::move(report);
+  told_["rig"] = file;
+  tell("done");
+  const std::stop_token stop = stop_by_signals();
+  if (viewer_.count().pages > 0) fmt::print(stderr, "marey: the page shows how good it is; this ends when it is closed\n");
+  while (viewer_.count().pages > 0 && !stop.stop_requested()) std::this_thread::sleep_for(kToBeSent);
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/core/sink.h"
+#include "marey/pipeline/calibrate_wand.h"
+
+#include "json_value.h"
+#include "live_screen.h"
+#include "viewer/live_viewer.h"
+
+namespace marey::cli {
+
+/// What is said while a wand is waved before live cameras: how much each has seen of it, and a sentence for each that has seen
+/// enough.
+class WandScreen {
+ public:
+  explicit WandScreen(bool quiet) : out_(std::in_place, quiet) {}
+
+  void begun(bool keys);
+  void show(const pipeline::WandSeen& seen);
+  /// Nothing more is said.
+  void end() { out_.reset(); }
+
+ private:
+  std::optional<StatusLine> out_;
+  std::vector<bool> covered_;
+};
+
+/// The same on a page, with the cameras' pictures; then how good the calibration is.
+class WandPage {
+ public:
+  /// Prints its address. `enough` is called, on another thread, where the page's user finds that it will do.
+  WandPage(const viewer::WebPlace& place, const Rig& rig, std::function<void()> enough);
+
+  void show(const pipeline::WandSeen& seen);
+  void computing();
+  void failed(const std::string& why);
+  /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end.
+  void done(const Rig& rig, Json report, const std::string& file);
+
+ private:
+  void tell(const char* phase);
+  void show_rig(const Rig& rig);
+
+  viewer::LiveViewer viewer_;
+  std::unique_ptr<Sink> sink_;
+  Json told_;
+  int shown_ = 0;
+};
+
+}  // namespace marey::cli
