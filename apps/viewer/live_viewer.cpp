@@ -1,6 +1,7 @@
 #include "live_viewer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -25,8 +26,7 @@
 namespace marey::viewer {
 namespace {
 
-enum LiveTopic { kLiveScene, kState, kStatus, kRecording, kSaid, kPong, kPictures };
-constexpr int kMostCameras = 64;
+enum LiveTopic { kLiveScene, kState, kStatus, kRecording, kSaid, kPong, kWand, kPictures };
 
 std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
@@ -36,15 +36,30 @@ WebServer::Message text_message(int topic, std::string text) {
   return {.topic = topic, .bytes = bytes_of(std::move(text)), .text = true};
 }
 
+cli::Json json_of(const LiveReport::Camera& camera) {
+  cli::Json told{
+      {"state", to_string(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}};
+  told["dials"] = cli::Json::array();
+  for (const auto& dial : camera.dials) {
+    told["dials"].push_back(
+        {{"name", dial.name}, {"unit", dial.unit}, {"least", dial.least}, {"most", dial.most}, {"now", dial.now}});
+  }
+  if (!camera.refused.empty()) told["refused"] = camera.refused;
+  if (!camera.finds_markers) return told;
+  told["threshold"] = camera.threshold;
+  told["learning"] = camera.learning;
+  told["masks"] = cli::Json::array();
+  for (const cv::Rect& mask : camera.masks) told["masks"].push_back(cli::Json(std::array{mask.x, mask.y, mask.width, mask.height}));
+  return told;
+}
+
 std::string status_text(const LiveReport& report) {
   cli::Json status{{"cameras", cli::Json::array()},
                    {"steps", cli::Json::array()},
                    {"overtaken", report.overtaken},
+                   {"unsaved", report.unsaved},
                    {"notes", cli::Json(report.notes)}};
-  for (const LiveReport::Camera& camera : report.cameras) {
-    status["cameras"].push_back(
-        {{"state", to_string(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}});
-  }
+  for (const LiveReport::Camera& camera : report.cameras) status["cameras"].push_back(json_of(camera));
   for (const LiveReport::Step& step : report.steps)
     status["steps"].push_back({{"name", step.name}, {"median", step.median}, {"p99", step.p99}});
   return "status " + compact(status);
@@ -77,6 +92,7 @@ class LiveViewer::Core {
   void finish() { server_->publish(text_message(kSaid, "ended")); }
   void report(const LiveReport& report);
   void recording(bool on, const std::string& into);
+  void wand(const std::string& json);
 
  private:
   // On the server's thread.
@@ -85,6 +101,7 @@ class LiveViewer::Core {
   void left(PageId page);
   void received(PageId page, std::string_view line);
   void record(PageId page, std::string_view word);
+  void change(PageId page, const PageCommand& command);
   void watch(PageId page, Watched watched);
 
   // On the pictures' thread.
@@ -106,7 +123,7 @@ class LiveViewer::Core {
   std::map<TrackId, TrackName> names_;
   Watched widths_;  // of all pages, the widest of each camera
   std::shared_ptr<const Instant> newest_;
-  std::string status_ = "status {}", recording_ = "recording off";
+  std::string status_ = "status {}", recording_ = "recording off", wand_;
   bool ending_ = false;
 
   std::set<int> with_pictures_;  // the pictures' thread alone
@@ -141,7 +158,7 @@ void LiveViewer::Core::begin(const RecordingHeader& header) {
     header_ = header;
     names_.clear();
   }
-  columns_ = {.z = header.frame.dimensions() == 3, .boxes = header.frame.kind == FrameOfReference::Kind::image};
+  columns_ = wire_columns(header);
   server_->publish(text_message(kLiveScene, "scene"));
 }
 
@@ -243,13 +260,25 @@ void LiveViewer::Core::recording(bool on, const std::string& into) {
   server_->publish(text_message(kRecording, std::move(text)));
 }
 
+void LiveViewer::Core::wand(const std::string& json) {
+  {
+    const std::lock_guard lock(mutex_);
+    wand_ = "wand " + json;
+  }
+  server_->publish(text_message(kWand, "wand " + json));
+}
+
 WebAnswer LiveViewer::Core::get(std::string_view target) {
   const std::string_view path = path_of(target);
   if (std::optional<WebAnswer> file = page_file(path)) return *file;
   if (path != "/scene")
     return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};
   const std::lock_guard lock(mutex_);
-  LiveScene live{.names = {}, .can_record = options_.record != nullptr};
+  LiveScene live{.names = {},
+                 .can_record = options_.record != nullptr,
+                 .can_change = options_.change != nullptr,
+                 .rig_file = options_.change ? options_.rig_file : "",
+                 .job = options_.job};
   for (const auto& [id, name] : names_) live.names.push_back(name);
   return {.status = 200, .type = "application/json", .body = bytes_of(scene_text(header_, live))};
 }
@@ -258,6 +287,7 @@ void LiveViewer::Core::joined(PageId page) {
   const std::lock_guard lock(mutex_);
   server_->send(page, text_message(kStatus, status_));
   server_->send(page, text_message(kRecording, recording_));
+  if (!wand_.empty()) server_->send(page, text_message(kWand, wand_));
 }
 
 void LiveViewer::Core::left(PageId page) {
@@ -266,6 +296,7 @@ void LiveViewer::Core::left(PageId page) {
 }
 
 void LiveViewer::Core::received(PageId page, std::string_view line) {
+  if (const auto command = page_command(line)) return change(page, *command);
   const std::string_view word = next_word(line);
   if (word == "watch") {
     watch(page, watched_by(line));
@@ -276,6 +307,8 @@ void LiveViewer::Core::received(PageId page, std::string_view line) {
     asleep_.erase(page);
   } else if (word == "record") {
     record(page, next_word(line));
+  } else if (word == "enough" && options_.enough) {
+    options_.enough();
   } else if (word == "ping") {
     if (const auto number = whole_in(next_word(line), 0, 1'000'000'000))
       server_->send(page, text_message(kPong, fmt::format("pong {} {}", *number, steady_ns())));
@@ -286,6 +319,16 @@ void LiveViewer::Core::record(PageId page, std::string_view word) {
   if (!options_.record || (word != "on" && word != "off")) return;
   try {
     options_.record(word == "on");
+  } catch (const Error& error) {
+    server_->send(page, text_message(kSaid, fmt::format("said {}", error.what())));
+  }
+}
+
+void LiveViewer::Core::change(PageId page, const PageCommand& command) {
+  if (!options_.change) return;
+  try {
+    options_.change(command);
+    server_->send(page, text_message(kSaid, "said "));
   } catch (const Error& error) {
     server_->send(page, text_message(kSaid, fmt::format("said {}", error.what())));
   }
@@ -335,6 +378,9 @@ void LiveViewer::report(const LiveReport& report) {
 }
 void LiveViewer::recording(bool on, const std::string& into) {
   core_->recording(on, into);
+}
+void LiveViewer::wand(const std::string& json) {
+  core_->wand(json);
 }
 WebServer::Count LiveViewer::count() const {
   return core_->count();

@@ -10,6 +10,7 @@
 #include "marey/core/frame_set.h"
 #include "marey/core/sink.h"
 
+#include "page_command.h"
 #include "web_server.h"
 
 namespace marey::viewer {
@@ -20,6 +21,17 @@ struct LiveReport {
     FeedState state = FeedState::connecting;
     std::optional<double> rate_hz = {};
     std::int64_t frames = 0, dropped = 0;
+    /// What of it can be changed, and how it is now.
+    struct Dial {
+      std::string name, unit;
+      double least = 0, most = 0, now = 0;
+    };
+    std::vector<Dial> dials = {};
+    bool finds_markers = false;  ///< then these count:
+    std::optional<double> threshold = {};
+    std::vector<cv::Rect> masks = {};
+    bool learning = false;     ///< what is lit, to mask it
+    std::string refused = {};  ///< why it did not do what was asked for last
   };
   /// One step of the way from the camera to the page, s.
   struct Step {
@@ -30,6 +42,7 @@ struct LiveReport {
   std::vector<Camera> cameras;     ///< CameraId i is cameras[i]
   std::int64_t overtaken = 0;      ///< moments that were let go because newer ones were whole
   std::vector<Step> steps;         ///< none where nobody measured them
+  bool unsaved = false;            ///< something was changed that the rig file does not have
   std::vector<std::string> notes;  ///< sentences to the user; the page shows them until the next report
 };
 
@@ -38,6 +51,14 @@ struct LiveViewOptions {
   /// The page's record button; without it there is none. Called on the server's thread, so it only notes what is wanted. An Error
   /// of its is shown on the page.
   std::function<void(bool on)> record = {};
+  /// What pages change of cameras and names; without it nothing. Called on the server's thread. An Error of its is shown on the
+  /// page.
+  std::function<void(const PageCommand&)> change = {};
+  std::string rig_file = {};  ///< that changes are saved in; empty: there is none
+  /// What is done, where it is not a run that tracks: "wand". The page looks accordingly.
+  std::string job = {};
+  /// The page's button by which a wand has been waved enough; without it there is none. As `record`.
+  std::function<void()> enough = {};
   /// The time now by the run's clock, so that the page can say how old is what it shows.
   std::function<Timestamp()> now = {};
   double pictures_hz = 10;  ///< of each camera that somebody watches
@@ -64,6 +85,8 @@ class LiveViewer {
   void report(const LiveReport& report);
   /// What the record button shows: whether it is being recorded now, and into what.
   void recording(bool on, const std::string& into = {});
+  /// How a wand is seen, as JSON that page/src/wand.ts declares.
+  void wand(const std::string& json);
   WebServer::Count count() const;
 
  private:

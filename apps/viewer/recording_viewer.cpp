@@ -13,6 +13,7 @@
 #include "marey/format/register.h"
 
 #include "access.h"
+#include "edit_session.h"
 #include "film_pictures.h"
 #include "page_files.h"
 #include "page_words.h"
@@ -21,7 +22,8 @@
 namespace marey::viewer {
 namespace {
 
-enum RecordingTopic { kSceneChanged, kFilmPicture };
+// From kFilmPicture on each page has its own; down from kAnswer too.
+enum RecordingTopic { kAnswer = -2, kEditsChanged, kSceneChanged, kFilmPicture };
 constexpr std::chrono::milliseconds kBetweenReports{300};
 
 /// A match that was read whole, as a reader that owns it.
@@ -54,6 +56,7 @@ class RecordingViewer::Core {
   Core(const std::string& path, const ViewOptions& options);
   ~Core() {
     if (film_) film_->end();
+    if (edits_) edits_->end();
   }
 
   std::string address() const { return server_->address(); }
@@ -62,7 +65,13 @@ class RecordingViewer::Core {
  private:
   WebAnswer get(std::string_view target);
   void received(PageId page, std::string_view line);
+  void show_film(const std::string& film);
+  std::unique_ptr<EditSession> session();
+  void tell_all(RecordingTopic topic, const char* word);
+  void answer(PageId page, std::string line);
 
+  std::string path_;
+  std::unique_ptr<EditSession> edits_;  // before the reader: what is edited from then on is not missed
   GroundChoice ground_;
   std::unique_ptr<format::FileReader> reader_;
   RecordingHeader header_;  // a copy: the reader goes on while the server looks at it
@@ -72,19 +81,14 @@ class RecordingViewer::Core {
 };
 
 RecordingViewer::Core::Core(const std::string& path, const ViewOptions& options)
-    : ground_(options.ground),
+    : path_(path),
+      edits_(options.edit ? session() : nullptr),
+      ground_(options.ground),
       reader_(opened(path, options, ground_)),
       header_(reader_->header()),
       recording_(header_, reader_->tracks()) {
   header_.name = std::filesystem::path(path).filename().string();
-  if (!options.film.empty()) {
-    if (header_.frame.kind != FrameOfReference::Kind::image)
-      throw Error("{}: holds no tracks in a picture, so no film lies behind them", path);
-    film_.emplace(options.film, [this](PageId page, std::string bytes) {
-      server_->publish({.topic = kFilmPicture + static_cast<int>(page), .bytes = bytes_of(std::move(bytes)), .text = false},
-                       [page](PageId other) { return other == page; });
-    });
-  }
+  if (!options.film.empty()) show_film(options.film);
   WebServer::Handlers handlers;
   handlers.get = [this](std::string_view target) { return get(target); };
   handlers.received = [this](PageId page, std::string_view line) { received(page, line); };
@@ -93,6 +97,35 @@ RecordingViewer::Core::Core(const std::string& path, const ViewOptions& options)
   };
   server_ = std::make_unique<WebServer>(options.place, std::move(handlers));
   server_->start();
+}
+
+std::unique_ptr<EditSession> RecordingViewer::Core::session() {
+  return std::make_unique<EditSession>(
+      path_, recording_,
+      EditSession::Answers{.answer = [this](PageId page, std::string line) { answer(page, std::move(line)); },
+                           .changed =
+                               [this] {
+                                 tell_all(kSceneChanged, "scene");
+                                 tell_all(kEditsChanged, "edits");
+                               }});
+}
+
+void RecordingViewer::Core::show_film(const std::string& film) {
+  if (header_.frame.kind != FrameOfReference::Kind::image)
+    throw Error("{}: holds no tracks in a picture, so no film lies behind them", path_);
+  film_.emplace(film, [this](PageId page, std::string bytes) {
+    server_->publish({.topic = kFilmPicture + static_cast<int>(page), .bytes = bytes_of(std::move(bytes)), .text = false},
+                     [page](PageId other) { return other == page; });
+  });
+}
+
+void RecordingViewer::Core::tell_all(RecordingTopic topic, const char* word) {
+  server_->publish({.topic = topic, .bytes = bytes_of(word), .text = true});
+}
+
+void RecordingViewer::Core::answer(PageId page, std::string line) {
+  server_->publish({.topic = kAnswer - static_cast<int>(page), .bytes = bytes_of(std::move(line)), .text = true},
+                   [page](PageId other) { return other == page; });
 }
 
 std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
@@ -104,11 +137,14 @@ std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
     const auto now = std::chrono::steady_clock::now();
     if (now - reported < kBetweenReports) continue;
     reported = now;
-    server_->publish({.topic = kSceneChanged, .bytes = bytes_of("scene"), .text = true});
+    tell_all(kSceneChanged, "scene");
   }
-  recording_.finish(reader_->warnings());
-  server_->publish({.topic = kSceneChanged, .bytes = bytes_of("scene"), .text = true});
-  return reader_->warnings();
+  const std::vector<std::string> warnings = reader_->warnings();
+  reader_.reset();  // who holds a take open may keep others from writing it
+  recording_.finish(warnings);
+  if (edits_) edits_->begin();
+  tell_all(kSceneChanged, "scene");
+  return warnings;
 }
 
 WebAnswer RecordingViewer::Core::get(std::string_view target) {
@@ -116,7 +152,10 @@ WebAnswer RecordingViewer::Core::get(std::string_view target) {
   if (std::optional<WebAnswer> file = page_file(path)) return *file;
   constexpr auto kMost = std::numeric_limits<std::int32_t>::max();
   if (path == "/scene")
-    return {.type = "application/json", .body = bytes_of(scene_text(header_, recording_.state(), ground_, film_.has_value()))};
+    return {.type = "application/json",
+            .body = bytes_of(
+                scene_text(header_, recording_.state(), ground_, {.show_film = film_.has_value(), .edit = edits_ != nullptr}))};
+  if (path == "/edits" && edits_) return {.type = "application/json", .body = edits_->history()};
   if (path == "/stretch") {
     const auto wanted = whole_in(query_value(target, "n"), 0, kMost);
     const Bytes bytes = wanted ? recording_.stretch(static_cast<std::size_t>(*wanted)) : nullptr;
@@ -130,6 +169,10 @@ WebAnswer RecordingViewer::Core::get(std::string_view target) {
 }
 
 void RecordingViewer::Core::received(PageId page, std::string_view line) {
+  if (asks_for_edit(line)) {
+    if (edits_) return edits_->ask(page, line);
+    return answer(page, "refused editing was not asked for; \"marey view TAKE --edit\" allows it");
+  }
   if (next_word(line) != "film" || !film_) return;
   const auto frame = whole_in(next_word(line), 0, std::numeric_limits<std::int32_t>::max());
   const auto width = whole_in(next_word(line), 16, 4096);

@@ -16,7 +16,8 @@ struct ViewOptions {
   WebPlace place;
   format::ReadOptions read;
   GroundChoice ground;
-  std::string film;  ///< whose pictures lie behind tracks in a picture; empty: none
+  std::string film;   ///< whose pictures lie behind tracks in a picture; empty: none
+  bool edit = false;  ///< the page may change the take that it shows
 };
 
 /// Shows a recording in a file to whoever opens `address()`: any that format::open_recording reads.

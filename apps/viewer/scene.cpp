@@ -39,6 +39,7 @@ Json json_of(const RecordingState::Course& course) {
   track["measured"] = course.measured;
   track["first"] = course.first_s;
   track["last"] = course.last_s;
+  track["version"] = course.version;
   track["within"] = course.last_instant - course.first_instant + 1;
   return track;
 }
@@ -126,10 +127,12 @@ bool is_mirrored(const RecordingHeader& header) {
 
 }  // namespace
 
-std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground, bool has_film) {
+std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground,
+                       const SceneCan& can) {
   Json scene = header_json(header);
   scene["kind"] = "recording";
-  scene["film"] = has_film;
+  scene["film"] = can.show_film;
+  scene["can_edit"] = can.edit;
   scene["instants"] = state.instants;
   scene["last"] = state.last_s;
   scene["complete"] = state.complete;
@@ -140,6 +143,7 @@ std::string scene_text(const RecordingHeader& header, const RecordingState& stat
     one.push_back(stretch.first_s);
     one.push_back(stretch.instants);
     one.push_back(stretch.rows);
+    one.push_back(stretch.version);
     scene["stretches"].push_back(one);
   }
   scene["tracks"] = Json::array();
@@ -159,6 +163,9 @@ std::string scene_text(const RecordingHeader& header, const LiveScene& live) {
   Json scene = header_json(header);
   scene["kind"] = "live";
   scene["can_record"] = live.can_record;
+  scene["can_change"] = live.can_change;
+  if (!live.job.empty()) scene["job"] = live.job;
+  if (!live.rig_file.empty()) scene["rig_file"] = live.rig_file;
   scene["y_down"] = is_mirrored(header);
   scene["tracks"] = Json::array();
   for (const TrackName& name : live.names) scene["tracks"].push_back(json_of(name));

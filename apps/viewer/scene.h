@@ -18,14 +18,23 @@ struct GroundChoice {
   bool centred = false;
 };
 
+/// What the page can do beyond looking.
+struct SceneCan {
+  bool show_film = false;
+  bool edit = false;
+};
+
 /// A recorded scene as JSON: what does not change from instant to instant, and what is known of the recording so far. The fields
 /// are those that page/src/scene.ts declares.
-std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground, bool has_film);
+std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground, const SceneCan& can);
 
 /// A live one: tracks are named as they come.
 struct LiveScene {
   std::vector<TrackName> names;
   bool can_record = false;
+  bool can_change = false;    ///< cameras and names
+  std::string rig_file = {};  ///< that changes can be saved in; empty: there is none
+  std::string job = {};       ///< "wand"; empty for a run that tracks
 };
 std::string scene_text(const RecordingHeader& header, const LiveScene& live);
 

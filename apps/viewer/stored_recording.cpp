@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "stretch_rows.h"
+
 namespace marey::viewer {
 namespace {
 
@@ -12,45 +14,14 @@ constexpr std::size_t kMostSampled = 20000;
 constexpr double kOutside = 0.005;  // share of positions, at either end, that may be errors
 
 template <typename T>
-T number_at(const std::string& bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
-template <typename T>
 void append_column(std::string& bytes, const std::vector<T>& column) {
   bytes.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(T));
-}
-
-struct CourseColumns {
-  std::vector<double> time;
-  std::array<std::vector<float>, 3> position;
-  std::vector<std::uint8_t> state;
-};
-
-/// The rows of one track in a stretch, whose columns lie as wire.h says.
-void gather_rows(const std::string& stretch, TrackId track, const WireColumns& columns, CourseColumns& course) {
-  const std::size_t instants = number_at<std::uint32_t>(stretch, 24), rows = number_at<std::uint32_t>(stretch, 28),
-                    poses = number_at<std::uint32_t>(stretch, 32);
-  const std::size_t row_end = 40 + 12 * instants, tracks = 40 + 20 * instants, positions = tracks + 4 * rows;
-  const std::size_t axes = columns.z ? 3 : 2, floats = axes + (columns.boxes ? 4 : 0);
-  const std::size_t states = positions + 4 * rows * floats + 32 * poses;
-  for (std::size_t instant = 0, row = 0; instant < instants; ++instant) {
-    for (const std::size_t end = number_at<std::uint32_t>(stretch, row_end + 4 * instant); row < end; ++row) {
-      if (number_at<std::int32_t>(stretch, tracks + 4 * row) != number(track)) continue;
-      course.time.push_back(number_at<double>(stretch, 40 + 8 * instant));
-      for (std::size_t axis = 0; axis < axes; ++axis)
-        course.position[axis].push_back(number_at<float>(stretch, positions + 4 * (axis * rows + row)));
-      course.state.push_back(number_at<std::uint8_t>(stretch, states + row));
-    }
-  }
 }
 
 }  // namespace
 
 StoredRecording::StoredRecording(const RecordingHeader& header, const std::vector<TrackName>& tracks) {
-  columns_ = {.z = header.frame.dimensions() == 3, .boxes = header.frame.kind == FrameOfReference::Kind::image};
+  columns_ = wire_columns(header);
   for (const TrackName& name : tracks) courses_[name.id].name = name;
 }
 
@@ -87,7 +58,8 @@ void StoredRecording::add(const Instant& instant) {
 
 void StoredRecording::close_stretch() {
   if (open_.empty()) return;
-  const RecordingState::Stretch stretch{seconds(open_.front().time), std::ssize(open_), open_rows_};
+  const RecordingState::Stretch stretch{
+      .first_s = seconds(open_.front().time), .instants = std::ssize(open_), .rows = open_rows_, .version = 0};
   Bytes bytes = bytes_of(wire_of(open_, static_cast<std::uint32_t>(state_.instants), columns_));
   const std::lock_guard lock(mutex_);
   stretches_.push_back(std::move(bytes));
@@ -103,6 +75,42 @@ void StoredRecording::finish(std::vector<std::string> warnings) {
   const std::lock_guard lock(mutex_);
   state_.warnings = std::move(warnings);
   state_.complete = true;
+}
+
+void StoredRecording::put(const std::vector<TrackColumns>& tracks) {
+  // Nobody else writes now: what is there is read without the lock, and only the exchange takes it.
+  std::int64_t first = 0;
+  for (std::size_t i = 0; i < stretches_.size(); ++i) {
+    const std::int64_t begins = std::exchange(first, first + state_.stretches[i].instants);
+    if (has_tracks(*stretches_[i], columns_, begins, tracks)) continue;
+    Bytes bytes = bytes_of(with_tracks(*stretches_[i], columns_, begins, tracks));
+    const std::lock_guard lock(mutex_);
+    stretches_[i] = std::move(bytes);
+    state_.stretches[i].rows = row_count(*stretches_[i]);
+    ++state_.stretches[i].version;
+  }
+  for (const TrackColumns& track : tracks) {
+    const auto known = courses_.find(track.id());
+    RecordingState::Course course = course_of(track, known == courses_.end() ? 0 : known->second.version + 1);
+    const std::lock_guard lock(mutex_);
+    courses_[track.id()] = std::move(course);
+  }
+}
+
+RecordingState::Course StoredRecording::course_of(const TrackColumns& track, int version) const {
+  RecordingState::Course course{.name = track.name, .rows = std::ssize(track.at()), .measured = 0, .version = version};
+  for (std::size_t row = 0; row < track.size(); ++row) course.measured += track.measured(row) ? 1 : 0;
+  if (track.empty()) return course;
+  const auto time_of = [&](std::int64_t instant) {
+    std::size_t stretch = 0;
+    while (instant >= state_.stretches[stretch].instants) instant -= state_.stretches[stretch++].instants;
+    return time_in(*stretches_[stretch], static_cast<std::size_t>(instant));
+  };
+  course.first_instant = track.at().front();
+  course.last_instant = track.at().back();
+  course.first_s = time_of(course.first_instant);
+  course.last_s = time_of(course.last_instant);
+  return course;
 }
 
 void StoredRecording::sample(const Vector<3>& position) {

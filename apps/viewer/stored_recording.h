@@ -26,12 +26,14 @@ struct RecordingState {
   struct Stretch {
     double first_s = 0;
     std::int64_t instants = 0, rows = 0;
+    int version = 0;  ///< grows whenever its bytes become others
   };
   struct Course {
     TrackName name;
     std::int64_t rows = 0, measured = 0;
     double first_s = 0, last_s = 0;
     std::int64_t first_instant = 0, last_instant = 0;  ///< counted from 0
+    int version = 0;                                   ///< grows with `put`
   };
 
   std::vector<Stretch> stretches;
@@ -52,6 +54,9 @@ class StoredRecording {
   void add(const Instant& instant);
   /// No more will come.
   void finish(std::vector<std::string> warnings);
+  /// After `finish`, from one thread: these tracks in the place of what was there of them; one without rows is there no more. Their
+  /// `at` counts the instants that were added.
+  void put(const std::vector<TrackColumns>& tracks);
 
   RecordingState state() const;
   /// Null where there is no such stretch yet.
@@ -62,6 +67,7 @@ class StoredRecording {
 
  private:
   void close_stretch();
+  RecordingState::Course course_of(const TrackColumns& track, int version) const;
   void sample(const Vector<3>& position);
   std::optional<Extent> extent() const;
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -78,6 +79,48 @@ TEST(StoredRecording, CoursesAreWhatWasAdded) {
   }
 }
 
+TEST(StoredRecording, TracksThatArePutAreAsIfTheyHadBeenAddedSo) {
+  std::mt19937 dice(5);
+  for (const auto kind : {FrameOfReference::Kind::space, FrameOfReference::Kind::image}) {
+    StoredRecording edited(header_in(kind), {}), fresh(header_in(kind), {});
+    std::vector<TrackColumns> others;
+    for (const int track : {2, 3, 7})
+      others.emplace_back(TrackName{.id = TrackId{track}, .label = "other", .team = {}}, header_in(kind).frame.dimensions());
+    for (int index = 0; index < 400; ++index) {
+      Instant was;
+      was.index = 2 * index;
+      was.time = timestamp_from_seconds(index / 100.0);
+      Instant now = was;
+      for (int track = 1; track <= 7; ++track) {
+        Sample row = stored_row(track, Vector<3>(dice() % 99, dice() % 99, 0));
+        if (dice() % 2 == 0) row.box.reset();
+        const bool before = track < 7 && dice() % 3 != 0;
+        if (before) was.samples.push_back(row);
+        const bool another = track == 2 || track == 7 || (track == 3 && index > 300);
+        if (another) row.position.x() += 0.5;
+        if (another ? dice() % 3 != 0 : before) now.samples.push_back(row);
+      }
+      edited.add(was);
+      fresh.add(now);
+      for (TrackColumns& track : others) {
+        for (const Sample& row : now.samples) {
+          if (row.track == track.id()) track.add(index, row);
+        }
+      }
+    }
+    edited.finish({});
+    fresh.finish({});
+    edited.put(others);
+    for (std::size_t n = 0; n < 4; ++n) EXPECT_TRUE(*edited.stretch(n) == *fresh.stretch(n)) << n;
+    for (std::size_t i = 0; i < 7; ++i) {
+      const RecordingState::Course one = edited.state().tracks[i], other = fresh.state().tracks[i];
+      EXPECT_EQ(std::tuple(one.rows, one.measured, one.first_s, one.last_s, one.first_instant, one.last_instant),
+                std::tuple(other.rows, other.measured, other.first_s, other.last_s, other.first_instant, other.last_instant));
+    }
+    EXPECT_EQ(edited.state().stretches[3].rows, fresh.state().stretches[3].rows);
+  }
+}
+
 TEST(StoredRecording, MayBeAskedWhileItGrows) {
   StoredRecording stored(header_in(FrameOfReference::Kind::space), {});
   std::jthread asks([&](const std::stop_token& stop) {
@@ -124,7 +167,7 @@ RecordingState state_between(const Vector<3>& low, const Vector<3>& high) {
 TEST(Scene, APitchIsDrawnWherePeopleMoveOnOne) {
   const RecordingHeader header = header_in(FrameOfReference::Kind::user_ground);
   const auto text = [&](const Vector<3>& low, const Vector<3>& high, const GroundChoice& choice) {
-    return scene_text(header, state_between(low, high), choice, false);
+    return scene_text(header, state_between(low, high), choice, {});
   };
   EXPECT_NE(text({2, 3, 0}, {101, 66, 0}, {}).find(R"("pitch":{"length":105.0,"width":68.0,"x":0.0,"y":0.0})"), std::string::npos);
   EXPECT_NE(text({-50, -30, 0}, {50, 31, 0}, {}).find(R"("x":-52.5,"y":-34.0})"), std::string::npos);
@@ -136,7 +179,7 @@ TEST(Scene, APitchIsDrawnWherePeopleMoveOnOne) {
 TEST(Scene, NamesFromOutsideStayText) {
   RecordingHeader header = header_in(FrameOfReference::Kind::space);
   header.name = "a\"b\\\xff</script>\n";
-  const std::string text = scene_text(header, RecordingState{}, {}, false);
+  const std::string text = scene_text(header, RecordingState{}, {}, {});
   EXPECT_NE(text.find(R"("name":"a\"b\\)"), std::string::npos) << text;
   EXPECT_EQ(text.find('\xff'), std::string::npos);
   EXPECT_EQ(text.find('\n'), std::string::npos);

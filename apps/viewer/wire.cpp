@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "columns are written as they lie in memory");
 
-constexpr std::uint16_t kHasZ = 1, kHasBoxes = 2;
+constexpr std::uint16_t kHasZ = 1, kHasBoxes = 2, kHasCameras = 4;
 constexpr std::uint8_t kRowHasBox = 8;
 
 class ByteWriter {
@@ -64,14 +64,11 @@ void write_rows(ByteWriter& out, std::span<const Instant> instants, const WireCo
   write_column<std::int32_t>(out, instants, rows, [](const Sample& row) { return number(row.track); });
   for (int axis = 0; axis < (columns.z ? 3 : 2); ++axis)
     write_column<float>(out, instants, rows, [axis](const Sample& row) { return row.position[axis]; });
-  if (!columns.boxes) return;
-  const auto of_box = [&](double Box::* part) {
-    write_column<float>(out, instants, rows, [part](const Sample& row) { return row.box ? (*row.box).*part : 0; });
-  };
-  of_box(&Box::left);
-  of_box(&Box::top);
-  of_box(&Box::width);
-  of_box(&Box::height);
+  if (columns.boxes) {
+    for (double Box::* part : {&Box::left, &Box::top, &Box::width, &Box::height})
+      write_column<float>(out, instants, rows, [part](const Sample& row) { return row.box ? (*row.box).*part : 0; });
+  }
+  if (columns.cameras) write_column<std::uint32_t>(out, instants, rows, [](const Sample& row) { return row.cameras; });
 }
 
 void write_poses(ByteWriter& out, std::span<const Instant> instants) {
@@ -93,10 +90,11 @@ std::string columns_of(std::span<const Instant> instants, WireHeader header, con
     row_end.push_back(rows += static_cast<std::uint32_t>(instant.samples.size()));
     pose_end.push_back(poses += static_cast<std::uint32_t>(instant.bodies.size()));
   }
-  header.flags = static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0));
+  header.flags =
+      static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0) | (columns.cameras ? kHasCameras : 0));
   header.counts = {static_cast<std::uint32_t>(instants.size()), rows, poses, 0};
   ByteWriter out;
-  out.reserve(40 + 20 * instants.size() + rows * std::size_t{33} + poses * std::size_t{33});
+  out.reserve(40 + 20 * instants.size() + rows * std::size_t{37} + poses * std::size_t{33});
   write_header(out, header);
   out.column<double>(instants, [](const Instant& instant) { return seconds(instant.time); });
   out.column<std::uint32_t>(instants, [](const Instant& instant) { return instant.index; });
@@ -119,6 +117,13 @@ std::vector<Item> of_camera(std::span<const Item> items, CameraId camera) {
 }
 
 }  // namespace
+
+WireColumns wire_columns(const RecordingHeader& header) {
+  const bool space = header.frame.dimensions() == 3;
+  return {.z = space,
+          .boxes = header.frame.kind == FrameOfReference::Kind::image,
+          .cameras = space && header.rig && !header.rig->cameras.empty()};
+}
 
 std::string wire_of(std::span<const Instant> instants, std::uint32_t first, const WireColumns& columns) {
   const Timestamp time = instants.empty() ? Timestamp{} : instants.front().time;

@@ -6,7 +6,8 @@
 // Kinds 1 (a stretch of a recording; sequence is its first instant's place, from 0) and 2 (one live instant; sequence counts them).
 // The four are the numbers of instants n, rows r, poses p, and 0. Then the columns
 //   float64 time[n] (s);  uint32 index[n], row_end[n], pose_end[n];  int32 track[r];  float32 x[r], y[r], with flag 1 z[r];
-//   with flag 2 float32 left[r], top[r], width[r], height[r];  int32 body[p];  float32 px[p], py[p], pz[p], qx[p], qy[p], qz[p],
+//   with flag 2 float32 left[r], top[r], width[r], height[r];  with flag 4 uint32 cameras[r] (who saw it, a bit each: the first 32
+//   of them);  int32 body[p];  float32 px[p], py[p], pz[p], qx[p], qy[p], qz[p],
 //   qw[p]; uint8 state[r]: provenance (0 measured, 1 filled, 2 predicted, 3 solved), and 8 where the row has a box;  uint8
 //   tracked[p].
 //
@@ -24,6 +25,7 @@
 #include <opencv2/core/types.hpp>
 
 #include "marey/core/instant.h"
+#include "marey/core/recording.h"
 
 namespace marey::viewer {
 
@@ -31,7 +33,10 @@ namespace marey::viewer {
 struct WireColumns {
   bool z = false;
   bool boxes = false;
+  bool cameras = false;
 };
+/// Those of a recording with this header.
+WireColumns wire_columns(const RecordingHeader& header);
 
 /// Kind 1.
 std::string wire_of(std::span<const Instant> instants, std::uint32_t first, const WireColumns& columns);

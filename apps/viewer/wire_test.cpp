@@ -33,6 +33,17 @@ Sample wired_row(int track, const Vector<3>& position, const std::optional<Box>&
   return row;
 }
 
+TEST(Wire, CamerasStandBeforeBodies) {
+  Instant instant = instant_of(3, 0.1);
+  instant.samples.push_back(wired_row(3, {1, 2, 3}));
+  instant.samples.back().cameras = 0b1011;
+  const std::string bytes = wire_of({&instant, 1}, 0, {.z = true, .boxes = false, .cameras = true});
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 2), 1 | 4);
+  EXPECT_EQ(value_at<float>(bytes, 40 + 8 + 12 + 12), 3.0F);             // z
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 40 + 8 + 12 + 16), 0b1011U);  // who saw it
+  EXPECT_EQ(bytes.size(), 40U + 8 + 12 + 20 + 1);
+}
+
 TEST(Wire, AStretchLiesAsItsDescriptionSays) {
   std::vector<Instant> instants{instant_of(7, 0.5), instant_of(9, 1.25)};
   instants[0].samples.push_back(wired_row(3, {1, 2, 3}));

@@ -1,16 +1,21 @@
 // The cameras of a live run: each one's picture with what was found in it drawn over it, its state, rate and losses. Only pictures
 // that are in sight are asked for, as wide as they are shown.
 import type { Colours } from "./colours";
+import { Controls, SaveBar, type Changeable } from "./controls";
+import { Coverage } from "./coverage";
 import type { Scene } from "./scene";
 import type { State } from "./state";
 import type { Picture } from "./wire";
 
-export interface CameraStatus {
+export interface CameraStatus extends Changeable {
   state: string;
   rate: number | null;
   frames: number;
   dropped: number;
 }
+
+/** Draws over a camera's picture: the canvas' size and its px a px of the page. */
+export type Adorn = (draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: Picture) => void;
 
 class Tile {
   readonly element = document.createElement("figure");
@@ -22,8 +27,11 @@ class Tile {
   shown: { picture: Picture; image: ImageBitmap | null } | null = null;
   private decoding = false;
   private next: Picture | null = null;
+  private controls: Controls | null = null;
+  private over: Adorn | null = null;
+  private covered = new Coverage();
 
-  constructor(readonly number: number, name: string, private colours: Colours, private drawn: (picture: Picture) => void) {
+  constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (picture: Picture) => void) {
     this.element.className = "camera";
     const label = document.createElement("em");
     label.textContent = name;
@@ -33,12 +41,36 @@ class Tile {
     this.element.addEventListener("click", () => this.element.classList.toggle("large"));
   }
 
+  /** From now on it can be changed. */
+  let_change(say: (line: string) => void): void {
+    if (this.controls) return;
+    const controls = new Controls(this.number, this.canvas, this.name, say, () => this.draw());
+    this.controls = controls;
+    this.title.append(controls.button);
+    this.element.append(controls.panel);
+    controls.button.addEventListener("click", (event) => {
+      event.stopPropagation();
+      controls.show(!controls.open);
+    });
+  }
+
+  adorn(below: HTMLElement, over: Adorn): void {
+    this.element.append(below);
+    this.over = over;
+  }
+
+  show_state(state: string): void {
+    this.state.className = state;
+    this.state.title = state;
+  }
+
   status(status: CameraStatus | undefined): void {
-    this.state.className = status?.state ?? "connecting";
-    this.state.title = status?.state ?? "connecting";
+    this.show_state(status?.state ?? "connecting");
     if (!status) return;
+    this.controls?.take(status);
     const parts = [status.state === "live" || status.state === "back" ? `${(status.rate ?? 0).toFixed(0)} Hz` : status.state];
     if (status.dropped > 0) parts.push(`${status.dropped} lost`);
+    if (this.covered.share > 0 && !this.over) parts.push(`${Math.round(100 * this.covered.share)} % covered`);
     this.facts.textContent = parts.join(" · ");
   }
 
@@ -64,8 +96,8 @@ class Tile {
   draw(): void {
     if (!this.shown) return;
     const { picture, image } = this.shown;
-    const width = picture.width || image?.width || 640;
-    const height = picture.height || image?.height || 480;
+    const width = picture.width || image?.width || (this.size?.[0] ?? 640);
+    const height = picture.height || image?.height || (this.size?.[1] ?? 480);
     this.canvas.style.aspectRatio = `${width} / ${height}`;
     const ratio = Math.min(devicePixelRatio, 2);
     const wide = Math.max(16, Math.round(this.canvas.clientWidth * ratio));
@@ -81,6 +113,9 @@ class Tile {
       draw.fillStyle = "#0b0e12";
       draw.fillRect(0, 0, wide, tall);
     }
+    this.covered.add(picture.points.x, picture.points.y, width, height);
+    if (this.over) this.over(draw, wide, tall, ratio, { ...picture, width, height });
+    else if (this.element.classList.contains("large")) this.covered.draw(draw, wide, tall);
     draw.lineWidth = 1.25 * ratio;
     const { points, boxes } = picture;
     for (let i = 0; i < points.x.length; ++i) {
@@ -89,6 +124,8 @@ class Tile {
       draw.arc(scale * (points.x[i] + 0.5), scale * (points.y[i] + 0.5), 3.2 * ratio, 0, 7);
       draw.stroke();
     }
+    this.controls?.seen(points.x.length, width, height);
+    this.controls?.draw(draw, scale, ratio);
     for (let i = 0; i < boxes.left.length; ++i) {
       draw.strokeStyle = this.colours.css(boxes.track[i]);
       draw.strokeRect(scale * boxes.left[i], scale * boxes.top[i], scale * boxes.width[i], scale * boxes.height[i]);
@@ -100,11 +137,13 @@ export class Cameras {
   private grid = document.querySelector<HTMLElement>("#cameras")!;
   private tiles: Tile[] = [];
   private watched = "";
+  private scene: Scene | null = null;
+  private save_bar = new SaveBar(this.grid.parentElement!, (line) => this.say(line));
   /** A camera whose picture is shown elsewhere, and how wide there, px of the screen. */
   also: { camera: number; width: number } | null = null;
   private watcher: IntersectionObserver;
 
-  constructor(private state: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: Picture) => void) {
+  constructor(private chosen: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: Picture) => void) {
     this.watcher = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const tile = this.tiles.find((each) => each.element === entry.target);
@@ -113,21 +152,36 @@ export class Cameras {
       this.ask();
     });
     new ResizeObserver(() => this.ask()).observe(this.grid);
-    void this.state;
+    void this.chosen;
   }
 
   take(scene: Scene): void {
+    this.scene = scene;
     if (this.tiles.length === scene.cameras.length && scene.cameras.length > 0) return;
     this.watcher.disconnect();
-    this.tiles = scene.cameras.map((camera, i) => new Tile(i, camera.name, this.colours, this.drawn));
+    this.tiles = scene.cameras.map((camera, i) => new Tile(i, camera.name, camera.size, this.colours, this.drawn));
     this.grid.replaceChildren(...this.tiles.map((tile) => tile.element));
-    for (const tile of this.tiles) this.watcher.observe(tile.element);
+    for (const tile of this.tiles) {
+      if (scene.can_change) tile.let_change(this.say);
+      this.watcher.observe(tile.element);
+    }
+  }
+
+  /** What stands below a camera's picture, and is drawn over it. False where there is no such camera. */
+  adorn(camera: number, below: HTMLElement, over: Adorn): boolean {
+    this.tiles[camera]?.adorn(below, over);
+    return camera in this.tiles;
+  }
+
+  state(camera: number, state: string): void {
+    this.tiles[camera]?.show_state(state);
   }
 
   picture(picture: Picture): void {
     this.tiles[picture.camera]?.take(picture);
   }
-  status(cameras: CameraStatus[]): void {
+  status(cameras: CameraStatus[], unsaved: boolean): void {
+    this.save_bar.take(this.scene?.can_change ?? false, this.scene?.rig_file, unsaved);
     this.tiles.forEach((tile, i) => tile.status(cameras[i]));
   }
 

@@ -5,14 +5,18 @@ import { Stretch, type Course } from "./wire";
 
 const KEPT_S = 60;
 const MOST_KEPT = 15000;
+const THERE_S = 2; // who was not seen for longer is gone,
+const LISTED_S = 10; // and after this not listed any more
 
 export class Live implements Motion {
+  readonly revision = 0;
   scene: Scene;
   on_change = () => {};
   private times: number[] = [];
   private here: Stretch[] = []; // of one instant each
   private place = new Map<Stretch, number>(); // counted from the first that ever came
   private gone = 0;
+  private seen_at = new Map<number, number>();
 
   constructor(scene: Scene) {
     this.scene = scene;
@@ -35,6 +39,7 @@ export class Live implements Motion {
     this.place.set(stretch, this.gone + this.here.length);
     this.times.push(stretch.time[0]);
     this.here.push(stretch);
+    for (const track of stretch.track) this.seen_at.set(track, stretch.time[0]);
     if (this.here.length > MOST_KEPT || (this.here.length > 400 && this.times[200] < this.last - KEPT_S)) {
       const drop = 200;
       for (const old of this.here.splice(0, drop)) this.place.delete(old);
@@ -88,6 +93,21 @@ export class Live implements Motion {
     return count / looked;
   }
 
+  /** s since it was in an instant. */
+  private absent(track: number): number {
+    return this.last - (this.seen_at.get(track) ?? -Infinity);
+  }
+  is_there(track: number): boolean {
+    return this.absent(track) <= THERE_S;
+  }
+  is_listed(track: number): boolean {
+    return this.absent(track) <= LISTED_S;
+  }
+  /** How many are there now. */
+  count(): number {
+    return [...this.seen_at.keys()].filter((track) => this.is_there(track)).length;
+  }
+
   /** Instants a second that arrived of late. */
   rate(): number {
     const n = Math.min(60, this.times.length - 1);
@@ -101,5 +121,6 @@ export class Live implements Motion {
     this.here = [];
     this.times = [];
     this.place.clear();
+    this.seen_at.clear();
   }
 }

@@ -3,9 +3,11 @@
 import "./style.css";
 import { Cameras } from "./cameras";
 import { Colours } from "./colours";
+import { Editor } from "./edit";
 import { Latency } from "./latency";
 import { Live } from "./live";
 import { time_of, type Moment, type Motion } from "./motion";
+import { Names } from "./names";
 import { PlaneView } from "./plane_view";
 import { Plots } from "./plots";
 import { Recorded } from "./recorded";
@@ -15,6 +17,7 @@ import { put, State } from "./state";
 import { Table } from "./table";
 import { Timeline } from "./timeline";
 import type { View } from "./view";
+import { Wand } from "./wand";
 import { kind_of, picture_of, Stretch, type Picture } from "./wire";
 import { Words, type Status } from "./words";
 
@@ -33,6 +36,9 @@ class Page {
   private plots: Plots;
   private cameras: Cameras;
   private words: Words;
+  private editor: Editor;
+  private names: Names;
+  private wand: Wand | null = null;
   private tab = "list";
   private wanted = false;
   private before = 0;
@@ -54,7 +60,10 @@ class Page {
     this.table = new Table(state, this.colours);
     this.plots = new Plots(state, this.colours, () => this.motion, (time) => this.seek(time));
     this.cameras = new Cameras(state, this.colours, (line) => this.say(line), (picture) => this.latency.drawn(picture.sent_ms));
+    this.names = new Names(element("stage"), state, (line) => this.say(line));
     this.words = new Words(() => this.motion, this.colours, this.latency);
+    this.editor = new Editor(state, () => this.motion, { say: (line) => this.say(line), seek: (time) => this.seek(time), show_tab: (tab) => this.show_tab(tab) });
+    if (scene.job === "wand") this.wand = new Wand(this.cameras, (line) => this.say(line));
     state.on_change(redraw);
     state.on_change(() => this.plots.update());
     state.on_hover = redraw;
@@ -83,17 +92,23 @@ class Page {
       this.visible();
       this.cameras.ask(true);
       this.ping();
+      if (this.motion.scene.can_edit) this.fetch_scene();
+      this.editor.found();
     };
     socket.onmessage = (event) => (typeof event.data === "string" ? this.text(event.data) : this.bytes(event.data as ArrayBuffer));
     socket.onclose = () => {
       if (this.socket === socket) this.said("The program that showed this has ended.");
       this.socket = null;
+      this.editor.lost();
       setTimeout(() => this.connect(), 2000);
     };
   }
 
-  private say(line: string): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(line);
+  /** False where nobody is there to hear it. */
+  private say(line: string): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(line);
+    return true;
   }
 
   private text(line: string): void {
@@ -104,8 +119,10 @@ class Page {
     else if (word === "status") this.take_status(JSON.parse(rest) as Status);
     else if (word === "recording") this.take_recording(rest);
     else if (word === "said") this.said(rest);
+    else if (word === "wand") this.wand?.take(rest);
     else if (word === "ended") this.said("The run has ended.");
     else if (word === "pong") this.latency.pong(rest);
+    else this.editor.hear(word, rest);
   }
 
   private bytes(data: ArrayBuffer): void {
@@ -145,30 +162,33 @@ class Page {
     else (this.motion as Recorded).take(scene);
     if (fresh && scene.kind === "recording") this.state.time = Math.max(this.state.time, this.motion.first);
     this.colours.take(scene);
+    const stands = this.wand?.frame(scene) ?? false;
     this.view.take(scene);
+    if (stands) this.view.reset();
     const live = this.motion instanceof Live ? this.motion : null;
     const whole = Math.max(1, scene.instants ?? 1);
-    this.table.take(scene, (track) => {
+    this.table.take(scene, this.motion, (track) => {
       if (live) return live.seen(track.id);
       if (scene.frame === "space") return (track.measured ?? 0) / whole;
       // Of somebody who comes and goes: while the track lasts.
       return (track.measured ?? 0) / Math.max(1, track.within ?? 1);
     });
     this.cameras.take(scene);
-    this.plots.forget();
+    this.names.take(scene);
     this.plots.update();
+    this.editor.take(scene);
     this.words.tell();
     this.draw_soon();
   }
 
   private take_status(status: Status): void {
     this.words.status = status;
-    this.cameras.status(status.cameras ?? []);
+    this.cameras.status(status.cameras ?? [], status.unsaved ?? false);
     if (status.notes?.length) this.said(status.notes.join(" "));
     this.words.about();
     if (this.motion instanceof Live && this.tab === "list") {
       const live = this.motion;
-      this.table.take(live.scene, (track) => live.seen(track.id));
+      this.table.take(live.scene, live, (track) => live.seen(track.id));
     }
   }
 
@@ -232,6 +252,7 @@ class Page {
     this.timeline.draw();
     this.plots.draw();
     if (this.plots.visible && motion.scene.kind === "live") this.plots.update();
+    this.editor.draw();
     this.show_buttons();
     // For tests: attributes that no rule of the style looks at.
     document.body.dataset.time = state.time.toFixed(4);
@@ -272,6 +293,7 @@ class Page {
     put(element("theme"), state.dark ? "☾" : "☀");
     element("labels").classList.toggle("on", state.labels);
     element("rig").classList.toggle("on", state.cameras);
+    element("rays").classList.toggle("on", state.rays);
     const trails = element("trails");
     trails.classList.toggle("on", state.trail_s > 0);
     put(trails, state.trail_s > 0 ? `Trails ${state.trail_s} s` : "Trails");
@@ -315,12 +337,14 @@ class Page {
 
   private show_tab(tab: string): void {
     this.tab = tab;
+    document.body.dataset.tab = tab;
     for (const each of document.querySelectorAll<HTMLElement>("#panel section")) each.classList.toggle("on", each.dataset.tab === tab);
     for (const each of document.querySelectorAll<HTMLElement>("#tabs button")) each.setAttribute("aria-selected", `${each.dataset.tab === tab}`);
     document.body.classList.toggle("pictures", tab === "pictures");
     this.plots.visible = tab === "plot";
     this.plots.update();
     this.table.draw();
+    if (tab === "edits") this.editor.opened();
     this.words.about();
   }
 
@@ -341,6 +365,7 @@ class Page {
     const toggle = (id: string, change: () => void) => click(id, () => (change(), state.changed()));
     toggle("labels", () => (state.labels = !state.labels));
     toggle("rig", () => (state.cameras = !state.cameras));
+    toggle("rays", () => (state.rays = !state.rays));
     toggle("theme", () => (state.dark = !state.dark));
     toggle("trails", () => (state.trail_s = TRAILS[(TRAILS.indexOf(state.trail_s) + 1) % TRAILS.length]));
     click("reset", () => this.view.reset());
@@ -377,6 +402,7 @@ class Page {
 
   private key(event: KeyboardEvent): void {
     const { state } = this;
+    if (this.editor.key(event)) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.target instanceof HTMLInputElement && event.key !== "Escape") return;
     if (event.target instanceof HTMLSelectElement) return;
@@ -391,8 +417,9 @@ class Page {
       ArrowDown: () => this.timeline.faster(-1),
       Home: () => this.seek(this.motion.first),
       End: () => this.seek(this.motion.last),
-      l: () => press("labels"), t: () => press("trails"), c: () => press("rig"), d: () => press("theme"), r: () => press("record"),
+      l: () => press("labels"), t: () => press("trails"), c: () => press("rig"), y: () => press("rays"), d: () => press("theme"), r: () => press("record"),
       "1": () => press("top"), "2": () => press("front"), "3": () => press("side"), "0": () => press("reset"), "?": () => press("help"),
+      n: () => this.names.focus(),
       m: () => this.show_tab("list"), p: () => this.show_tab("plot"),
       v: () => element("pictures_tab").hidden || this.show_tab("pictures"),
       a: () => {

@@ -15,6 +15,8 @@ export interface Motion {
   /** s; what can be shown. */
   readonly first: number;
   readonly last: number;
+  /** Grows where what was there has become another. */
+  readonly revision: number;
   /** Called where the scene, or what is there of the motion, has changed. */
   on_change: () => void;
   /** The last moment at or before `time`; null where it is not here yet, and is then asked for. */

@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Colours } from "./colours";
+import { range_between, times_of } from "./frames";
 import type { Motion } from "./motion";
 import { name_of } from "./scene";
 import type { State } from "./state";
@@ -37,6 +38,18 @@ function with_gaps(course: Course, values: ArrayLike<number | null>, gap: number
   return [time, out];
 }
 
+/** What was not seen there: filled, predicted. */
+const unseen = (course: Course, i: number): boolean => (course.state[i] & 7) === 1 || (course.state[i] & 7) === 2;
+
+/** The values that were seen, and where some were not those: up to the ones beside them, so that the line goes on. */
+function by_seen(course: Course, values: ArrayLike<number | null>): ArrayLike<number | null>[] {
+  const n = course.time.length;
+  const missed = Array.from({ length: n }, (_, i) => unseen(course, i));
+  if (!missed.includes(true)) return [values];
+  const beside = (i: number) => missed[i] || (i > 0 && missed[i - 1]) || (i + 1 < n && missed[i + 1]);
+  return [missed.map((gone, i) => (gone ? null : values[i])), missed.map((_, i) => (beside(i) ? values[i] : null))];
+}
+
 export class Plots {
   private place = document.querySelector<HTMLElement>("#plots")!;
   private hint = document.querySelector<HTMLElement>("#plot_hint")!;
@@ -44,7 +57,7 @@ export class Plots {
   private buttons = new Map<Coordinate, HTMLButtonElement>();
   private chosen = new Set<Coordinate>(["x", "y", "z"]);
   private plots: uPlot[] = [];
-  private courses = new Map<number, Course>();
+  private courses = new Map<number, { course: Course; version: string }>();
   private built_for = "";
   private busy = false;
   private refreshed = 0;
@@ -66,8 +79,7 @@ export class Plots {
     new ResizeObserver(() => this.update()).observe(this.place);
   }
 
-  /** New data may have come. */
-  forget(): void {
+  private forget(): void {
     this.courses.clear();
     this.built_for = "";
   }
@@ -83,25 +95,50 @@ export class Plots {
     this.hint.hidden = ids.length > 0;
     const live = motion.scene.kind === "live";
     if (live && performance.now() - this.refreshed > 250) this.forget();
-    const wanted = `${ids} ${coordinates} ${this.place.clientWidth} ${this.place.clientHeight} ${this.state.dark} ${motion.last}`;
+    const versions = new Map(motion.scene.tracks.map((track) => [track.id, `${track.rows}.${track.version}`]));
+    const wanted = `${ids.map((id) => `${id}:${versions.get(id)}`)} ${coordinates} ${this.place.clientWidth} ${this.place.clientHeight} ${this.state.dark} ${motion.last}`;
     if (wanted === this.built_for || this.place.clientWidth === 0) return this.draw();
     this.busy = true;
     this.refreshed = performance.now();
-    for (const id of ids) if (!this.courses.has(id)) this.courses.set(id, await motion.course(id));
+    for (const id of ids) {
+      const version = versions.get(id) ?? "";
+      if (this.courses.get(id)?.version !== version) this.courses.set(id, { course: await motion.course(id), version });
+    }
     this.busy = false;
     this.built_for = wanted;
     this.key.replaceChildren(...ids.map((id) => this.key_of(id)));
+    const zoom = this.zoom();
     for (const plot of this.plots) plot.destroy();
     this.plots = [];
     if (ids.length === 0) return;
     const height = Math.max(96, Math.floor(this.place.clientHeight / Math.max(1, coordinates.length)) - 4);
     for (const coordinate of coordinates) this.plots.push(this.build(coordinate, ids, height));
+    if (zoom && !live) for (const plot of this.plots) plot.setScale("x", zoom);
     this.draw();
+    this.update(); // the selection or the recording may have changed meanwhile
   }
 
-  /** The playhead. */
+  /** The stretch of time that the user looks at; nothing where it is all of it. */
+  private zoom(): { min: number; max: number } | null {
+    const plot = this.plots[0];
+    const times = plot?.data[0];
+    const { min, max } = plot?.scales.x ?? {};
+    if (!times?.length || min === undefined || min === null || max === undefined || max === null) return null;
+    return min > times[0] || max < times[times.length - 1] ? { min, max } : null;
+  }
+
+  /** The playhead, and the range that is marked. */
   draw(): void {
+    const { range } = this.state;
+    const marked = range && this.plots.length ? times_of(this.motion(), range) : null;
     for (const plot of this.plots) {
+      const band = plot.root.querySelector<HTMLElement>(".marked")!;
+      band.hidden = !marked;
+      if (marked) {
+        const [from, to] = marked.map((time) => Math.max(-4, Math.min(plot.over.clientWidth + 4, plot.valToPos(time, "x"))));
+        band.style.left = `${from}px`;
+        band.style.width = `${Math.max(2, to - from)}px`;
+      }
       const mark = plot.root.querySelector<HTMLElement>(".playhead")!;
       const x = plot.valToPos(this.state.time, "x");
       mark.style.transform = `translateX(${x}px)`;
@@ -129,11 +166,16 @@ export class Plots {
   private build(coordinate: Coordinate, ids: number[], height: number): uPlot {
     const { scene } = this.motion();
     const gap = Math.max(2.5 / Math.max(scene.rate, 0.1), 1e-3);
-    const tables = ids.map((id) => {
-      const course = this.courses.get(id)!;
+    const tables: uPlot.AlignedData[] = [];
+    const lines: uPlot.Series[] = [];
+    for (const id of ids) {
+      const { course } = this.courses.get(id)!;
       const values = coordinate === "speed" ? speed_of(course, gap) : course[coordinate] ?? [];
-      return with_gaps(course, values, gap) as unknown as uPlot.AlignedData;
-    });
+      by_seen(course, values).forEach((part, which) => {
+        tables.push(with_gaps(course, part, gap) as unknown as uPlot.AlignedData);
+        lines.push({ stroke: this.line_colour(id), width: 1.5, dash: which ? [3, 3] : undefined, spanGaps: false, points: { show: false } });
+      });
+    }
     const style = getComputedStyle(document.body);
     const css = (name: string) => style.getPropertyValue(name).trim();
     const unit = (scene.frame === "image" ? "px" : "m") + (coordinate === "speed" ? "/s" : "");
@@ -143,19 +185,39 @@ export class Plots {
         width: this.place.clientWidth, height, legend: { show: false }, padding: [8, 10, 0, 0],
         cursor: { sync: { key: "marey" }, drag: { x: true, y: false }, points: { show: false } },
         scales: { x: { time: false } },
+        hooks: { draw: [() => this.draw()] }, // places on its scale are known by then
         axes: [
           { ...axis, size: 22, gap: 2, values: (_, ticks) => ticks.map((tick) => `${+tick.toFixed(3)} s`) },
           { ...axis, size: 46, gap: 4, label: `${coordinate} / ${unit}`, labelSize: 16, labelFont: `600 11px ${style.fontFamily}` },
         ],
-        series: [{}, ...ids.map((id) => ({ stroke: this.line_colour(id), width: 1.5, spanGaps: false, points: { show: false } }))],
+        series: [{}, ...lines],
       },
-      ids.length > 1 ? uPlot.join(tables) : tables[0],
+      tables.length > 1 ? uPlot.join(tables) : tables[0],
       this.place,
     );
-    const mark = document.createElement("div");
-    mark.className = "playhead";
-    plot.over.append(mark);
-    plot.over.addEventListener("click", (event) => this.seek(plot.posToVal(event.offsetX, "x")));
+    for (const name of ["marked", "playhead"]) plot.over.append(Object.assign(document.createElement("div"), { className: name }));
+    plot.over.addEventListener("click", (event) => event.shiftKey || this.seek(plot.posToVal(event.offsetX, "x")));
+    plot.over.addEventListener("mousedown", (event) => this.mark(plot, event), { capture: true });
     return plot;
+  }
+
+  /** With Shift, where a take is edited, dragging marks a range of frames. */
+  private mark(plot: uPlot, event: MouseEvent): void {
+    const motion = this.motion();
+    if (!event.shiftKey || event.button !== 0 || !motion.scene.can_edit) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    const time_at = (x: number) => {
+      const rect = plot.over.getBoundingClientRect();
+      return plot.posToVal(Math.max(0, Math.min(rect.width, x - rect.left)), "x");
+    };
+    const from = time_at(event.clientX);
+    const drag = (moved: MouseEvent) => {
+      this.state.range = range_between(motion, from, time_at(moved.clientX));
+      this.state.changed();
+    };
+    drag(event);
+    document.addEventListener("mousemove", drag);
+    document.addEventListener("mouseup", () => document.removeEventListener("mousemove", drag), { once: true });
   }
 }

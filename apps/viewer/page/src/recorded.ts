@@ -11,7 +11,8 @@ export class Recorded implements Motion {
   scene: Scene;
   on_change = () => {};
   private begins: number[] = [];
-  private here = new Map<number, Stretch>(); // in the order of their last use
+  revision = 0;
+  private here = new Map<number, { stretch: Stretch; version: number }>(); // in the order of their last use
   private asked = new Set<number>();
 
   constructor(scene: Scene) {
@@ -62,30 +63,35 @@ export class Recorded implements Motion {
     if (list.length > AT_ONCE || this.here.size < list.length) return list.map(([time, n, rows]) => [time, rows / Math.max(1, n)]);
     const fine: [number, number][] = [];
     for (let n = 0; n < list.length; ++n) {
-      const stretch = this.here.get(n)!;
+      const { stretch } = this.here.get(n)!;
       for (let k = 0; k < stretch.time.length; ++k) fine.push([stretch.time[k], stretch.row_end[k] - stretch.begin(k)]);
     }
     return fine;
   }
 
   private stretch(n: number): Stretch | null {
-    const stretch = this.here.get(n);
-    if (!stretch) {
-      this.fetch(n);
-      return null;
-    }
+    const held = this.here.get(n);
+    if (!held || held.version !== this.version(n)) this.fetch(n);
+    if (!held) return null;
     this.here.delete(n);
-    this.here.set(n, stretch);
-    return stretch;
+    this.here.set(n, held);
+    return held.stretch; // the one from before an edit, until the new one is here
+  }
+
+  private version(n: number): number {
+    return this.scene.stretches?.[n]?.[3] ?? 0;
   }
 
   private async fetch(n: number): Promise<void> {
-    if (this.here.has(n) || this.asked.has(n)) return;
+    const version = this.version(n);
+    const held = this.here.get(n);
+    if (held?.version === version || this.asked.has(n)) return;
     this.asked.add(n);
     try {
       const answer = await fetch(`stretch?n=${n}`);
       if (!answer.ok) return;
-      this.here.set(n, new Stretch(await answer.arrayBuffer()));
+      this.here.set(n, { stretch: new Stretch(await answer.arrayBuffer()), version });
+      if (held) ++this.revision;
       if (this.here.size > MOST_KEPT) this.here.delete(this.here.keys().next().value!);
       this.on_change();
     } catch {
@@ -93,5 +99,6 @@ export class Recorded implements Motion {
     } finally {
       this.asked.delete(n);
     }
+    if (this.version(n) !== version) this.fetch(n); // it was edited again meanwhile
   }
 }

@@ -14,6 +14,8 @@ export interface Track {
   last?: number;
   /** Instants from its first to its last. */
   within?: number;
+  /** Grows with every edit that changes it. */
+  version?: number;
 }
 
 export interface Camera {
@@ -62,10 +64,15 @@ export interface Scene {
   last?: number;
   complete?: boolean;
   warnings?: string[];
-  /** First time (s), instants, rows. */
-  stretches?: [number, number, number][];
+  /** First time (s), instants, rows, version: its bytes are others where that has grown. */
+  stretches?: [number, number, number, number][];
+  /** The page may change the take. */
+  can_edit?: boolean;
   // of a live run
   can_record?: boolean;
+  can_change?: boolean;
+  rig_file?: string;
+  job?: string;
 }
 
 export function name_of(track: Track | undefined, id: number): string {

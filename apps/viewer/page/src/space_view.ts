@@ -10,6 +10,7 @@ import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
 import { TYPEFACE, type State } from "./state";
 import { moments_back, type View } from "./view";
+import { MEASURED } from "./wire";
 
 const TRAIL_STEPS = 90;
 const MOST_TRAIL_SEGMENTS = 60000;
@@ -61,6 +62,7 @@ export class SpaceView implements View {
   private markers: InstancedMesh;
   private trails = new Lines(MOST_TRAIL_SEGMENTS);
   private bones = new Lines(4000);
+  private rays = new Lines(8000);
   private floor = new Group();
   private rig = new Group();
   private camera_names: { name: string; at: Vector3 }[] = [];
@@ -87,7 +89,7 @@ export class SpaceView implements View {
     this.markers = this.make_markers(128);
     const sun = new DirectionalLight(0xffffff, 1.5);
     sun.position.set(2, -3, 5);
-    this.world.add(new HemisphereLight(0xffffff, 0x8a94a0, 2), sun, this.floor, this.rig, this.trails.object, this.bones.object);
+    this.world.add(new HemisphereLight(0xffffff, 0x8a94a0, 2), sun, this.floor, this.rig, this.trails.object, this.bones.object, this.rays.object);
   }
 
   take(scene: Scene): void {
@@ -139,6 +141,7 @@ export class SpaceView implements View {
     const marks = moment ? this.place_markers(moment) : [];
     this.place_trails(motion, moment);
     this.place_bones(moment);
+    this.place_rays(moment);
     this.renderer.render(this.world, this.camera);
     this.overlay.clear();
     if (this.state.cameras) this.name_cameras();
@@ -236,6 +239,26 @@ export class SpaceView implements View {
       }
     }
     this.bones.end();
+  }
+
+  /** From each camera that saw a marker to it: of those that are selected, or of all. */
+  private place_rays(moment: Moment | null): void {
+    this.rays.begin();
+    if (moment && this.state.rays && moment.stretch.cameras) {
+      const { stretch, k } = moment;
+      const centres = (this.scene?.cameras ?? []).map((camera) => camera.centre);
+      const chosen = this.state.selected.size > 0;
+      for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
+        const id = stretch.track[row];
+        if (this.state.hidden.has(id) || (chosen && !this.state.selected.has(id)) || stretch.provenance(row) !== MEASURED) continue;
+        for (let camera = 0; camera < Math.min(32, centres.length); ++camera) {
+          const centre = centres[camera];
+          if (!centre || !(stretch.cameras![row] & (1 << camera))) continue;
+          this.rays.add(centre[0], centre[1], centre[2], stretch.x[row], stretch.y[row], stretch.z![row], this.linear(id), 0.15, chosen ? 0.8 : 0.4);
+        }
+      }
+    }
+    this.rays.end();
   }
 
   private background = new Color();

@@ -11,6 +11,14 @@ export function put(place: Element, text: string): void {
 /** The page's typeface, for canvases. */
 export const TYPEFACE = 'Inter, system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Liberation Sans", sans-serif';
 
+/** Frames by their indices, both ends included. */
+export interface Range {
+  first: number;
+  last: number;
+  /** The end that nobody set: it is the recording's. */
+  open?: "first" | "last";
+}
+
 export class State {
   time = 0;
   playing = false;
@@ -20,10 +28,13 @@ export class State {
   labels = true;
   trail_s = 1;
   cameras = true;
+  rays = false;
   dark = true;
   selected = new Set<number>();
   hidden = new Set<number>();
   hover: number | null = null;
+  /** What is marked on the strip and in the plots, to be edited. */
+  range: Range | null = null;
   private listeners: (() => void)[] = [];
 
   constructor() {

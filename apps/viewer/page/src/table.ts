@@ -1,5 +1,7 @@
 // The table of tracks: which there are, how much of each was seen, what is chosen and hidden. Only rows in sight exist.
 import type { Colours } from "./colours";
+import { Live } from "./live";
+import type { Motion } from "./motion";
 import { name_of, type Scene, type Track } from "./scene";
 import type { State } from "./state";
 
@@ -9,6 +11,7 @@ interface Entry {
   track: Track;
   name: string;
   seen: number | null; // share
+  gone: boolean; // of a live run
 }
 
 export class Table {
@@ -40,8 +43,11 @@ export class Table {
     new ResizeObserver(() => this.draw()).observe(this.list);
   }
 
-  take(scene: Scene, seen: (track: Track) => number | null): void {
-    this.entries = scene.tracks.map((track) => ({ track, name: name_of(track, track.id), seen: seen(track) }));
+  /** Of a live run those who are gone are left out after a while, but for who is selected or has a name. */
+  take(scene: Scene, motion: Motion, seen: (track: Track) => number | null): void {
+    const live = motion instanceof Live ? motion : null;
+    const kept = ({ id, label }: Track) => !live || live.is_listed(id) || label !== "" || this.state.selected.has(id);
+    this.entries = scene.tracks.filter(kept).map((track) => ({ track, name: name_of(track, track.id), seen: seen(track), gone: live !== null && !live.is_there(track.id) }));
     this.sift();
   }
 
@@ -49,7 +55,8 @@ export class Table {
     const wanted = this.filter.value.trim().toLowerCase();
     this.shown = this.entries.filter((entry) => wanted === "" || `${entry.name} ${entry.track.team}`.toLowerCase().includes(wanted));
     const by_name = (a: Entry, b: Entry) => a.track.team.localeCompare(b.track.team) || a.name.localeCompare(b.name, undefined, { numeric: true });
-    this.shown.sort(this.by === "name" ? by_name : (a, b) => (a.seen ?? 0) - (b.seen ?? 0) || by_name(a, b));
+    const by_choice = this.by === "name" ? by_name : (a: Entry, b: Entry) => (a.seen ?? 0) - (b.seen ?? 0) || by_name(a, b);
+    this.shown.sort((a, b) => Number(a.gone) - Number(b.gone) || by_choice(a, b));
     document.querySelector("#by_name")!.classList.toggle("on", this.by === "name");
     document.querySelector("#by_seen")!.classList.toggle("on", this.by === "seen");
     this.draw();
@@ -57,7 +64,8 @@ export class Table {
 
   draw(): void {
     const { selected, hidden } = this.state;
-    const parts = [`${this.shown.length}${this.shown.length < this.entries.length ? ` of ${this.entries.length}` : ""}`];
+    const there = (entries: Entry[]) => entries.filter((entry) => !entry.gone).length;
+    const parts = [`${there(this.shown)}${this.shown.length < this.entries.length ? ` of ${there(this.entries)}` : ""}`];
     if (selected.size) parts.push(`${selected.size} selected`);
     if (hidden.size) parts.push(`${hidden.size} hidden`);
     this.count.textContent = parts.join(" · ");
@@ -77,6 +85,7 @@ export class Table {
     row.dataset.id = `${id}`;
     row.classList.toggle("selected", selected.has(id));
     row.classList.toggle("hidden", hidden.has(id));
+    row.classList.toggle("gone", entry.gone);
     const swatch = document.createElement("span");
     swatch.className = "swatch";
     swatch.style.background = this.colours.css(id);

@@ -1,4 +1,5 @@
 // Play, pause, step, speed, and the strip on which time is scrubbed.
+import { range_between, times_of } from "./frames";
 import type { Motion } from "./motion";
 import { put, SPEEDS, type State } from "./state";
 
@@ -21,6 +22,7 @@ export class Timeline {
   private shape: Path2D | null = null;
   private shaped_for = "";
   private ran: boolean | null = null;
+  private marked_from: number | null = null;
   private style = getComputedStyle(this.strip);
 
   constructor(private state: State, private motion: () => Motion, step: (by: number) => void) {
@@ -40,6 +42,7 @@ export class Timeline {
     });
     this.strip.addEventListener("pointerdown", (event) => {
       this.strip.setPointerCapture(event.pointerId);
+      this.marked_from = event.shiftKey && motion().scene.can_edit ? this.time_at(event) : null;
       this.scrub(event);
     });
     this.strip.addEventListener("pointermove", (event) => {
@@ -81,17 +84,23 @@ export class Timeline {
     }
     this.to_live.hidden = !live || state.following;
     this.speed.hidden = live;
-    put(this.now, live ? clock(state.time - motion.last) : clock(state.time - motion.first));
-    put(this.total, live ? (state.following ? "live" : "behind") : clock(motion.last - motion.first));
+    put(this.now, live ? clock(state.time) : clock(state.time - motion.first));
+    put(this.total, live ? (state.following ? "live" : `${clock(motion.last - state.time)} behind`) : clock(motion.last - motion.first));
     this.draw_strip(motion);
   }
 
-  private scrub(event: PointerEvent): void {
+  private time_at(event: PointerEvent): number {
     const motion = this.motion();
     const rect = this.strip.getBoundingClientRect();
     const share = Math.max(0, Math.min(1, (event.clientX - rect.left) / rect.width));
-    this.state.time = motion.first + share * (motion.last - motion.first);
+    return motion.first + share * (motion.last - motion.first);
+  }
+
+  /** With Shift, where a take is edited, it marks a range of frames. */
+  private scrub(event: PointerEvent): void {
+    this.state.time = this.time_at(event);
     this.state.following = false;
+    if (this.marked_from !== null) this.state.range = range_between(this.motion(), this.marked_from, this.state.time);
     this.state.changed();
   }
 
@@ -110,7 +119,7 @@ export class Timeline {
     const span = Math.max(1e-9, motion.last - motion.first);
     const at = (time: number) => ((time - motion.first) / span) * width;
     const list = motion.density();
-    const key = `${width} ${list.length} ${list[0]?.[0]} ${motion.last}`;
+    const key = `${width} ${list.length} ${list[0]?.[0]} ${motion.last} ${motion.revision}`;
     if (key !== this.shaped_for) {
       this.shaped_for = key;
       this.shape = this.shape_of(list, at, width, height);
@@ -125,6 +134,13 @@ export class Timeline {
     draw.clip();
     if (this.shape) draw.fill(this.shape);
     draw.restore();
+    if (this.state.range) {
+      const [from, to] = times_of(motion, this.state.range).map((time) => Math.max(0, Math.min(width, at(time))));
+      draw.fillStyle = style.getPropertyValue("--marked");
+      draw.fillRect(from, 0, Math.max(2, to - from), height);
+      draw.fillStyle = style.getPropertyValue("--warn");
+      for (const edge of [from, Math.max(from + 2, to) - 2]) draw.fillRect(edge, 0, 2, height);
+    }
     draw.fillStyle = style.getPropertyValue("--accent");
     draw.fillRect(Math.max(0, Math.min(width - 2, x - 1)), 0, 2, height);
   }

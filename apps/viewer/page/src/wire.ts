@@ -4,6 +4,7 @@ export const MEASURED = 0;
 const HEADER = 40;
 const HAS_Z = 1;
 const HAS_BOXES = 2;
+const HAS_CAMERAS = 4;
 const ROW_HAS_BOX = 8;
 
 /** Instants one after the other, in columns. Rows of instant k are those from `begin(k)` to before `row_end[k]`. */
@@ -17,6 +18,8 @@ export class Stretch {
   readonly y: Float32Array;
   readonly z: Float32Array | null;
   readonly box: [Float32Array, Float32Array, Float32Array, Float32Array] | null;
+  /** Who saw it, a bit for each of the first 32 cameras. */
+  readonly cameras: Uint32Array | null;
   readonly body: Int32Array;
   /** Position, then a quaternion with its real part last. */
   readonly pose: Float32Array[];
@@ -49,6 +52,7 @@ export class Stretch {
     this.y = floats();
     this.z = flags & HAS_Z ? floats() : null;
     this.box = flags & HAS_BOXES ? [floats(), floats(), floats(), floats()] : null;
+    this.cameras = flags & HAS_CAMERAS ? take(Uint32Array, rows, 4) : null;
     this.body = take(Int32Array, poses, 4);
     this.pose = Array.from({ length: 7 }, () => take(Float32Array, poses, 4));
     this.state = take(Uint8Array, rows, 1);

@@ -1,4 +1,5 @@
 // What the page says of a scene in words: its head, its legend, and all that is known of it.
+import type { CameraStatus } from "./cameras";
 import type { Colours } from "./colours";
 import type { Latency } from "./latency";
 import { Live } from "./live";
@@ -8,7 +9,8 @@ import { clock } from "./timeline";
 
 /** How a live run is, as apps/viewer/live_viewer.cpp says it. */
 export interface Status {
-  cameras?: { state: string; rate: number | null; frames: number; dropped: number }[];
+  cameras?: CameraStatus[];
+  unsaved?: boolean;
   steps?: { name: string; median: number; p99: number }[];
   overtaken?: number;
   notes?: string[];
@@ -28,12 +30,12 @@ export class Words {
     const { scene } = this.motion();
     const live = scene.kind === "live";
     put(element("list_tab"), { space: "Markers", ground: "People", image: "Tracks" }[scene.frame]);
-    const name = live ? "Live" : scene.name.split("/").pop() || "Recording";
+    const name = scene.job === "wand" ? "Wand calibration" : live ? "Live" : scene.name.split("/").pop() || "Recording";
     put(element("title"), name);
     document.title = `${name} – Marey`;
     element("record").hidden = !scene.can_record;
     element("pictures_tab").hidden = !live || scene.cameras.length === 0;
-    element("rig").hidden = !(scene.frame === "space" && scene.cameras.some((camera) => camera.centre));
+    for (const id of ["rig", "rays"]) element(id).hidden = !(scene.frame === "space" && scene.cameras.some((camera) => camera.centre));
     for (const id of ["top", "front", "side"]) element(id).hidden = scene.frame !== "space";
     this.legend();
     this.facts();
@@ -61,7 +63,8 @@ export class Words {
     const motion = this.motion();
     const { scene } = motion;
     const parts: string[] = [];
-    if (scene.tracks.length) parts.push(many(scene.tracks.length, scene.frame === "space" ? "marker" : "track"));
+    const count = motion instanceof Live ? motion.count() : scene.tracks.length;
+    if (count) parts.push(many(count, scene.frame === "space" ? "marker" : "track"));
     if (motion instanceof Live) {
       const rate = motion.rate();
       if (rate > 0) parts.push(`${rate.toFixed(0)} Hz`);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "marey/pipeline/edit_take.h"
+
+namespace marey::viewer {
+
+/// What a page asks of a take: a word, how the take's edits stood as the page shows them, and what to do.
+///   edit HEAD NEWEST TEXT        TEXT as `marey edit` takes it: "swap LKNE RKNE 120:180"
+///   undo HEAD NEWEST             redo HEAD NEWEST             go HEAD NEWEST ID
+struct EditMessage {
+  enum class Kind { edit, undo, redo, go };
+
+  Kind kind{};
+  pipeline::EditState on;
+  std::string text = {};  ///< of `edit`
+  std::int64_t to = 0;    ///< of `go`; 0: as it was recorded
+};
+
+/// Nothing where the line is none of these, whoever wrote it.
+std::optional<EditMessage> edit_message(std::string_view line);
+
+/// Whether a line begins as one does.
+bool asks_for_edit(std::string_view line);
+
+}  // namespace marey::viewer

@@ -1,0 +1,229 @@
+#include "edit_session.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/edit/edited.h"
+#include "marey/format/take/take_file.h"
+#include "marey/pipeline/edit_take.h"
+
+#include "support/files.h"
+
+namespace marey::viewer {
+namespace {
+
+constexpr int kEditedFrames = 300;
+
+/// Tracks 1, 2 and 3, called A, B and C, each at x = its number; C is not there in frames 50 to 54. A body beside them.
+Recording letters_and_a_body() {
+  RecordingHeader header;
+  header.rate_hz = 100;
+  header.bodies.emplace_back();
+  header.bodies.back().id = BodyId{1};
+  header.bodies.back().label = "box";
+  Recording recording(header);
+  for (int track = 1; track <= 3; ++track)
+    recording.set_name({.id = TrackId{track}, .label = std::string(1, static_cast<char>('A' + track - 1)), .team = {}});
+  for (int frame = 0; frame < kEditedFrames; ++frame) {
+    Instant instant;
+    instant.index = frame;
+    instant.time = timestamp_from_seconds(0.01 * frame);
+    for (int track = 1; track <= 3; ++track) {
+      if (track == 3 && frame >= 50 && frame < 55) continue;
+      instant.samples.emplace_back();
+      instant.samples.back().track = TrackId{track};
+      instant.samples.back().position = Vector<3>(track, 0.01 * frame, 0);
+    }
+    instant.bodies.emplace_back();
+    instant.bodies.back().body = BodyId{1};
+    instant.bodies.back().world_from_body = {Eigen::AngleAxisd(0.01 * frame, Vector<3>::UnitX()).toRotationMatrix(), {0, 0, 1}};
+    recording.add(instant);
+  }
+  return recording;
+}
+
+/// A take that is shown and edited.
+class EditedTake : public testing::Test {
+ protected:
+  EditedTake() : recorded_(letters_and_a_body()), stored_(recorded_.header, {}) {
+    format::take::write_recording(path_, recorded_);
+    session_ = std::make_unique<EditSession>(
+        path_, stored_,
+        EditSession::Answers{.answer = [this](PageId, std::string line) { heard(std::move(line)); }, .changed = [] {}});
+  }
+  ~EditedTake() override { session_->end(); }
+
+  void show() {
+    InstantsOf instants(recorded_);
+    while (const auto instant = instants.next()) stored_.add(*instant);
+    stored_.finish({});
+    before_ = bytes();
+    session_->begin();
+  }
+  std::string asked(const std::string& line) {
+    std::unique_lock lock(mutex_);
+    answer_.clear();
+    lock.unlock();
+    session_->ask(PageId{1}, line);
+    lock.lock();
+    answered_.wait_for(lock, std::chrono::seconds(60), [this] { return !answer_.empty(); });
+    return answer_;
+  }
+  std::vector<std::string> bytes() const {
+    std::vector<std::string> all;
+    for (std::size_t n = 0; stored_.stretch(n) != nullptr; ++n) all.push_back(*stored_.stretch(n));
+    return all;
+  }
+  std::vector<int> versions() const {
+    std::vector<int> all;
+    for (const RecordingState::Stretch& stretch : stored_.state().stretches) all.push_back(stretch.version);
+    return all;
+  }
+  /// As a viewer shows the take that is opened now.
+  std::vector<std::string> bytes_anew() const {
+    const Recording now = edit::edited(format::take::read_recording(path_));
+    StoredRecording fresh(now.header, {});
+    InstantsOf instants(now);
+    while (const auto instant = instants.next()) fresh.add(*instant);
+    fresh.finish({});
+    std::vector<std::string> all;
+    for (std::size_t n = 0; fresh.stretch(n) != nullptr; ++n) all.push_back(*fresh.stretch(n));
+    return all;
+  }
+
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_ / "letters.marey";
+  Recording recorded_;
+  StoredRecording stored_;
+  std::unique_ptr<EditSession> session_;
+  std::vector<std::string> before_;
+
+ private:
+  void heard(std::string line) {
+    const std::lock_guard lock(mutex_);
+    answer_ = std::move(line);
+    answered_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable answered_;
+  std::string answer_;
+};
+
+TEST(EditMessage, IsOneOfFourAndNothingElse) {
+  const auto swap = edit_message("edit 3 5 swap \"L KNE\" RKNE 1:2");
+  ASSERT_TRUE(swap);
+  EXPECT_EQ(swap->on, (pipeline::EditState{.head = 3, .newest = 5}));
+  EXPECT_EQ(swap->text, "swap \"L KNE\" RKNE 1:2");
+  EXPECT_EQ(edit_message("go 3 5 0")->to, 0);
+  EXPECT_EQ(edit_message("undo 0 0")->kind, EditMessage::Kind::undo);
+  EXPECT_EQ(edit_message("redo 1 2")->kind, EditMessage::Kind::redo);
+  for (const std::string wrong :
+       {"", " ", "edit", "edit 1", "edit 1 2", "edit 1 2 ", "edit -1 2 fill all", "edit 1 99999999999999999999 fill all",
+        "edit x y z", "undo", "undo 1", "undo 1 2 3", "go 1 2", "go 1 2 -3", "go 1 2 3 4", "Edit 1 2 fill all", "edit1 2 fill all"})
+    EXPECT_FALSE(edit_message(wrong)) << wrong;
+  EXPECT_FALSE(edit_message(std::string(4096, '9')));
+  EXPECT_FALSE(edit_message(std::string("undo 1 2\0", 9)));
+  EXPECT_TRUE(asks_for_edit("edit what"));
+  EXPECT_FALSE(asks_for_edit("film 1 640"));
+}
+
+TEST_F(EditedTake, ShowsWhatTheTakeIsAfterEachEdit) {
+  show();
+  EXPECT_EQ(before_, bytes_anew());
+  int newest = 0;
+  for (const char* edit : {"swap A B 120:180", "rename C knee", "fill knee", "split A 200 late", "delete B", "join A late",
+                           "filter all 6", "delete knee 10:20"}) {
+    EXPECT_EQ(asked("edit " + std::to_string(newest) + " " + std::to_string(newest) + " " + edit), "done") << edit;
+    ++newest;
+    EXPECT_EQ(bytes(), bytes_anew()) << edit;
+  }
+  EXPECT_EQ(stored_.state().tracks.size(), 2U) << "B is deleted, late is joined";
+  EXPECT_EQ(asked("undo 8 8"), "done");
+  EXPECT_EQ(bytes(), bytes_anew());
+  EXPECT_EQ(asked("go 7 8 3"), "done");
+  EXPECT_EQ(bytes(), bytes_anew());
+  EXPECT_EQ(asked("edit 3 8 rename A hip"), "done") << "a branch";
+  EXPECT_EQ(asked("redo 9 9"), "refused " + path_ + ": there is nothing to be done again");
+  EXPECT_EQ(asked("go 9 9 0"), "done");
+  EXPECT_EQ(bytes(), before_);
+}
+
+TEST_F(EditedTake, OnlyStretchesThatAreOthersBecomeNew) {
+  show();
+  ASSERT_EQ(versions(), (std::vector{0, 0, 0}));
+  EXPECT_EQ(asked("edit 0 0 swap A B 20:30"), "done");
+  EXPECT_EQ(versions(), (std::vector{1, 0, 0}));
+  EXPECT_EQ(asked("edit 1 1 rename A hip"), "done");
+  EXPECT_EQ(versions(), (std::vector{1, 0, 0})) << "a name moves nothing";
+  const auto tracks = stored_.state().tracks;
+  EXPECT_EQ(tracks[0].name.label, "hip");
+  EXPECT_EQ(tracks[0].version, 2);
+  EXPECT_EQ(tracks[2].version, 0);
+  EXPECT_EQ(tracks[1].rows, kEditedFrames);
+  EXPECT_DOUBLE_EQ(tracks[1].last_s, 0.01 * (kEditedFrames - 1));
+}
+
+TEST_F(EditedTake, RefusesWithTheSentenceOfTheCommandLine) {
+  EXPECT_EQ(asked("edit 0 0 fill all"), "refused the take is still being read; edit it when all of it is there");
+  show();
+  EXPECT_EQ(asked("edit"), "refused this is no edit");
+  for (const char* wrong : {"swap A nobody", "jump A", "fill A", "rename A B", "delete A 10:9999"}) {
+    std::string sentence;
+    try {
+      pipeline::edit_take(path_, {{.text = wrong, .where = std::string("\"") + wrong + "\""}});
+    } catch (const Error& error) {
+      sentence = error.what();
+    }
+    EXPECT_EQ(asked(std::string("edit 0 0 ") + wrong), "refused " + sentence);
+  }
+  EXPECT_EQ(asked("go 0 0 7"), "refused " + path_ + ": there is no edit 7; `marey edit FILE --list` shows which there are");
+  EXPECT_EQ(bytes(), before_);
+  EXPECT_EQ(pipeline::edit_history(path_).state, pipeline::EditState{});
+}
+
+TEST_F(EditedTake, WhatAnotherProgramEditsIsNeitherLostNorUndone) {
+  show();
+  EXPECT_EQ(asked("edit 0 0 rename A hip"), "done");
+  pipeline::edit_take(path_, {{.text = "rename B knee", .where = "elsewhere"}});
+  for (const char* blind : {"edit 1 1 swap #1 #2", "undo 1 1", "go 1 1 0"}) {
+    const std::string answer = asked(blind);
+    EXPECT_NE(answer.find("another program has edited it meanwhile"), std::string::npos) << answer;
+  }
+  EXPECT_EQ(pipeline::edit_history(path_).counting, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(stored_.state().tracks[1].name.label, "knee") << "it is shown";
+  EXPECT_EQ(asked("edit 2 2 swap hip knee"), "done");
+  EXPECT_EQ(bytes(), bytes_anew());
+}
+
+TEST_F(EditedTake, TheHistoryIsTold) {
+  show();
+  EXPECT_EQ(asked("edit 0 0 rename C knee"), "done");
+  EXPECT_EQ(asked("edit 1 1 fill knee"), "done");
+  EXPECT_EQ(asked("undo 2 2"), "done");
+  EXPECT_EQ(asked("undo 1 2"), "done");
+  const std::string history = *session_->history();
+  EXPECT_NE(history.find(R"("words":"rename C to knee")"), std::string::npos) << history;
+  EXPECT_NE(history.find(R"("words":"fill knee: 1 gap, 5 frames)"), std::string::npos) << history;
+  EXPECT_NE(history.find(R"("head":0)"), std::string::npos) << history;
+  EXPECT_NE(history.find(R"("newest":2)"), std::string::npos) << history;
+}
+
+TEST(EditSession, OnlyATakeCanBeEdited) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "walk.csv";
+  std::ofstream(path) << "frame,time,id,label,x,y,z\n";
+  StoredRecording stored(RecordingHeader{}, {});
+  EXPECT_THROW(EditSession(path, stored, {.answer = [](PageId, const std::string&) {}, .changed = [] {}}), Error);
+}
+
+}  // namespace
+}  // namespace marey::viewer

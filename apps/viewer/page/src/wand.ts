@@ -1,0 +1,243 @@
+// A wand that is waved before live cameras: each one's picture with the wand in it and the parts of the picture in which it was, who
+// has seen enough, and with whom; then how good the calibration is, beside the rig as it stands.
+import "./wand.css";
+import type { Cameras } from "./cameras";
+import type { Scene } from "./scene";
+import { put } from "./state";
+import type { Picture } from "./wire";
+
+interface Seen {
+  name: string;
+  state: string;
+  coverage: number;
+  views: number;
+  covered: boolean;
+  parts: number[];
+}
+interface Fit {
+  mean_px: number;
+  rms_px: number;
+  inliers: number;
+  observations: number;
+}
+interface Report {
+  all: Fit;
+  cameras: Record<string, Fit & { coverage: number; world_error_mm: number }>;
+  volume: { median_mm: number; worst_tenth_mm: number; seen_by_three: number };
+  held_out?: { rms_px: number; length_mean_mm: number; length_rms_mm: number; frames: number };
+  grade: string;
+  meaning: string;
+  notes: string[];
+}
+/** As apps/cli/wand_screen.cpp says it. */
+interface Waved {
+  phase: "waving" | "computing" | "done" | "failed";
+  /** Share of a picture, views of a pair, and parts of a picture. */
+  wanted: number;
+  needed: number;
+  across: number;
+  down: number;
+  seconds?: number;
+  cameras?: Seen[];
+  shared?: { a: number; b: number; views: number; enough: boolean }[];
+  report?: Report;
+  rig?: string;
+  why?: string;
+}
+
+const [MARGIN, GAP, BELOW, NARROWEST] = [16, 14, 118, 160]; // px; of the cards and what stands below their pictures
+
+const make = <K extends keyof HTMLElementTagNameMap>(kind: K, name = "", text = ""): HTMLElementTagNameMap[K] => {
+  const element = document.createElement(kind);
+  element.className = name;
+  element.textContent = text;
+  return element;
+};
+const capital = (text: string) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
+const percent = (share: number) => `${(100 * share).toFixed(0)}\u00a0%`;
+
+/** What stands under one camera's picture, and over it. */
+class CameraCard {
+  readonly element = make("div", "waved");
+  private bar = make("i");
+  private words = make("p", "coverage");
+  private pairs = make("p", "pairs");
+  private seen: Seen | null = null;
+
+  constructor(private waved: () => Waved) {
+    const track = make("div", "coverage_bar");
+    track.append(this.bar, make("b"));
+    this.element.append(track, this.words, this.pairs);
+  }
+
+  take(index: number, seen: Seen): void {
+    this.seen = seen;
+    const { wanted, needed, shared, cameras } = this.waved();
+    // The bar is full at what is wanted.
+    this.bar.style.width = `${Math.min(100, (100 * seen.coverage) / wanted)}%`;
+    this.element.classList.toggle("enough", seen.covered);
+    const gives = seen.state === "live" || seen.state === "back";
+    if (!gives) put(this.words, `The camera is ${seen.state}`);
+    else put(this.words, seen.covered ? `Enough: ${percent(seen.coverage)} of its picture` : `${percent(seen.coverage)} of its picture; ${percent(wanted)} wanted`);
+    const chips = (shared ?? [])
+      .filter((pair) => pair.a === index || pair.b === index)
+      .map((pair) => {
+        const other = cameras?.[pair.a === index ? pair.b : pair.a]?.name ?? "";
+        const chip = make("span", pair.enough ? "pair enough" : "pair", pair.enough ? `✓ ${other}` : `${other} ${pair.views}/${needed}`);
+        chip.title = `The wand was seen ${pair.views} times together with ${other}; ${needed} tell how they stand to each other`;
+        return chip;
+      });
+    this.pairs.replaceChildren("Together with ", ...chips);
+    this.pairs.hidden = chips.length === 0;
+  }
+
+  draw(draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: Picture): void {
+    const { across, down } = this.waved();
+    const [w, h] = [wide / across, tall / down];
+    draw.fillStyle = "#55b97a4d";
+    for (const part of this.seen?.parts ?? []) draw.fillRect((part % across) * w, Math.floor(part / across) * h, w, h);
+    draw.strokeStyle = "#ffffff1f";
+    draw.lineWidth = ratio;
+    draw.beginPath();
+    for (let i = 1; i < across; ++i) draw.rect(i * w, 0, 0, tall);
+    for (let i = 1; i < down; ++i) draw.rect(0, i * h, wide, 0);
+    draw.stroke();
+    this.draw_wand(draw, wide / (picture.width || wide), ratio, picture);
+  }
+
+  private draw_wand(draw: CanvasRenderingContext2D, scale: number, ratio: number, { points }: Picture): void {
+    const marks = [...points.track.keys()].filter((i) => points.track[i] > 0).sort((a, b) => points.track[a] - points.track[b]);
+    if (marks.length === 0) return;
+    draw.strokeStyle = "#ffd166";
+    draw.lineWidth = 2.5 * ratio;
+    draw.beginPath();
+    for (const i of marks) draw.lineTo(scale * (points.x[i] + 0.5), scale * (points.y[i] + 0.5));
+    draw.stroke();
+    draw.fillStyle = "#ffd166";
+    for (const i of marks) {
+      draw.beginPath();
+      draw.arc(scale * (points.x[i] + 0.5), scale * (points.y[i] + 0.5), 4.5 * ratio, 0, 7);
+      draw.fill();
+    }
+  }
+}
+
+export class Wand {
+  private main = make("main");
+  private head = make("div", "wand_head");
+  private title = make("h1");
+  private detail = make("p");
+  private enough = make("button", "", "That will do");
+  private result = make("div", "result");
+  private grid = document.querySelector<HTMLElement>("#cameras")!;
+  private arranged = false;
+  private cards: CameraCard[] = [];
+  private waved: Waved = { phase: "waving", wanted: 0.3, needed: 200, across: 10, down: 8 };
+
+  constructor(private cameras: Cameras, say: (line: string) => void) {
+    this.main.id = "wand";
+    document.body.classList.add("wand");
+    const words = make("div", "words");
+    words.append(this.title, this.detail);
+    this.enough.id = "enough";
+    this.enough.title = "Calibrate by what was seen so far";
+    this.enough.addEventListener("click", () => say("enough"));
+    this.head.append(words, this.enough);
+    this.main.append(this.head, this.result, this.grid);
+    document.querySelector("#panel")!.before(this.main);
+    new ResizeObserver(() => this.arrange()).observe(this.grid);
+    this.tell();
+  }
+
+  /** Of a rig that is calibrated: what of space is shown. Whether it is one. */
+  frame(scene: Scene): boolean {
+    const centres = scene.cameras.flatMap((camera) => (camera.centre ? [camera.centre] : []));
+    if (centres.length < scene.cameras.length) return false;
+    const of = (axis: number) => centres.map((centre) => centre[axis]);
+    scene.low = [Math.min(...of(0)), Math.min(...of(1)), Math.min(...of(2))];
+    scene.high = [Math.max(...of(0)), Math.max(...of(1)), Math.max(...of(2))];
+    return true;
+  }
+
+  /** As many columns as make the pictures largest while all of them are in sight. */
+  private arrange(): void {
+    const count = this.waved.cameras?.length ?? 0;
+    const [width, height] = [this.grid.clientWidth - 2 * MARGIN, this.grid.clientHeight - 2 * MARGIN];
+    if (count === 0 || width <= 0) return;
+    let best = [1, 0];
+    for (let columns = 1; columns <= count; ++columns) {
+      const row = height / Math.ceil(count / columns) - GAP - BELOW;
+      const wide = Math.min((width + GAP) / columns - GAP, (row * 4) / 3);
+      if (wide > best[1]) best = [columns, wide];
+    }
+    const wide = Math.max(best[1], Math.min(NARROWEST, width));
+    const columns = Math.max(1, Math.min(best[0], Math.floor((width + GAP) / (wide + GAP))));
+    this.grid.style.gridTemplateColumns = `repeat(${columns}, ${Math.floor(wide)}px)`;
+  }
+
+  take(json: string): void {
+    this.waved = JSON.parse(json) as Waved;
+    const { cameras } = this.waved;
+    cameras?.forEach((seen, i) => {
+      this.card(i)?.take(i, seen);
+      this.cameras.state(i, seen.state);
+    });
+    if (cameras && !this.arranged) {
+      this.arranged = true;
+      this.arrange();
+    }
+    this.tell();
+  }
+
+  private card(index: number): CameraCard | null {
+    if (this.cards[index]) return this.cards[index];
+    const card = new CameraCard(() => this.waved);
+    if (!this.cameras.adorn(index, card.element, (...all) => card.draw(...all))) return null;
+    return (this.cards[index] = card);
+  }
+
+  private tell(): void {
+    const { phase, cameras, seconds, report, rig, why } = this.waved;
+    const ready = cameras?.filter((camera) => camera.covered).length ?? 0;
+    document.body.classList.toggle("wand_done", phase === "done");
+    document.body.dataset.wand = phase;
+    this.enough.hidden = phase !== "waving" || !cameras;
+    this.head.classList.toggle("bad", phase === "failed");
+    if (phase === "waving") {
+      put(this.title, "Wave the wand through the whole volume");
+      put(this.detail, cameras ? `${ready} of ${cameras.length} cameras have seen enough · ${(seconds ?? 0).toFixed(0)} s` : "Waiting for the cameras …");
+    } else if (phase === "computing") {
+      put(this.title, "Enough. Calibrating …");
+      put(this.detail, "Put the wand down; this takes some seconds.");
+    } else if (phase === "failed") {
+      put(this.title, "No rig came of it");
+      put(this.detail, why ?? "");
+    } else if (report) {
+      put(this.title, "Calibrated");
+      put(this.detail, `The rig was written to ${rig ?? ""}`);
+      this.result.replaceChildren(...this.judged(report));
+    }
+  }
+
+  private judged(report: Report): HTMLElement[] {
+    const grade = make("p", `grade ${report.grade}`);
+    grade.append(make("strong", "", report.grade), make("span", "", report.meaning));
+    const table = make("table");
+    const row = (kind: "th" | "td", ...texts: string[]) => {
+      const line = make("tr");
+      line.append(...texts.map((text) => make(kind, "", text)));
+      return line;
+    };
+    table.append(row("th", "Camera", "Error", "In space", "Coverage"));
+    for (const [name, camera] of Object.entries(report.cameras))
+      table.append(row("td", name, `${camera.mean_px.toFixed(2)} px`, `${camera.world_error_mm.toFixed(2)} mm`, percent(camera.coverage)));
+    table.append(row("td", "All", `${report.all.mean_px.toFixed(2)} px`, "", ""));
+    const facts = make("ul");
+    const { held_out: held, volume } = report;
+    if (held) facts.append(make("li", "", `Judged on ${held.frames} places of the wand that took no part: its length is off by ${held.length_rms_mm.toFixed(2)} mm`));
+    facts.append(make("li", "", `A marker's place is known to ${volume.median_mm.toFixed(2)} mm, in the worst tenth of the volume to ${volume.worst_tenth_mm.toFixed(2)} mm`));
+    for (const note of report.notes) facts.append(make("li", "", capital(note.replaceAll("`", ""))));
+    const next = make("p", "hint", "Next: lay the L-frame down and run marey calibrate ground, so that the floor is where it is. Close this page to end.");
+    return [grade, table, facts, next];
+  }
+}

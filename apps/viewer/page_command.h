@@ -1,0 +1,52 @@
+// What pages may ask to be changed of a live run, out of the lines that they write. A line comes from a stranger: what is not
+// exactly one of these is nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <opencv2/core/types.hpp>
+
+#include "marey/core/ids.h"
+
+namespace marey::viewer {
+
+inline constexpr int kMostCameras = 64;
+inline constexpr std::size_t kLongestName = 64;  // bytes
+
+/// One of a camera's dials: "dial CAMERA NAME VALUE".
+struct TurnDial {
+  CameraId camera{};
+  std::string name;  ///< "exposure", "gain"
+  double value = 0;  ///< finite, from 0 to 1e6
+};
+
+/// "threshold CAMERA VALUE", or "auto".
+struct SetThreshold {
+  CameraId camera{};
+  std::optional<double> level;  ///< grey level, which the camera may refuse; nothing: automatic
+};
+
+/// "mask CAMERA X Y WIDTH HEIGHT" and "unmask …", px of the camera's picture; "unmask CAMERA all"; "lit CAMERA".
+struct ChangeMasks {
+  enum class What { add, remove, remove_all, learn_lit } what{};
+  CameraId camera{};
+  cv::Rect part = {};
+};
+
+/// "name TRACK LABEL", the label being the rest of the line; none takes the track's name away.
+struct NameTrack {
+  TrackId track{};
+  std::string label;  ///< UTF-8 without control characters, `kLongestName` at most
+};
+
+/// "save": into the rig file.
+struct SaveRig {};
+
+using PageCommand = std::variant<TurnDial, SetThreshold, ChangeMasks, NameTrack, SaveRig>;
+
+std::optional<PageCommand> page_command(std::string_view line);
+
+}  // namespace marey::viewer
