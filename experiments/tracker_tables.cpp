@@ -2,12 +2,14 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/chart.h"
+#include "marey/draw/svg.h"
 #include "marey/filter/filters.h"
 #include "marey/simulate/markers/marker_scene.h"
 
@@ -113,26 +115,24 @@ std::string search_picture(std::uint64_t seed) {
   const filter::AlphaBetaOptions options;
   filter::AlphaBeta<2> filter(options, scene.frames.front()[0].position, Matrix<2>::Zero());
   const std::size_t shown = scene.frames.size() / 2;
-  std::string path;
+  std::vector<Vector<2>> path;
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     const Vector<2>& place = scene.frames[i][0].position;
-    fmt::format_to(std::back_inserter(path), "{:.1f},{:.1f} ", place.x(), place.y());
+    path.push_back(place);
     if (i == 0 || i > shown) continue;
     filter.predict(1 / scene.options.rate_hz);
     if (i < shown) filter.correct(place, Matrix<2>::Zero());
   }
   const Vector<2>& marker = scene.frames[shown][0].position;
   const Vector<2> predicted = filter.position();
-  return fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}">
-<rect width="100%" height="100%" fill="#0c0c0c"/>
-<polyline points="{2}" fill="none" stroke="#bbb" stroke-dasharray="5 4"/>
-<circle cx="{3:.1f}" cy="{4:.1f}" r="{5}" fill="#cacaca"/>
-<circle cx="{6:.1f}" cy="{7:.1f}" r="3" fill="red"/>
-<circle cx="{6:.1f}" cy="{7:.1f}" r="{8}" fill="none" stroke="#4af" stroke-width="1.5"/>
-</svg>
-)",
-                     scene.options.size.width, scene.options.size.height, path, marker.x(), marker.y(), scene.options.radius_px,
-                     predicted.x(), predicted.y(), options.search_radius);
+  const double width = scene.options.size.width, height = scene.options.size.height;
+  draw::Svg svg({{"viewBox", fmt::format("0 0 {} {}", width, height)}, {"width", width}, {"height", height}});
+  svg.rect({0, 0, width, height}, {{"fill", "#0c0c0c"}});
+  svg.polyline(path, {{"stroke", "#bbb"}, {"stroke-dasharray", "5 4"}});
+  svg.circle(marker, scene.options.radius_px, {{"fill", "#cacaca"}});
+  svg.circle(predicted, 3, {{"fill", "red"}});
+  svg.circle(predicted, options.search_radius, {{"fill", "none"}, {"stroke", "#4af"}, {"stroke-width", 1.5}});
+  return svg.str();
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ class Edit(unittest.TestCase):
         run = marey("edit", self.take, "--script", script, code=1)
         self.assertIn("edits.txt:4: there is no track called \"rihgt\"; nothing was changed", run.stderr)
         self.assertEqual(self.exported("now.csv"), self.before)
-        script.write_text("rename A left\nrename B right\n")
+        script.write_text("rename A left # the \"left\" one\nrename B \"right # 2\" #\nrename \"right # 2\" right\n")
         marey("edit", self.take, "--script", script)
         self.assertEqual(len(self.places("right")), FRAMES)
 

@@ -247,6 +247,44 @@ class Hostile(unittest.TestCase):
         command = ("solve", self.take(), "--skeleton", "long.toml", "-o", "out.mot")
         self.refused(*command, words=["2006 coordinates", "at most 1000"])
 
+    def test_motions_of_skeletons_beyond_reason(self):
+        joints = "".join(f"JOINT b{i}\n{{\nOFFSET 1 0 0\n}}\n" for i in range(9000))
+        self.write("a.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n" + joints + "}\nMOTION\nFrames: 500000\nFrame Time: 0.01\n" + "0\n" * 500_000)
+        self.refused("convert", "a.bvh", "a.csv", words=["9001 joints that 1 numbers a frame move"])
+        bones = "".join(f"begin\nname b{i}\ndirection 0 1 0\nlength 1\naxis 0 0 0 XYZ\ndof rx ry rz\nend\n" for i in range(300))
+        self.write("b.asf", ":root\norder TX TY TZ RX RY RZ\n:bonedata\n" + bones + ":hierarchy\nbegin\n" + "".join(f"root b{i}\n" for i in range(300)) + "end\n")
+        self.write("b.amc", ":FULLY-SPECIFIED\n:DEGREES\n" + "1\n" * 3_000_000)
+        self.refused("info", "b.amc", words=["frames without their bones"])
+        self.write("c.vsk", "<KinematicModel><Skeleton>" + "<Segment>" * 200_000)
+        self.write("points.csv", "frame,time,label,x,y,z\n0,0,a,1,2,3\n")
+        self.refused("solve", "points.csv", "--skeleton", "c.vsk", "-o", "c.mot", words=["nested more than"])
+        self.write("d.glb", b"glTF" + struct.pack("<III", 2, 0, 200_000) + b"JSON" + b"[" * 200_000)
+        self.refused("info", "d.glb", words=["nested more than"])
+
+    def test_analog_counts_that_no_file_holds(self):
+        def parameter(group, name, kind, data, *sizes):
+            body = struct.pack("<bB", kind, len(sizes)) + bytes(sizes) + data + b"\0"
+            return struct.pack("<bb", len(name), group) + name + struct.pack("<h", 2 + len(body)) + body
+
+        def c3d(words, samples, used, rate, bodies=0):
+            groups = b"".join(struct.pack("<bb", len(name), -i) + name + struct.pack("<hB", 3, 0)
+                              for i, name in ((1, b"POINT"), (2, b"ANALOG"), (3, b"ROTATION")))
+            section = groups + b"".join((
+                parameter(1, b"USED", 2, struct.pack("<h", 0)), parameter(1, b"SCALE", 4, struct.pack("<f", -1)), parameter(1, b"RATE", 4, struct.pack("<f", 1)),
+                parameter(1, b"UNITS", -1, b"mm", 2), parameter(2, b"USED", 2, struct.pack("<h", used)), parameter(2, b"RATE", 4, struct.pack("<f", rate)),
+                parameter(3, b"USED", 2, struct.pack("<h", bodies)), parameter(3, b"DATA_START", 2, struct.pack("<h", 3))))
+            head = struct.pack("<BBHHHHHfHHf", 2, 0x50, 0, words, 1, 10, 0, -1.0, 3, samples, 1.0)
+            return head.ljust(512, b"\0") + (b"\x01\x50\x01\x54" + section).ljust(512, b"\0") + b"\0" * 1024
+
+        self.write("a.c3d", c3d(65535, 1, -1, 1))
+        self.refused("convert", "a.c3d", "b.c3d", words=["is cut off: it names 10 frames and holds 0"])
+        self.write("a.c3d", c3d(30_000 * 30_000 % 65536, 1, 30_000, 30_000))  # a count beyond 16 bits, as the parameters have it
+        self.refused("convert", "a.c3d", "b.c3d", words=["is cut off"])
+        self.write("a.c3d", c3d(0, 0, 0, 0, bodies=-1))
+        self.refused("convert", "a.c3d", "b.c3d", words=["is cut off"])
+        self.write("a.c3d", c3d(20, 3, 7, 1))  # 20 values a frame, of 7 channels or of 3 samples
+        self.assertIn("they are passed over", self.accepted("convert", "a.c3d", "b.c3d").stderr.decode())
+
     @unittest.skipIf(SANITIZED, "sanitizers reserve more than any bound")
     def test_memory_that_is_not_enough_is_a_sentence(self):
         rows = "".join(f"{i},{i / 100:.2f},{m},{i},0,1\n" for i in range(200_000) for m in "ab")

@@ -143,6 +143,7 @@ def check_real(program, folder):
 
 def main(program):
     opensim.Logger.setLevelString("Error")
+    opensim.Logger.removeFileSink()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         check_made_up(program, folder, 12, 200, 1)

@@ -22,6 +22,7 @@ def main(program):
     if not DATA.exists():
         print(f"skipped: {DATA} is not here")
         return 77
+    opensim.Logger.removeFileSink()  # its log would lie beside the model
     with tempfile.TemporaryDirectory() as folder:
         motion = pathlib.Path(folder) / "walk.mot"
         markers, model_file = DATA / "subject01_synthetic_marker_data.trc", DATA / "subject01_simbody.osim"

@@ -1,30 +1,16 @@
 // The viewer's page in Chromium: loaded, looked at, every control used. viewer_page.mjs PAGE_FOLDER FOLDER SCENARIO ADDRESS
 // Screenshots are left in FOLDER. Exits 1 with the first thing that is not as it should be.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
 import { join } from "node:path";
 import { isDeepStrictEqual } from "node:util";
+import { browse } from "./viewer_browser.mjs";
 
 const [, , page_folder, folder, scenario, address] = process.argv;
-const { chromium } = createRequire(join(page_folder, "package.json"))("playwright-core");
 const phone = scenario.includes("phone");
-const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
-const page = await browser.newPage({ viewport: phone ? { width: 390, height: 844 } : { width: 1280, height: 800 }, hasTouch: phone, colorScheme: "dark" });
-const wrong = [];
-page.on("pageerror", (error) => wrong.push(error.message));
-page.on("console", (message) => message.type() === "error" && wrong.push(message.text()));
-
-const sleep = (ms) => page.waitForTimeout(ms);
-const text = (selector) => page.textContent(selector);
+const { page, sleep, text, eventually, until, look, check_layout, done } = await browse(page_folder, phone);
 const time = async () => Number(await page.evaluate(() => document.body.dataset.time));
 const has = (selector, name) => page.evaluate(([s, n]) => document.querySelector(s).classList.contains(n), [selector, name]);
-/** Asked again and again, for a slow machine draws late. */
-async function eventually(what, holds) {
-  for (const end = Date.now() + 20000; Date.now() < end; await sleep(60)) if (await holds()) return;
-  assert.fail(what);
-}
-/** The same of something in the page, whose policy forbids what Playwright's own waiting does. */
-const until = (what, condition, argument) => eventually(what, () => page.evaluate(condition, argument));
+
 /** The time that is shown, once it is as it should be. */
 async function time_where(what, holds) {
   let now = NaN;
@@ -44,22 +30,6 @@ async function still_time(what) {
   return before;
 }
 
-/** How many colours a part of the page has, and its pixels as a digest. */
-async function look(selector) {
-  const png = (await page.locator(selector).first().screenshot()).toString("base64");
-  return page.evaluate(async (data) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${data}`;
-    await image.decode();
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const draw = canvas.getContext("2d");
-    draw.drawImage(image, 0, 0);
-    const pixels = new Uint32Array(draw.getImageData(0, 0, image.width, image.height).data.buffer);
-    let digest = 7;
-    for (const pixel of pixels) digest = (Math.imul(digest, 31) + pixel) | 0;
-    return { colours: new Set(pixels).size, digest };
-  }, png);
-}
 async function changes(what, act) {
   let before;
   await eventually(`the view does not stand still before ${what}`, async () => {
@@ -69,23 +39,6 @@ async function changes(what, act) {
   });
   await act();
   await eventually(`${what} changes nothing in the view`, async () => !isDeepStrictEqual(await look("#stage"), before));
-}
-
-/** Nothing that can be pressed is cut off or covered by another one. */
-async function check_layout() {
-  const faults = await page.evaluate(() => {
-    const shown = [...document.querySelectorAll("header button, nav button, footer button, footer select, footer canvas, #tabs button")].filter((e) => e.offsetParent && !e.hidden);
-    const areas = shown.map((e) => [e.id || e.textContent, e.getBoundingClientRect()]);
-    const list = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than the window"] : [];
-    for (const [name, a] of areas) {
-      if (a.left < 0 || a.right > innerWidth + 0.5 || a.top < 0 || a.bottom > innerHeight + 0.5) list.push(`${name} is cut off`);
-      if (a.width < 18 || a.height < 18) list.push(`${name} is too small to press`);
-      for (const [other, b] of areas)
-        if (name < other && a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1) list.push(`${name} and ${other} overlap`);
-    }
-    return list;
-  });
-  assert.deepEqual(faults, []);
 }
 
 async function play_and_scrub() {
@@ -170,6 +123,9 @@ async function buttons(space) {
     for (const id of ["top", "front", "side", "reset"]) await changes(id, () => page.click(`#${id}`));
     await changes("cameras", () => page.click("#rig"));
     await page.keyboard.press("c");
+    await changes("rays", () => page.click("#rays"));
+    await page.screenshot({ path: join(folder, `${scenario}_rays.png`) });
+    await changes("the key Y", () => page.keyboard.press("y"));
     await changes("the key 1", () => page.keyboard.press("1"));
     await changes("the key 0", () => page.keyboard.press("0"));
   }
@@ -268,6 +224,4 @@ if (scenario === "live_image") {
   if (!phone) await pick();
 }
 await check_layout();
-assert.deepEqual(wrong.filter((line) => !line.includes("GPU stall")), []);
-await browser.close();
-console.log(`${scenario}: done`);
+await done(scenario);

@@ -43,6 +43,8 @@ def make_recordings(marey, folder):
 
     run("simulate", "room", "--motion", "walk", "--markers", "30", "--frames", "360", "--cameras", "8", "--size", "640", "480", "-o", "walk")
     run("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--labels", "walk/labels.csv", "-o", "walk.marey")
+    run("simulate", "room", "--motion", "walk", "--markers", "30", "--frames", "360", "--cameras", "8", "--size", "640", "480", "--gaps", "0.04", "--gap-length", "0.2", "-o", "gaps")
+    run("reconstruct", "gaps/rig.toml", "--observations", "gaps/observations.csv", "--labels", "gaps/labels.csv", "--fill", "0", "-o", "edit.marey")
     run("simulate", "match", "--cameras", "2", "--seconds", "6", "--boxes", "-o", "match")
     run("track", "match/rig.toml", "--ground", "-o", "match.csv")
     run("simulate", "people", "-o", "street", "--frames", "120")
@@ -50,11 +52,11 @@ def make_recordings(marey, folder):
     run("track", "street/video.mp4", "-o", "street.marey")
 
 
-def look_at(command, folder, scenario):
+def look_at(command, folder, scenario, script="viewer_page.mjs"):
     shown = subprocess.Popen([str(part) for part in command], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
         address = shown.stdout.readline().strip()
-        subprocess.run(["node", pathlib.Path(__file__).with_name("viewer_page.mjs"), PAGE, folder, scenario, address], check=True, timeout=240)
+        subprocess.run(["node", pathlib.Path(__file__).with_name(script), PAGE, folder, scenario, address], check=True, timeout=400)
     finally:
         shown.terminate()
         shown.communicate(timeout=10)
@@ -65,6 +67,8 @@ def main(marey, live_scene, folder):
     make_recordings(marey, folder)
     view = [marey, "view", "--port", "0", "-q"]
     look_at([*view, "walk.marey"], folder, "space")
+    look_at([*view, "edit.marey", "--edit"], folder, "edit", "viewer_edit.mjs")
+    look_at([*view, "edit.marey", "--edit"], folder, "edit_phone", "viewer_edit.mjs")
     look_at([*view, "street.csv", "--film", "street/video.mp4"], folder, "image")
     look_at([*view, "match.csv"], folder, "ground_phone")
     look_at([live_scene, "walk.marey", "60"], folder, "live")

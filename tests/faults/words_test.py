@@ -37,10 +37,10 @@ def line(random_, vocabulary):
         kind = random_.random()
         words.append(random_.choice(options) if kind < 0.5 and options else random_.choice(WILD) if kind < 0.85 else f"nothing{random_.randint(0, 3)}.csv")
     if path and path[0] in MAKERS:
-        words.append("--no-such-option")
+        words += ["--no-such-option", "--nor-this-one"]  # an option before them takes one of them for its value
     if random_.random() < 0.1:
         random_.shuffle(words)
-        words.append("--no-such-option")
+        words += ["--no-such-option", "--nor-this-one"]
     return [word.replace("\0", "") for word in words]
 
 

@@ -18,9 +18,12 @@ using namespace marey::format::skeleton;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = marey::fuzz::text_of(data, size);
   try {
-    const SkeletonFile file = parse_asf(text, "file");
+    SkeletonFile file = parse_asf(text, "file");
     marey::fuzz::check_skeleton(file.skeleton);
-    for (const auto& row : parse_amc(text, "file", file).rows) check(row.size() == file.skeleton.coordinates.size());
+    marey::fuzz::check_recording(file);
+    file.motion = parse_amc(text, "file", file);
+    for (const auto& row : file.motion->rows) check(row.size() == file.skeleton.coordinates.size());
+    marey::fuzz::check_recording(std::move(file));
   } catch (const marey::Error& error) {
     marey::fuzz::check_lines(error.what());
   }

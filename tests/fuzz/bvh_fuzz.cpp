@@ -17,11 +17,13 @@ using namespace marey::format::skeleton;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = marey::fuzz::text_of(data, size);
   try {
-    const SkeletonFile file = parse_bvh(text, "file");
+    SkeletonFile file = parse_bvh(text, "file");
     marey::fuzz::check_skeleton(file.skeleton);
-    if (!file.motion) return 0;
-    check(file.motion->rate_hz > 0 && file.motion->rows.size() == file.motion->times.size());
-    for (const auto& row : file.motion->rows) check(row.size() == file.skeleton.coordinates.size());
+    if (file.motion) {
+      check(file.motion->rate_hz > 0 && file.motion->rows.size() == file.motion->times.size());
+      for (const auto& row : file.motion->rows) check(row.size() == file.skeleton.coordinates.size());
+    }
+    marey::fuzz::check_recording(std::move(file));
   } catch (const marey::Error& error) {
     marey::fuzz::check_lines(error.what());
   }

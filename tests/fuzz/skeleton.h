@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "marey/core/skeleton.h"
+#include "marey/format/skeleton/skeleton_recording.h"
 
 #include "fuzz.h"
 
@@ -26,6 +28,16 @@ inline void check_skeleton(const Skeleton& skeleton) {
     check(marker.segment >= 0 && marker.segment < segments && marker.position.allFinite());
   pose_of(skeleton, skeleton.rest());
   bodies_of(skeleton);
+}
+
+/// As a recording: as many points and bodies in every instant, all of them somewhere.
+inline void check_recording(format::skeleton::SkeletonFile file) {
+  const auto reader = format::skeleton::recording_of(std::move(file), "file");
+  check(reader->header().rate_hz > 0);
+  while (const auto instant = reader->next()) {
+    check(instant->samples.size() == reader->tracks().size() && instant->bodies.size() == reader->header().bodies.size());
+    for (const Sample& point : instant->samples) check(!point.position.array().isNaN().any());
+  }
 }
 
 /// Every line of a message begins with the file's name and is fit for a terminal.

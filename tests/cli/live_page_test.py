@@ -1,0 +1,305 @@
+"""A live run that is changed from its page, without a browser: who may, what reaches the cameras, the rig file and the take, and what
+strangers write. live_page_test.py MAREY."""
+
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+import unittest
+
+import view_test
+from view_test import WebSocket
+
+MAREY = ""
+
+
+class LivePage(view_test.Shown):
+    """A command that shows live cameras, until the end of the block."""
+
+    def __init__(self, folder, *command):
+        self.process = subprocess.Popen([MAREY, *map(str, command)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
+        said = []
+        for line in self.process.stderr:
+            said.append(line)
+            if found := re.search(r"open (http://[^:]+:(\d+)/\?token=([0-9a-f]{48})) in a browser", line):
+                break
+        else:
+            raise AssertionError(said)
+        self.address, self.port, self.token = found[1], int(found[2]), found[3]
+        self.host = f"127.0.0.1:{self.port}"
+        self.wires = []
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        told = self.process.stdout.read()
+        self.process.wait(timeout=30)
+        return told
+
+
+def hear_until(page, word, holds=lambda rest: True, patience_s=20):
+    """What is behind that word, once it holds."""
+    end = time.monotonic() + patience_s
+    while time.monotonic() < end:
+        line = page.hear()
+        if isinstance(line, str) and line.split(" ")[0] == word:
+            rest = line[len(word) + 1:]
+            rest = json.loads(rest) if word in ("status", "wand") else rest
+            if rest != {} and holds(rest):
+                return rest
+    raise AssertionError(f"no {word} like that came")
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_page_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write_rig(self, lines="", options="&drawn=1&lamps=2"):
+        cameras = [f'[[camera]]\nname = "cam{c}"\nsource = "sim://room?cameras=2&markers=8&size=320x240&rate=20{options}&camera={c}"\n{lines}' for c in (1, 2)]
+        (self.folder / "rig.toml").write_text("\n".join(cameras))
+
+    def rig(self):
+        return tomllib.loads((self.folder / "rig.toml").read_text())["camera"]
+
+    def test_what_is_changed_reaches_the_camera_and_the_rig_file(self):
+        self.write_rig()
+        with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            scene = shown.scene()
+            self.assertTrue(scene["can_change"])
+            self.assertEqual(scene["rig_file"], "rig.toml")
+            page = WebSocket(shown)
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["dials"]) == 2 for c in s["cameras"]))
+            dials = {dial["name"]: dial for dial in status["cameras"][0]["dials"]}
+            self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["most"], dials["exposure"]["now"]), ("ms", 50, 2))
+            self.assertFalse(status["unsaved"])
+            for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40"):
+                page.say(line)
+            status = hear_until(page, "status", lambda s: s["unsaved"] and s["cameras"][1].get("masks") and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
+            self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8]])
+            self.assertEqual(status["cameras"][1]["threshold"], 90)
+            self.assertIsNone(status["cameras"][0]["threshold"])
+            page.say("dial 0 exposure 500")
+            refused = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]
+            self.assertTrue(refused["refused"].startswith("cam1: does not take that exposure; it must be 0.02 to 50 ms"), refused["refused"])
+            self.assertEqual(refused["dials"][0]["now"], 1.5)
+            for level in ("99999", "-1", "0"):
+                page.say(f"threshold 1 {level}")
+                self.assertIn("cam2: does not take that threshold; it must be a grey level above 0", hear_until(page, "said", lambda text: text != ""))
+            page.say("lit 0")
+            hear_until(page, "status", lambda s: s["cameras"][0]["learning"])
+            hear_until(page, "status", lambda s: not s["cameras"][0]["learning"] and len(s["cameras"][0]["masks"]) >= 2)
+            page.say("save")
+            hear_until(page, "status", lambda s: not s["unsaved"])
+        one, two = self.rig()
+        self.assertEqual((one["exposure"], one["gain"]), (1.5, 2))
+        self.assertGreaterEqual(len(one["masks"]), 2)
+        self.assertEqual((two["threshold"], two["masks"]), (90, [[50, 60, 7, 8]]))
+        self.assertNotIn("exposure", two)
+        self.assertIn("sim://room", one["source"])
+        self.assertNotIn("seen from this file", (self.folder / "rig.toml").read_text())
+
+    def test_a_rig_that_says_so_is_set_so_from_the_beginning(self):
+        self.write_rig("exposure = 0.7\nthreshold = 33\nmasks = [[0, 0, 320, 240]]\n")
+        with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["dials"] and c["dials"][0]["now"] == 0.7 for c in s["cameras"]))
+            self.assertEqual(status["cameras"][0]["threshold"], 33)
+            self.assertFalse(status["unsaved"])
+            page.say("watch 0 320")
+            picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
+            self.assertEqual(int.from_bytes(picture[28:32], "little"), 0, "markers are found under the mask")
+        self.write_rig("masks = [[0, 0, 320]]\n")
+        done = subprocess.run([MAREY, "live", "rig.toml"], capture_output=True, text=True, cwd=self.folder, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("masks must be [[x, y, width, height], …] in px", done.stderr)
+
+    def test_films_are_searched_as_the_rig_says(self):
+        subprocess.run([MAREY, "simulate", "room", "--cameras", "2", "--frames", "30", "--size", "320", "240", "--videos", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=120)
+        rig = (self.folder / "room/rig.toml").read_text()
+        seen = []
+        for lines in ("", "masks = [[0, 0, 320, 240]]", "masks = [[0, 0, 160, 240]]", "threshold = 255"):
+            (self.folder / "room/set.toml").write_text(rig.replace("[[camera]]", f"[[camera]]\n{lines}"))
+            done = subprocess.run([MAREY, "reconstruct", "room/set.toml", "-o", "out.marey", "--json", "-q"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            seen.append(json.loads(done.stdout)["observations"])
+        self.assertGreater(seen[0], 100)
+        self.assertEqual(seen[1], 0)
+        self.assertTrue(0 < seen[2] < seen[0], seen)
+        self.assertEqual(seen[3], 0)
+
+    def test_markers_that_come_ready_are_masked_too(self):
+        self.write_rig(options="&blobs&lamps=2")
+        with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
+            self.assertEqual(status["cameras"][0]["dials"], [], "points have no exposure")
+            page.say("watch 0 320")
+            seen = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
+            self.assertGreater(max(seen() for _ in range(5)), 2)
+            page.say("mask 0 0 0 320 240")
+            for _ in range(50):
+                if seen() == 0:
+                    break
+            else:
+                self.fail("they are not masked")
+
+    def test_names_are_in_the_take(self):
+        with LivePage(self.folder, "live", "sim://room?cameras=4&markers=6&motion=cloud&rate=30&blobs", "-o", "named.marey", "--view", "--port", 0) as shown:
+            self.assertNotIn("rig_file", shown.scene())
+            page = WebSocket(shown)
+            tracks = []
+            for _ in range(100):
+                tracks = shown.scene()["tracks"]
+                if len(tracks) >= 2:
+                    break
+                time.sleep(0.1)
+            one, two = tracks[0]["id"], tracks[1]["id"]
+            page.say(f"name {one} left knee")
+            hear_until(page, "said", lambda text: text == "")
+            page.say(f"name {two} left knee")
+            self.assertIn("is called left knee and is seen now", hear_until(page, "said"))
+            page.say("name 999999 nobody")
+            self.assertIn("there is no track 999999", hear_until(page, "said"))
+            page.say("save")
+            self.assertIn("there is no rig file", hear_until(page, "said", lambda text: "rig" in text))
+            for _ in range(100):
+                if any(track["label"] == "left knee" for track in shown.scene()["tracks"]):
+                    break
+                time.sleep(0.1)
+            time.sleep(1)
+            shown.end()
+        subprocess.run([MAREY, "convert", "named.marey", "named.trc", "-q"], cwd=self.folder, check=True, timeout=60)
+        self.assertRegex((self.folder / "named.trc").read_text(), "left.knee")
+
+    def test_others_in_the_network_change_nothing_unless_that_is_allowed(self):
+        self.write_rig()
+        for allowed in (False, True):
+            with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0, "--listen", "0.0.0.0", *["--allow-control"] * allowed) as shown:
+                self.assertEqual(shown.scene()["can_change"], allowed)
+                page = WebSocket(shown)
+                hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
+                page.say("mask 0 1 2 3 4")
+                page.say("dial 0 gain 3")
+                page.say("save")
+                time.sleep(0.6)
+                hear_until(page, "status")
+                status = hear_until(page, "status")
+                self.assertEqual(status["cameras"][0]["masks"], [[1, 2, 3, 4]] if allowed else [])
+                self.assertEqual("masks" in self.rig()[0], allowed)
+
+    def test_lines_of_strangers_cost_nothing(self):
+        self.write_rig()
+        before = (self.folder / "rig.toml").read_text()
+        generator = random.Random(7)
+        words = ["dial", "threshold", "mask", "unmask", "lit", "name", "0", "-1", "63", "64", "1e308", "nan", "all", "auto", "exposure", "\0", "ä", " ", "99999999999999999999", "x" * 900]
+        with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            for _ in range(3000):
+                page.say(" ".join(generator.choices(words, k=generator.randint(0, 7))))
+            for i in range(400):
+                page.say(f"mask 0 {i} 0 1 1")
+            self.assertIn("256 masks already", hear_until(page, "said", lambda text: "masks" in text))
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and len(s["cameras"][0].get("masks", [])) == 256)
+            self.assertEqual(len(status["cameras"]), 2)
+            page.say("lit 63")
+            self.assertIn("there is no camera 64", hear_until(page, "said", lambda text: "camera" in text))
+        self.assertEqual((self.folder / "rig.toml").read_text(), before, "nobody said save")
+
+
+class MachineVision(unittest.TestCase):
+    def test_a_machine_vision_camera_is_set(self):
+        """Aravis's fake camera, in a network of its own, in which this test runs again."""
+        if "MAREY_FAKE_CAMERA" not in os.environ:
+            if shutil.which("arv-fake-gv-camera-0.8") is None or "gige:" not in subprocess.run([MAREY, "live", "--help"], capture_output=True, text=True).stdout:
+                self.skipTest("Aravis or its fake camera is not here")
+            again = f"ip link set lo up || exit 77; arv-fake-gv-camera-0.8 -i 127.0.0.1 -s EYE & camera=$!; sleep 2; {sys.executable} {__file__} {MAREY} {self.id().removeprefix('__main__.')}; code=$?; kill $camera; exit $code"
+            done = subprocess.run(["unshare", "-rn", "bash", "-c", again], capture_output=True, text=True, timeout=120, env={**os.environ, "MAREY_FAKE_CAMERA": "1"})
+            if done.returncode == 77 or "unshare" in done.stderr:
+                self.skipTest(f"no network namespace here: {done.stderr}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_gige_"))
+        self.addCleanup(shutil.rmtree, folder)
+        (folder / "rig.toml").write_text('[[camera]]\nname = "eye"\nsource = "gige:EYE"\nexposure = 4.0\n')
+        with LivePage(folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            dial = lambda s, name: next(each for each in s["cameras"][0]["dials"] if each["name"] == name)
+            status = hear_until(page, "status", lambda s: len(s["cameras"][0]["dials"]) == 2)
+            self.assertAlmostEqual(dial(status, "exposure")["now"], 4, places=2)
+            page.say("dial 0 exposure 7.5")
+            hear_until(page, "status", lambda s: abs(dial(s, "exposure")["now"] - 7.5) < 0.01)
+            page.say(f"dial 0 gain {dial(status, 'gain')['most'] / 2}")
+            hear_until(page, "status", lambda s: abs(dial(s, "gain")["now"] - dial(s, "gain")["most"] / 2) < 0.51)
+            page.say("save")
+            hear_until(page, "status", lambda s: not s["unsaved"])
+        self.assertEqual(tomllib.loads((folder / "rig.toml").read_text())["camera"][0]["exposure"], 7.5)
+
+
+class Wand(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_wand_page_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write_rig(self, motion):
+        source = f"sim://room?cameras=4&rate=60&motion={motion}&blobs&size=1280x1024&noise=0.1"
+        cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [1280, 1024]\nsource = "{source}&camera={c}"\n' for c in range(1, 5)]
+        (self.folder / "live.toml").write_text("\n".join(cameras))
+        return ["calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", 0, "--for", 90]
+
+    def test_coverage_grows_until_it_is_enough_and_the_rig_is_written(self):
+        with LivePage(self.folder, *self.write_rig("wand"), "--json") as shown:
+            scene = shown.scene()
+            self.assertEqual(scene["job"], "wand")
+            self.assertFalse(scene["can_change"])
+            page = WebSocket(shown)
+            early = hear_until(page, "wand", lambda w: w.get("cameras") and all(c["parts"] for c in w["cameras"]), 60)
+            self.assertEqual((early["across"], early["down"]), (10, 8))
+            for camera in early["cameras"]:
+                self.assertAlmostEqual(camera["coverage"], len(camera["parts"]) / 80)
+            self.assertEqual([(pair["a"], pair["b"]) for pair in early["shared"]], [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+            page.say("watch 0 320")
+            picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
+            tracks = [int.from_bytes(picture[64 + 4 * i:68 + 4 * i], "little") for i in range(3)]
+            self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are told from others")
+            later = hear_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
+            self.assertEqual(later["phase"], "waving")
+            done = hear_until(page, "wand", lambda w: w["phase"] == "done", 120)
+            self.assertEqual(done["rig"], "waved.toml")
+            self.assertTrue((self.folder / "waved.toml").exists())
+            self.assertIn("centre", shown.scene()["cameras"][0], "the page knows where the cameras stand")
+            self.assertIsNone(shown.process.poll(), "it waits for the page")
+            page.wire.close()
+            report = json.loads(shown.process.stdout.read())
+            self.assertEqual(shown.process.wait(timeout=20), 0)
+            self.assertEqual(report["grade"], done["report"]["grade"])
+
+    def test_enough_is_a_button_and_what_comes_of_too_little_is_told(self):
+        with LivePage(self.folder, *self.write_rig("ground")) as shown:
+            page = WebSocket(shown)
+            hear_until(page, "wand", lambda w: w.get("cameras") and w["seconds"] > 0.5)
+            page.say("mask 0 1 2 3 4")
+            page.say("enough")
+            failed = hear_until(page, "wand", lambda w: w["phase"] == "failed", 60)
+            self.assertGreater(len(failed["why"]), 20)
+            self.assertEqual(shown.process.wait(timeout=20), 1)
+        self.assertFalse((self.folder / "waved.toml").exists())
+
+    def test_only_live_cameras_are_shown(self):
+        subprocess.run([MAREY, "simulate", "room", "--motion", "wand", "--frames", "5", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=60)
+        done = subprocess.run([MAREY, "calibrate", "wand", "room/start.toml", "--observations", "room/observations.csv", "--wand", "0,0.12,0.30", "-o", "a.toml", "--view"],
+                              cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--view: shows live cameras", done.stderr)
+
+
+if __name__ == "__main__":
+    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

@@ -1,0 +1,98 @@
+"""The page of live runs in Chromium: cameras are adjusted and masked, markers named, a wand is waved.
+
+    viewer_live_test.py MAREY [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
+
+Screenshots are left in FOLDER.
+"""
+import json
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import viewer_test
+
+
+def begun(command, folder):
+    """A program that shows a page, and the page's address."""
+    shown = subprocess.Popen([str(part) for part in command], cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    for line in shown.stderr:
+        if found := re.search(r"open (http://\S+) in a browser", line):
+            return shown, found[1]
+    raise AssertionError(f"{command} shows no page: {shown.wait()}")
+
+
+def look(script, folder, scenario, address):
+    script = pathlib.Path(__file__).with_name(script)
+    subprocess.run(["node", script, viewer_test.PAGE, folder, scenario, address], check=True, timeout=300)
+
+
+def write_rig(marey, folder):
+    """Calibrated cameras round a few markers and two lamps in each picture."""
+    subprocess.run([marey, "simulate", "room", "--cameras", "4", "--markers", "12", "--frames", "2", "--size", "640", "480", "-o", "room", "-q"], cwd=folder, check=True)
+    rig = re.sub(r"source = .*\n", "", (folder / "room/rig.toml").read_text())
+    source = "sim://room?cameras=4&markers=12&size=640x480&rate=20&drawn=3&lamps=2&camera={}"
+    rig = re.sub(r'name = "cam(\d)"\n', lambda at: at[0] + f'source = "{source.format(at[1])}"\n', rig)
+    (folder / "rig.toml").write_text(rig)
+
+
+def change_cameras(marey, folder):
+    write_rig(marey, folder)
+    before = tomllib.loads((folder / "rig.toml").read_text())["camera"]
+    run_live([marey, "live", "rig.toml"], folder, "cameras_phone", "cameras")
+    after = tomllib.loads((folder / "rig.toml").read_text())["camera"]
+    assert after[0]["exposure"] == 2 and after[0]["gain"] == 1.5 and len(after[0]["masks"]) >= 2, after[0]
+    assert "threshold" not in after[0], "it was automatic in the end"
+    for old, new in zip(before, after):
+        kept = {key: value for key, value in new.items() if key not in ("exposure", "gain", "masks")}
+        assert kept == old, (old, kept)
+
+
+def name_markers(marey, folder):
+    run_live([marey, "live", "sim://room?cameras=4&markers=6&motion=cloud&rate=30&blobs", "-o", "named.marey"], folder, "names_phone", "names")
+    subprocess.run([marey, "convert", "named.marey", "named.trc", "-q"], cwd=folder, check=True)
+    assert "left knee" in (folder / "named.trc").read_text().replace("_", " "), "the take does not have the name"
+
+
+def run_live(command, folder, *scenarios):
+    shown, address = begun([*command, "--view", "--port", "0", "--for", "280"], folder)
+    try:
+        for scenario in scenarios:
+            look("viewer_changes.mjs", folder, scenario, address)
+    finally:
+        shown.send_signal(signal.SIGINT)
+        shown.communicate(timeout=60)
+
+
+def wave(marey, folder, scenario):
+    cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [640, 480]\nsource = "sim://room?cameras=4&rate=60&motion=wand&size=640x480&camera={c}"\n' for c in range(1, 5)]
+    (folder / "start.toml").write_text("\n".join(cameras))
+    (folder / "waved.toml").unlink(missing_ok=True)
+    command = [marey, "calibrate", "wand", "start.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", "0", "--for", "120", "--json"]
+    shown, address = begun(command, folder)
+    try:
+        look("viewer_wand.mjs", folder, scenario, address)
+        told = shown.communicate(timeout=30)[0]  # it ends when the page is closed
+    finally:
+        shown.kill()
+    assert shown.returncode == 0, told
+    assert "rotation" in tomllib.loads((folder / "waved.toml").read_text())["camera"][0]
+    print("the wand:", json.loads(told)["grade"])
+
+
+def main(marey, folder):
+    change_cameras(marey, folder)
+    name_markers(marey, folder)
+    wave(marey, folder, "wand")
+    wave(marey, folder, "wand_enough_phone")
+
+
+if __name__ == "__main__":
+    viewer_test.skip_where_absent()
+    with tempfile.TemporaryDirectory() as temporary:
+        chosen = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
+        chosen.mkdir(exist_ok=True)
+        main(pathlib.Path(sys.argv[1]).resolve(), chosen.resolve())

@@ -1,0 +1,41 @@
+// A wand that is waved before a page, in Chromium, until the rig is written. viewer_wand.mjs PAGE_FOLDER FOLDER SCENARIO ADDRESS, as
+// viewer_page.mjs.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { browse } from "./viewer_browser.mjs";
+
+const [, , page_folder, folder, scenario, address] = process.argv;
+const phone = scenario.includes("phone");
+const { page, text, eventually, until, check_layout, done } = await browse(page_folder, phone);
+const shot = (name) => page.screenshot({ path: join(folder, `${scenario}_${name}.png`) });
+/** Whether the picture has pixels of the wand's colour, and of the parts that are covered. */
+const has_colour = ([r, g, b]) =>
+  page.evaluate(([r, g, b]) => {
+    const canvas = document.querySelector("#cameras canvas");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    for (let i = 0; i < data.length; i += 4)
+      if (Math.abs(data[i] - r) < 12 && Math.abs(data[i + 1] - g) < 12 && Math.abs(data[i + 2] - b) < 12) return true;
+    return false;
+  }, [r, g, b]);
+
+await page.goto(address);
+await eventually("nobody says what to do", async () => /Wave the wand/.test(await text("#wand h1")));
+await eventually("the wand is not drawn", () => has_colour([255, 209, 102]));
+await eventually("no part is covered", async () => /[1-9]\d*\s% of its picture/.test(await text(".coverage")));
+await eventually("nobody says with whom it was seen", async () => /cam2/.test(await text(".pairs")));
+await shot("waving");
+await check_layout();
+if (scenario.includes("enough")) {
+  await eventually("no camera has seen enough", async () => (await page.locator(".waved.enough").count()) > 0);
+  await shot("enough");
+  await page.click("#enough");
+}
+await until("it is not calibrated", () => document.body.dataset.wand === "done");
+assert.match(await text(".grade"), /excellent|good|fair|poor/);
+assert.match(await text(".wand_head p"), /written to .*waved\.toml/);
+assert.equal(await page.locator(".result tr").count(), 6, "a head, four cameras, and all");
+await eventually("the rig is not shown", async () => /Cameras/.test(await text("#rig")) && (await page.isVisible("#rig")));
+await page.waitForTimeout(1000);
+await shot("done");
+await check_layout();
+await done(scenario);

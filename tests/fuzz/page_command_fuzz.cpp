@@ -1,0 +1,20 @@
+// What a page of the viewer writes to change something.
+#include <cmath>
+
+#include "fuzz.h"
+#include "viewer/page_command.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace marey::viewer;
+  const std::string_view line = marey::fuzz::text_of(data, size);
+  const auto command = page_command(line);
+  if (!command) return 0;
+  if (const auto* dial = std::get_if<TurnDial>(&*command)) {
+    marey::fuzz::check(std::isfinite(dial->value) && dial->value >= 0 && number(dial->camera) < kMostCameras);
+  } else if (const auto* masks = std::get_if<ChangeMasks>(&*command)) {
+    marey::fuzz::check(masks->part.x >= 0 && masks->part.y >= 0 && masks->part.width >= 0 && masks->part.height >= 0);
+  } else if (const auto* name = std::get_if<NameTrack>(&*command)) {
+    marey::fuzz::check(name->label.size() <= kLongestName && name->label.find('\n') == std::string::npos);
+  }
+  return 0;
+}

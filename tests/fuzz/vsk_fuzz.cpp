@@ -1,0 +1,25 @@
+// Whatever a Vicon skeleton holds, reading it ends in a skeleton or in one Error.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "marey/core/error.h"
+#include "marey/format/skeleton/motion_table.h"
+#include "marey/format/skeleton/skeleton_file.h"
+
+#include "fuzz.h"
+#include "skeleton.h"
+
+using marey::fuzz::check;
+using namespace marey::format::skeleton;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text = marey::fuzz::text_of(data, size);
+  try {
+    marey::fuzz::check_skeleton(parse_vsk(text, "file").skeleton);
+  } catch (const marey::Error& error) {
+    marey::fuzz::check_lines(error.what());
+  }
+  return 0;
+}
