@@ -15,13 +15,12 @@ import time
 import tomllib
 import unittest
 
-import view_test
-from view_test import WebSocket
+from shown_page import Shown, WebSocket
 
 MAREY = ""
 
 
-class LivePage(view_test.Shown):
+class LivePage(Shown):
     """A command that shows live cameras, until the end of the block."""
 
     def __init__(self, folder, *command):
