@@ -4,10 +4,12 @@ import "./style.css";
 import { Cameras } from "./cameras";
 import { Colours } from "./colours";
 import { Editor } from "./edit";
+import { wire_keys } from "./keys";
 import { Latency } from "./latency";
 import { Live } from "./live";
 import { time_of, type Moment, type Motion } from "./motion";
 import { Names } from "./names";
+import { wire_picking } from "./picking";
 import { PlaneView } from "./plane_view";
 import { Plots } from "./plots";
 import { Recorded } from "./recorded";
@@ -68,15 +70,23 @@ class Page {
     state.on_change(() => this.plots.update());
     state.on_hover = redraw;
     this.wire_buttons();
-    this.wire_picking();
+    wire_picking(this.view, state);
     this.take(scene);
     if (scene.kind === "recording") state.time = this.motion.first;
     const narrow = matchMedia("(max-width: 800px)").matches;
     this.show_tab(scene.kind === "live" && scene.cameras.length > 0 && scene.frame !== "image" && !narrow ? "pictures" : "list");
     new ResizeObserver(() => this.resize()).observe(element("stage"));
-    document.addEventListener("keydown", (event) => this.key(event));
-    // Who clicks a button with the pointer and then presses space wants to play.
-    document.addEventListener("click", (event) => event.detail > 0 && (event.target as Element).closest("button")?.blur());
+    wire_keys({
+      state,
+      scene: () => this.motion.scene,
+      editor: this.editor,
+      timeline: this.timeline,
+      names: this.names,
+      seek: (time) => this.seek(time),
+      go_to: (end) => this.seek(this.motion[end]),
+      step: (by) => this.step(by),
+      show_tab: (tab) => this.show_tab(tab),
+    });
     document.addEventListener("visibilitychange", () => this.visible());
     this.connect();
   }
@@ -272,8 +282,7 @@ class Page {
   private shown_moment(): Moment | null {
     const film = this.view instanceof PlaneView ? this.view.film : null;
     if (!film || !this.moment) return this.moment;
-    const { scene } = this.motion;
-    const near = this.motion.at(this.state.time + (film.frame - this.moment.stretch.index[this.moment.k]) / Math.max(0.1, scene.rate));
+    const near = this.motion.at(this.state.time + (film.frame - this.moment.stretch.index[this.moment.k]) / Math.max(0.1, this.motion.scene.rate));
     return near && Math.abs(near.stretch.index[near.k] - film.frame) < 2 ? near : this.moment;
   }
 
@@ -373,66 +382,6 @@ class Page {
     click("help", () => element<HTMLDialogElement>("keys").showModal());
     click("record", () => this.say(`record ${this.recording ? "off" : "on"}`));
     for (const tab of document.querySelectorAll<HTMLElement>("#tabs button")) tab.addEventListener("click", () => this.show_tab(tab.dataset.tab!));
-  }
-
-  /** A click that was no drag selects what is under it. */
-  private wire_picking(): void {
-    const { view, state } = this;
-    let pressed: [number, number] | null = null;
-    const place = (event: PointerEvent): [number, number] => {
-      const rect = view.element.getBoundingClientRect();
-      return [event.clientX - rect.left, event.clientY - rect.top];
-    };
-    view.element.addEventListener("pointerdown", (event) => (pressed = place(event)), { capture: true });
-    view.element.addEventListener("pointerup", (event) => {
-      const now = place(event);
-      if (!pressed || Math.hypot(now[0] - pressed[0], now[1] - pressed[1]) > 5) return;
-      const found = view.overlay.hit(...now, event.pointerType === "touch" ? 22 : 12);
-      if (found !== null) state.toggle_selected(found);
-    });
-    view.element.addEventListener("pointermove", (event) => {
-      if (event.buttons) return;
-      const found = view.overlay.hit(...place(event), 10);
-      view.element.classList.toggle("over_mark", found !== null);
-      if (found === state.hover) return;
-      state.hover = found;
-      state.changed_hover();
-    });
-  }
-
-  private key(event: KeyboardEvent): void {
-    const { state } = this;
-    if (this.editor.key(event)) return;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target instanceof HTMLInputElement && event.key !== "Escape") return;
-    if (event.target instanceof HTMLSelectElement) return;
-    if (event.target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter")) return; // who tabbed there presses it
-    if (element<HTMLDialogElement>("keys").open) return;
-    const press = (id: string) => element(id).hidden || element(id).click();
-    const keys: Record<string, () => void> = {
-      " ": () => this.timeline.toggle(),
-      ArrowLeft: () => (event.shiftKey ? this.seek(state.time - 1) : this.step(-1)),
-      ArrowRight: () => (event.shiftKey ? this.seek(state.time + 1) : this.step(1)),
-      ArrowUp: () => this.timeline.faster(1),
-      ArrowDown: () => this.timeline.faster(-1),
-      Home: () => this.seek(this.motion.first),
-      End: () => this.seek(this.motion.last),
-      l: () => press("labels"), t: () => press("trails"), c: () => press("rig"), y: () => press("rays"), d: () => press("theme"), r: () => press("record"),
-      "1": () => press("top"), "2": () => press("front"), "3": () => press("side"), "0": () => press("reset"), "?": () => press("help"),
-      n: () => this.names.focus(),
-      m: () => this.show_tab("list"), p: () => this.show_tab("plot"),
-      v: () => element("pictures_tab").hidden || this.show_tab("pictures"),
-      a: () => {
-        const all = state.selected.size < this.motion.scene.tracks.length;
-        state.selected = new Set(all ? this.motion.scene.tracks.map((track) => track.id) : []);
-        state.changed();
-      },
-      Escape: () => press("none"),
-    };
-    const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (!act) return;
-    event.preventDefault();
-    act();
   }
 }
 
