@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "marey/core/text_safety.h"
 
@@ -11,8 +12,6 @@
 
 namespace marey::viewer {
 namespace {
-
-constexpr int kLargestPicture = 100'000;  // px, of either side
 
 /// A number in [low, high] in digits, and nothing else.
 std::optional<double> number_in(std::string_view word, double low, double high) {
@@ -51,15 +50,18 @@ std::optional<PageCommand> masks(ChangeMasks::What what, std::string_view line) 
   const auto camera = camera_in(line);
   if (!camera) return std::nullopt;
   if (what == ChangeMasks::What::learn_lit)
-    return is_over(line) ? std::optional<PageCommand>(ChangeMasks{what, *camera}) : std::nullopt;
+    return is_over(line) ? std::optional<PageCommand>(ChangeMasks{what, *camera, {}}) : std::nullopt;
   std::string_view rest = line;
   if (what == ChangeMasks::What::remove && next_word(rest) == "all" && is_over(rest))
-    return ChangeMasks{ChangeMasks::What::remove_all, *camera};
-  const auto x = whole_in(next_word(line), 0, kLargestPicture), y = whole_in(next_word(line), 0, kLargestPicture);
-  const auto width = whole_in(next_word(line), 1, kLargestPicture), height = whole_in(next_word(line), 1, kLargestPicture);
-  if (!x || !y || !width || !height || !is_over(line)) return std::nullopt;
-  return ChangeMasks{what, *camera,
-                     cv::Rect(static_cast<int>(*x), static_cast<int>(*y), static_cast<int>(*width), static_cast<int>(*height))};
+    return ChangeMasks{ChangeMasks::What::remove_all, *camera, {}};
+  std::vector<int> numbers;
+  for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+    const auto number = whole_in(word, 0, Mask::kFarthest);
+    if (!number || numbers.size() >= 2 * Mask::kMostCorners) return std::nullopt;
+    numbers.push_back(static_cast<int>(*number));
+  }
+  const auto part = Mask::of_numbers(numbers);
+  return part ? std::optional<PageCommand>(ChangeMasks{what, *camera, part}) : std::nullopt;
 }
 
 std::optional<PageCommand> name(std::string_view line) {

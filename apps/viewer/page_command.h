@@ -7,9 +7,8 @@
 #include <string_view>
 #include <variant>
 
-#include <opencv2/core/types.hpp>
-
 #include "marey/core/ids.h"
+#include "marey/core/mask.h"
 
 namespace marey::viewer {
 
@@ -29,11 +28,12 @@ struct SetThreshold {
   std::optional<double> level;  ///< grey level, which the camera may refuse; nothing: automatic
 };
 
-/// "mask CAMERA X Y WIDTH HEIGHT" and "unmask …", px of the camera's picture; "unmask CAMERA all"; "lit CAMERA".
+/// "mask CAMERA X Y WIDTH HEIGHT", or of a polygon "mask CAMERA X Y X Y X Y …", and "unmask …", px of the camera's picture; "unmask
+/// CAMERA all"; "lit CAMERA".
 struct ChangeMasks {
   enum class What { add, remove, remove_all, learn_lit } what{};
   CameraId camera{};
-  cv::Rect part = {};
+  std::optional<Mask> part = {};  ///< to `add` and `remove`
 };
 
 /// "name TRACK LABEL", the label being the rest of the line; none takes the track's name away.

@@ -24,7 +24,9 @@ TEST(PageCommand, EachIsReadAsItIsWritten) {
   EXPECT_FALSE(read_as<SetThreshold>("threshold 0 auto").level);
   const auto mask = read_as<ChangeMasks>("mask 1 10 20 30 40");
   EXPECT_EQ(mask.what, ChangeMasks::What::add);
-  EXPECT_EQ(mask.part, cv::Rect(10, 20, 30, 40));
+  EXPECT_EQ(mask.part, Mask(10, 20, 30, 40));
+  EXPECT_EQ(read_as<ChangeMasks>("mask 1 10 20 30 40 5 60").part, Mask::polygon({{10, 20}, {30, 40}, {5, 60}}));
+  EXPECT_EQ(read_as<ChangeMasks>("unmask 1 10 20 30 40 5 60").what, ChangeMasks::What::remove);
   EXPECT_EQ(read_as<ChangeMasks>("unmask 1 10 20 30 40").what, ChangeMasks::What::remove);
   EXPECT_EQ(read_as<ChangeMasks>("unmask 1 all").what, ChangeMasks::What::remove_all);
   EXPECT_EQ(read_as<ChangeMasks>("lit 63").camera, CameraId{63});
@@ -58,6 +60,9 @@ TEST(PageCommand, WhatIsNotExactlyOneOfThemIsNothing) {
                                       "mask 0 1 2 3 0",
                                       "mask 0 -1 2 3 4",
                                       "mask 0 1 2 3 4 5",
+                                      "mask 0 1 2 3 4 5 6 7",
+                                      "mask 0 1 2 3 4 5 -6",
+                                      "mask 0 1 2 3 4 5 all",
                                       "mask 0 1.5 2 3 4",
                                       "mask 0 1 2 3 99999999999999999999",
                                       "mask 0 all",

@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto* dial = std::get_if<TurnDial>(&*command)) {
     marey::fuzz::check(std::isfinite(dial->value) && dial->value >= 0 && number(dial->camera) < kMostCameras);
   } else if (const auto* masks = std::get_if<ChangeMasks>(&*command)) {
-    marey::fuzz::check(masks->part.x >= 0 && masks->part.y >= 0 && masks->part.width >= 0 && masks->part.height >= 0);
+    const cv::Rect box = masks->part ? masks->part->box() : cv::Rect();
+    marey::fuzz::check(box.x >= 0 && box.y >= 0 && box.width >= 0 && box.height >= 0);
   } else if (const auto* name = std::get_if<NameTrack>(&*command)) {
     marey::fuzz::check(name->label.size() <= kLongestName && name->label.find('\n') == std::string::npos);
   }

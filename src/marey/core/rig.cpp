@@ -35,12 +35,6 @@ RigCamera& camera_named(Rig& rig, const std::string& name) {
   return *at;
 }
 
-cv::Rect scaled_part(const cv::Rect& part, double factor) {
-  const auto low = [&](int value) { return static_cast<int>(std::floor(value * factor)); };
-  const auto high = [&](int value) { return static_cast<int>(std::ceil(value * factor)); };
-  return {cv::Point(low(part.x), low(part.y)), cv::Point(high(part.br().x), high(part.br().y))};
-}
-
 void fit_to_size(RigCamera& camera, cv::Size found) {
   if (!camera.size) camera.size = found;
   if (*camera.size == found) return;
@@ -53,7 +47,7 @@ void fit_to_size(RigCamera& camera, cv::Size found) {
         camera.name, found.width, found.height, camera.size->width, camera.size->height, found.width, found.height);
   }
   camera.size = found;
-  for (cv::Rect& mask : camera.masks) mask = scaled_part(mask, factor);
+  for (Mask& mask : camera.masks) mask = mask.scaled(factor);
   if (camera.lens) camera.lens = geometry::scaled(*camera.lens, factor);
   if (camera.ground_from_image) {
     Matrix<3> calibrated_from_found = Matrix<3>::Identity();  // whole numbers are centres of pixels

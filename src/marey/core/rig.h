@@ -7,6 +7,7 @@
 #include <opencv2/core/types.hpp>
 
 #include "marey/core/geometry.h"
+#include "marey/core/mask.h"
 #include "marey/geometry/camera.h"
 #include "marey/geometry/ground_surface.h"
 #include "marey/geometry/ground_view.h"
@@ -29,7 +30,7 @@ struct RigCamera {
   std::optional<double> exposure_ms = {};      ///< of a live camera; nothing: as its source or the camera itself has it
   std::optional<double> gain = {};             ///< likewise, in the camera's own unit
   std::optional<double> threshold = {};        ///< grey level that a marker's pixels pass; nothing: from the picture's noise
-  std::vector<cv::Rect> masks = {};            ///< px: parts of its picture in which there is no marker: lamps, reflections
+  std::vector<Mask> masks = {};                ///< px: parts of its picture in which there is no marker: lamps, reflections
 
   /// Everything that projecting needs; nothing where lens, pose or size is missing.
   std::optional<Camera> camera() const;
@@ -64,9 +65,6 @@ std::string camera_names(const Rig& rig);
 
 /// The camera of that name. Throws Error, with the names that there are, where there is none.
 RigCamera& camera_named(Rig& rig, const std::string& name);
-
-/// A part of a picture in one that is `factor` times as large: all that it covers, so that nothing of it is lost.
-cv::Rect scaled_part(const cv::Rect& part, double factor);
 
 /// Makes a camera's calibration hold for pictures of `found` px: it is scaled, and its masks with it, where the shapes agree within
 /// a pixel. A camera without a size gets this one. Throws Error where the shapes differ: then the camera has to be calibrated at

@@ -49,9 +49,9 @@ TEST(FitToSize, MasksCoverWhatTheyCovered) {
   left.size = {3072, 1728};
   left.masks = {{3, 5, 10, 20}};
   fit_to_size(left, {1536, 864});
-  EXPECT_EQ(left.masks.front(), cv::Rect(1, 2, 6, 11));
+  EXPECT_EQ(left.masks.front(), Mask(1, 2, 6, 11));
   fit_to_size(left, {3072, 1728});
-  EXPECT_EQ(left.masks.front(), cv::Rect(2, 4, 12, 22));
+  EXPECT_EQ(left.masks.front(), Mask(2, 4, 12, 22));
 }
 
 TEST(FitToSize, GivesASizeWhereThereIsNone) {

@@ -13,12 +13,14 @@
 
 namespace marey::pipeline {
 
-/// What the rig says of a camera's exposure and gain.
+/// What the rig says of a camera's exposure and gain; of a node's, of its threshold too.
 std::shared_ptr<source::live::CameraControls> controls_of(const RigCamera& camera);
 
 /// From any thread.
 class CameraDesk {
  public:
+  static constexpr double kBrightest = 65535;  ///< grey level: thresholds are below
+
   struct Camera {
     std::vector<source::live::ControlRange> controls;  ///< that it has
     std::string refused;  ///< why it did not take what was asked for last, its name first; empty where it did
@@ -32,7 +34,8 @@ class CameraDesk {
   const std::shared_ptr<source::live::CameraControls>& controls(std::size_t camera) const { return cameras_[camera].controls; }
   const std::shared_ptr<MarkerTuning>& tuning(std::size_t camera) const { return cameras_[camera].tuning; }
   Camera camera(std::size_t index) const;
-  /// Grey level; nothing: automatic. Throws Error where no marker could be found by it.
+  /// Grey level; nothing: automatic. It goes to the node that finds the camera's markers too. Throws Error where no marker could be
+  /// found by it.
   void set_threshold(std::size_t index, std::optional<double> level);
   /// The camera's pictures are known now, and its masks are in their px.
   void fit(std::size_t index, const RigCamera& camera);
@@ -40,6 +43,8 @@ class CameraDesk {
   /// Enters what was changed into the rig file that the cameras come from, beside all that it holds. Throws Error where it cannot
   /// be read or written, or has no such camera any more.
   void save(const std::string& rig_file);
+  /// Enters what was changed since the beginning, saved or not, into a rig of the same cameras.
+  void enter(Rig& rig) const;
   /// Whether anything was changed that the rig file does not have.
   bool has_changed() const;
 
@@ -48,7 +53,7 @@ class CameraDesk {
   struct Kept {
     source::live::CameraControls::Values controls;
     std::optional<double> threshold;
-    std::vector<cv::Rect> masks;
+    std::vector<Mask> masks;
     bool operator==(const Kept&) const = default;
   };
   struct Entry {
@@ -56,13 +61,14 @@ class CameraDesk {
     std::optional<cv::Size> size;  ///< px, that the masks are in
     std::shared_ptr<source::live::CameraControls> controls;
     std::shared_ptr<MarkerTuning> tuning;
+    bool on_node = false;  ///< of another computer, which may find its markers
   };
   Kept kept_of(std::size_t camera) const;
-  static void enter(RigCamera& camera, const Entry& entry, const Kept& before, const Kept& now);
+  static void enter_camera(RigCamera& camera, const Entry& entry, const Kept& before, const Kept& now);
 
   std::vector<Entry> cameras_;
   mutable std::mutex mutex_;  // for what follows
-  std::vector<Kept> saved_;
+  std::vector<Kept> begun_, saved_;
 };
 
 }  // namespace marey::pipeline

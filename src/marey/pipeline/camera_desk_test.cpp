@@ -100,7 +100,7 @@ TEST_F(CameraDeskTest, SavesWhatWasChangedAndLeavesTheRestAsItIs) {
   EXPECT_EQ(saved.cameras[0].masks, rig_.cameras[0].masks);
   EXPECT_EQ(saved.cameras[1].threshold, 90.0);
   EXPECT_EQ(saved.cameras[1].gain, 7.0);
-  EXPECT_EQ(saved.cameras[1].masks, (std::vector<cv::Rect>{{1, 2, 3, 4}}));
+  EXPECT_EQ(saved.cameras[1].masks, (std::vector<Mask>{{1, 2, 3, 4}}));
   EXPECT_EQ(saved.cameras[1].source, "gige:2");
 }
 
@@ -113,11 +113,13 @@ TEST_F(CameraDeskTest, MasksOfASmallerPictureAreSavedInTheRigsPixels) {
   RigCamera fed = rig_.cameras[0];
   fit_to_size(fed, {640, 480});
   desk_.fit(0, fed);
-  EXPECT_EQ(desk_.camera(0).markers.masks, (std::vector<cv::Rect>{{10, 20, 10, 10}}));
+  EXPECT_EQ(desk_.camera(0).markers.masks, (std::vector<Mask>{{10, 20, 10, 10}}));
   EXPECT_FALSE(desk_.has_changed());
   desk_.tuning(0)->mask({100, 100, 5, 5});
+  desk_.tuning(0)->mask(Mask::polygon({{10, 20}, {40, 20}, {10, 60}}));
   desk_.save(file_);
-  EXPECT_EQ(format::rig::read_rig(file_).cameras[0].masks, (std::vector<cv::Rect>{{20, 40, 20, 20}, {200, 200, 10, 10}}));
+  EXPECT_EQ(format::rig::read_rig(file_).cameras[0].masks,
+            (std::vector<Mask>{{20, 40, 20, 20}, {200, 200, 10, 10}, Mask::polygon({{21, 41}, {81, 41}, {21, 121}})}));
 }
 
 TEST_F(CameraDeskTest, ARigFileThatHasNoSuchCameraAnyMoreIsRefused) {

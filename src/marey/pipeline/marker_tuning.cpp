@@ -13,15 +13,9 @@ detect::markers::MarkerOptions markers_of(const RigCamera& camera, detect::marke
   return options;
 }
 
-void leave_out_masked(std::vector<Detection>& detections, std::span<const cv::Rect> masks) {
-  if (masks.empty()) return;
+void leave_out_masked(std::vector<Detection>& detections, std::span<const Mask> masks) {
   std::erase_if(detections, [&](const Detection& detection) {
-    return std::any_of(masks.begin(), masks.end(), [&](const cv::Rect& mask) {
-      // A pixel's whole number is its centre.
-      const Vector<2> corner(mask.x - 0.5, mask.y - 0.5), size(mask.width, mask.height);
-      const Vector<2> within = detection.centre - corner;
-      return (within.array() >= 0).all() && (within.array() < size.array()).all();
-    });
+    return std::any_of(masks.begin(), masks.end(), [&](const Mask& mask) { return mask.contains(detection.centre); });
   });
 }
 
@@ -41,18 +35,18 @@ void MarkerTuning::set_threshold(std::optional<double> threshold) {
   change([&](Values& values) { values.threshold = threshold; });
 }
 
-void MarkerTuning::mask(const cv::Rect& part) {
+void MarkerTuning::mask(const Mask& part) {
   change([&](Values& values) {
     if (values.masks.size() >= kMostMasks) throw Error("it has {} masks already; take some away first", kMostMasks);
     values.masks.push_back(part);
   });
 }
 
-void MarkerTuning::unmask(const cv::Rect& part) {
+void MarkerTuning::unmask(const Mask& part) {
   change([&](Values& values) { std::erase(values.masks, part); });
 }
 
-void MarkerTuning::set_masks(std::vector<cv::Rect> masks) {
+void MarkerTuning::set_masks(std::vector<Mask> masks) {
   change([&](Values& values) { values.masks = std::move(masks); });
 }
 

@@ -20,7 +20,7 @@ namespace marey::pipeline {
 detect::markers::MarkerOptions markers_of(const RigCamera& camera, detect::markers::MarkerOptions options);
 
 /// Takes out what lies in one of the masks.
-void leave_out_masked(std::vector<Detection>& detections, std::span<const cv::Rect> masks);
+void leave_out_masked(std::vector<Detection>& detections, std::span<const Mask> masks);
 
 /// What is wanted of a camera's detector. From any thread.
 class MarkerTuning {
@@ -30,7 +30,7 @@ class MarkerTuning {
 
   struct Values {
     std::optional<double> threshold;  ///< grey level; nothing: from the picture's noise
-    std::vector<cv::Rect> masks;      ///< px of the camera's picture
+    std::vector<Mask> masks;          ///< px of the camera's picture
     bool learning = false;            ///< what is lit is being learned, to be masked
     bool operator==(const Values&) const = default;
   };
@@ -40,9 +40,9 @@ class MarkerTuning {
   Values values() const;
   void set_threshold(std::optional<double> threshold);
   /// Throws Error where there are too many.
-  void mask(const cv::Rect& part);
-  void unmask(const cv::Rect& part);
-  void set_masks(std::vector<cv::Rect> masks);
+  void mask(const Mask& part);
+  void unmask(const Mask& part);
+  void set_masks(std::vector<Mask> masks);
   /// Masks what stands out and does not move in the second that comes.
   void mask_lit();
 

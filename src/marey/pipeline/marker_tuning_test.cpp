@@ -33,6 +33,10 @@ TEST(MarkerTuning, AMaskAndAThresholdCountFromTheNextFrameOn) {
   tuning->set_threshold({});
   tuning->unmask({30, 20, 20, 20});
   EXPECT_EQ(found(3), 3u);
+  tuning->mask(Mask::polygon({{30, 20}, {60, 20}, {30, 50}}));
+  EXPECT_EQ(found(4), 2u);
+  tuning->mask(Mask::polygon({{0, 119}, {199, 119}, {199, 0}, {198, 118}}));  // round the other lamp, not over it
+  EXPECT_EQ(found(5), 2u);
 }
 
 TEST(MarkerTuning, WhatIsLitIsLearnedInASecondAndWhatMovesStays) {
@@ -64,7 +68,7 @@ TEST(MarkerTuning, OfReadyMarkersThoseInAMaskAreLeftOut) {
   detections[0].centre = {9.5, 20};   // the first pixel's border
   detections[1].centre = {19.4, 20};  // just within
   detections[2].centre = {19.6, 20};
-  leave_out_masked(detections, std::vector<cv::Rect>{{10, 10, 10, 20}});
+  leave_out_masked(detections, std::vector<Mask>{{10, 10, 10, 20}});
   ASSERT_EQ(detections.size(), 1u);
   EXPECT_EQ(detections[0].centre.x(), 19.6);
 }

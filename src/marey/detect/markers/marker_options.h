@@ -6,6 +6,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "marey/core/mask.h"
 #include "marey/detect/markers/marker_colour.h"
 
 namespace marey::detect::markers {
@@ -16,14 +17,14 @@ struct MarkerOptions {
   bool dark = false;                   ///< markers are darker than what is around them; no part where `colour` is given
   std::optional<MarkerColour> colour;  ///< markers of this colour, however bright
   std::optional<double> threshold;     ///< grey level that a marker's pixels pass; nothing: from the image's noise
-  double widest = 0;             ///< px: markers are no wider, and what they stand out from is what lies close by; 0: not used
-  double min_area = 2;           ///< px² that pass the threshold
-  double max_area = 10000;       ///< px²
-  double min_roundness = 0.25;   ///< area over that of the circle as long as the blob: 1 a disc, b/a an ellipse
-  int most_markers = 5000;       ///< a frame; beyond, those where the tracker expects one stay, then the largest
-  cv::Mat mask;                  ///< CV_8UC1 of the picture's size, what is not 0 is left out; empty for none
-  std::vector<cv::Rect> masked;  ///< px: parts of the picture that are left out too, as far as they lie in it
-  double auto_mask_s = 0;        ///< learn for so long what is bright and does not move, then leave it out; 0: never
+  double widest = 0;            ///< px: markers are no wider, and what they stand out from is what lies close by; 0: not used
+  double min_area = 2;          ///< px² that pass the threshold
+  double max_area = 10000;      ///< px²
+  double min_roundness = 0.25;  ///< area over that of the circle as long as the blob: 1 a disc, b/a an ellipse
+  int most_markers = 5000;      ///< a frame; beyond, those where the tracker expects one stay, then the largest
+  cv::Mat mask;                 ///< CV_8UC1 of the picture's size, what is not 0 is left out; empty for none
+  std::vector<Mask> masked;     ///< px: parts of the picture that are left out too, as far as they lie in it
+  double auto_mask_s = 0;       ///< learn for so long what is bright and does not move, then leave it out; 0: never
 
   /// Whether what a marker must stand out by is learned from the pictures.
   bool automatic() const { return !colour && !threshold; }

@@ -96,6 +96,18 @@ void MarkerSearch::prepare(const Picture& picture) {
   if (size != size_) begin(size);
 }
 
+namespace {
+
+void leave_out(cv::Mat& excluded, const Mask& part) {
+  if (part.corners().empty()) {
+    excluded(part.box() & cv::Rect({}, excluded.size())).setTo(255);
+  } else {
+    cv::fillPoly(excluded, std::vector<std::vector<cv::Point>>{part.corners()}, cv::Scalar(255));
+  }
+}
+
+}  // namespace
+
 void MarkerSearch::begin(cv::Size size) {
   size_ = size;
   const int tiles = (size.width + 63) / 64 * ((size.height + 63) / 64);
@@ -105,7 +117,7 @@ void MarkerSearch::begin(cv::Size size) {
   if (options_.mask.empty() && options_.masked.empty()) return;
   const cv::Size full = options_.colour ? cv::Size(2 * size.width, 2 * size.height) : size;
   cv::Mat excluded = options_.mask.empty() ? cv::Mat(cv::Mat::zeros(full, CV_8UC1)) : cv::Mat(options_.mask != 0);
-  for (const cv::Rect& part : options_.masked) excluded(part & cv::Rect({}, excluded.size())).setTo(255);
+  for (const Mask& part : options_.masked) leave_out(excluded, part);
   if (options_.colour) {  // a chroma pixel is left out where any of its four is
     cv::dilate(excluded, excluded, cv::Mat::ones(3, 3, CV_8U));
     cv::resize(excluded, excluded, size, 0, 0, cv::INTER_NEAREST);

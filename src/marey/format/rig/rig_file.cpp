@@ -31,6 +31,16 @@ bool whole(double value) {
   return value == std::floor(value);
 }
 
+/// Nothing where these are no whole px, or no part of a picture.
+std::optional<Mask> mask_of(std::span<const double> numbers) {
+  std::vector<int> px;
+  for (const double each : numbers) {
+    if (!whole(each) || std::abs(each) > kLargestPicture) return std::nullopt;
+    px.push_back(static_cast<int>(each));
+  }
+  return Mask::of_numbers(px);
+}
+
 std::optional<cv::Size> read_size(const Section& section) {
   const auto size = section.numbers("size", 2, 2, "[width, height] in px");
   if (!size) return std::nullopt;
@@ -42,26 +52,29 @@ std::optional<cv::Size> read_size(const Section& section) {
   return cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1]));
 }
 
-/// [x, y, width, height]; nothing, and a problem, where these are no whole px.
-std::optional<cv::Rect> rect_of(const Section& section, std::string_view key, std::span<const double> r) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (whole(r[i]) && r[i] >= (i < 2 ? 0 : 1) && r[i] <= kLargestPicture) continue;
-    section.problem(key, fmt::format("{} is [{}]; it must be whole px, the corner not negative and the sides positive", key,
-                                     fmt::join(r, ", ")));
-    return std::nullopt;
-  }
-  return cv::Rect(static_cast<int>(r[0]), static_cast<int>(r[1]), static_cast<int>(r[2]), static_cast<int>(r[3]));
-}
-
 std::optional<cv::Rect> read_region(const Section& section) {
   const auto r = section.numbers("region", 4, 4, "[x, y, width, height] in px");
-  return r ? rect_of(section, "region", *r) : std::nullopt;
+  if (!r) return std::nullopt;
+  const auto part = mask_of(*r);
+  if (!part) {
+    section.problem("region", fmt::format("region is [{}]; it must be whole px, the corner not negative and the sides positive",
+                                          fmt::join(*r, ", ")));
+    return std::nullopt;
+  }
+  return part->box();
 }
 
-std::vector<cv::Rect> read_masks(const Section& section) {
-  std::vector<cv::Rect> masks;
-  for (const std::vector<double>& row : section.rows("masks", 4, kMostMasks, "[[x, y, width, height], …] in px")) {
-    if (const auto mask = rect_of(section, "masks", row)) masks.push_back(*mask);
+std::vector<Mask> read_masks(const Section& section) {
+  constexpr std::string_view kForm = "[[x, y, width, height], …] in px, a polygon its corners [x, y, x, y, x, y, …]";
+  std::vector<Mask> masks;
+  for (const std::vector<double>& row : section.rows("masks", 4, kMostMasks, kForm)) {
+    if (const auto mask = mask_of(row)) {
+      masks.push_back(*mask);
+    } else {
+      section.problem("masks", fmt::format("masks is [{}]; it must be whole px, the corner not negative and the sides positive, or "
+                                           "3 to {} corners of a polygon",
+                                           fmt::join(row, ", "), Mask::kMostCorners));
+    }
   }
   return masks;
 }

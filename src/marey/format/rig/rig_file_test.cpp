@@ -173,9 +173,9 @@ TEST(RigFile, KeepsHowALiveCameraIsSet) {
   rig.cameras[1].exposure_ms = 2.5;
   rig.cameras[1].gain = 0;
   rig.cameras[1].threshold = 80;
-  rig.cameras[1].masks = {{0, 5, 20, 10}, {100, 200, 3, 4}};
+  rig.cameras[1].masks = {{0, 5, 20, 10}, {100, 200, 3, 4}, Mask::polygon({{1, 2}, {30, 4}, {5, 60}})};
   const std::string text = rig_text(rig);
-  EXPECT_NE(text.find("masks = [[0, 5, 20, 10], [100, 200, 3, 4]]\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("masks = [[0, 5, 20, 10], [100, 200, 3, 4], [1, 2, 30, 4, 5, 60]]\n"), std::string::npos) << text;
   const Rig again = parse_rig(text, "again");
   EXPECT_EQ(again.cameras[1].exposure_ms, 2.5);
   EXPECT_EQ(again.cameras[1].gain, 0.0);
@@ -191,7 +191,11 @@ TEST(RigFile, HowNoCameraCanBeSetIsRefused) {
   EXPECT_NE(told("exposure = 0").find("exposure is 0; it must be positive"), std::string::npos);
   EXPECT_NE(told("gain = -1").find("gain is -1; it must not be negative"), std::string::npos);
   EXPECT_NE(told("threshold = -1").find("threshold is -1"), std::string::npos);
-  EXPECT_NE(told("masks = [[1, 2, 3]]").find("masks must be [[x, y, width, height], …] in px, 256 at most"), std::string::npos);
+  EXPECT_NE(told("masks = [[1, 2, 3]]")
+                .find("masks must be [[x, y, width, height], …] in px, a polygon its corners [x, y, x, y, x, y, …], 256 at most"),
+            std::string::npos);
+  EXPECT_NE(told("masks = [[1, 2, 3, 4, 5]]").find("masks is [1, 2, 3, 4, 5]; it must be"), std::string::npos);
+  EXPECT_NE(told("masks = [[1, 2, 3, 4, 5, 6.5]]").find("or 3 to 64 corners of a polygon"), std::string::npos);
   EXPECT_NE(told("masks = 3").find("masks must be"), std::string::npos);
   EXPECT_NE(told("masks = [[1, 2, 0, 3]]").find("masks is [1, 2, 0, 3]; it must be whole px"), std::string::npos);
   std::string many = "[1, 2, 3, 4]";

@@ -111,7 +111,7 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
   return std::nullopt;
 }
 
-std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t each, std::size_t most,
+std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t fewest, std::size_t most,
                                                std::string_view form) const {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return {};
@@ -120,7 +120,7 @@ std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t
   bool good = array != nullptr && array->size() <= most;
   for (std::size_t i = 0; good && i < array->size(); ++i) {
     auto row = numbers_of(*array->get(i));
-    good = row && row->size() == each;
+    good = row && row->size() >= fewest;
     if (good) rows.push_back(std::move(*row));
   }
   if (good) return rows;

@@ -54,8 +54,9 @@ class Section {
   /// Between `fewest` and `most` numbers; `form` says in words what they must be.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t fewest, std::size_t most,
                                              std::string_view form) const;
-  /// At most `most` rows of `each` numbers; none where the key is missing, or, with a problem, where it is something else.
-  std::vector<std::vector<double>> rows(std::string_view key, std::size_t each, std::size_t most, std::string_view form) const;
+  /// At most `most` rows of at least `fewest` numbers; none where the key is missing, or, with a problem, where it is something
+  /// else.
+  std::vector<std::vector<double>> rows(std::string_view key, std::size_t fewest, std::size_t most, std::string_view form) const;
   std::optional<Matrix<3>> matrix(std::string_view key) const;
   std::optional<Matrix<3>> invertible(std::string_view key) const;
   /// A rotation matrix, made exact where it is rounded.

@@ -47,9 +47,9 @@ std::string rect_text(const cv::Rect& r) {
   return fmt::format("[{}, {}, {}, {}]", r.x, r.y, r.width, r.height);
 }
 
-std::string rows_of(std::span<const cv::Rect> rects) {
+std::string rows_of(std::span<const Mask> masks) {
   std::string text;
-  for (const cv::Rect& rect : rects) text += (text.empty() ? "" : ", ") + rect_text(rect);
+  for (const Mask& mask : masks) text += fmt::format("{}[{}]", text.empty() ? "" : ", ", fmt::join(mask.numbers(), ", "));
   return "[" + text + "]";
 }
 
@@ -126,7 +126,8 @@ std::string camera_text(const RigCamera& camera, const std::string& folder, bool
   if (camera.exposure_ms) lines.add("exposure", number_text(*camera.exposure_ms), "ms, of a live camera");
   if (camera.gain) lines.add("gain", number_text(*camera.gain), "in the camera's own unit");
   if (camera.threshold) lines.add("threshold", number_text(*camera.threshold), "grey level that a marker's pixels pass");
-  if (!camera.masks.empty()) lines.add("masks", rows_of(camera.masks), "[x, y, width, height] in px: no marker there");
+  if (!camera.masks.empty())
+    lines.add("masks", rows_of(camera.masks), "[x, y, width, height] or a polygon's [x, y, x, y, …] in px: no marker there");
   if (camera.offset_s) lines.add("offset_s", number_text(*camera.offset_s), "add to this camera's times to get the rig's");
   if (camera.size) lines.add("size", fmt::format("[{}, {}]", camera.size->width, camera.size->height), "px");
   if (camera.lens) add_lens(lines, *camera.lens);
