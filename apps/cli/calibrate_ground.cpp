@@ -13,6 +13,7 @@
 #include "board_option.h"
 #include "command_line.h"
 #include "commands.h"
+#include "ground_frame.h"
 #include "json_value.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
@@ -22,30 +23,17 @@ namespace {
 
 struct CalibrateGround {
   RigInputs inputs;
-  std::string frame = "0,0;0.2,0;0.6,0;0,0.4";
+  std::string frame = kUsualGroundFrame;
   std::string board, out;
   pipeline::CalibrateGroundOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-std::vector<Vector<3>> frame_of(const std::string& text) {
-  constexpr const char* form = "the markers' places on the ground in m, X,Y or X,Y,Z, with ; between them";
-  std::vector<Vector<3>> frame;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::string part = text.substr(at, text.find(';', at) - at);
-    const auto numbers = numbers_in(part, ',', closed(-1000, 1000), form);
-    if (numbers.size() != 2 && numbers.size() != 3) throw WrongUsage("{}: write {}", part, form);
-    frame.emplace_back(numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0);
-    at += part.size() + 1;
-  }
-  return frame;
-}
-
 void run(const CalibrateGround& command) {
   pipeline::CalibrateGroundOptions options = command.options;
   if (!command.board.empty()) options.board = calibrate::board::parse_board(command.board);
-  options.frame = frame_of(command.frame);
+  options.frame = ground_frame_of(command.frame);
   options.observations = observations_of(command.inputs);
   const pipeline::GroundCalibration result = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_ground(rig_of(command.inputs), options, hooks); });
@@ -70,10 +58,7 @@ void add_calibrate_ground(Command& calibrate) {
   Command command =
       calibrate.subcommand("ground", "Origin and axes of a calibrated rig, from an L-frame of markers or a board on the floor");
   Option rig = add_rig_inputs(command, options->inputs);
-  Option frame =
-      command.text("--frame", options->frame, "where the L-frame's markers lie: X,Y;X,Y;… in m").check([](const std::string& text) {
-        frame_of(text);
-      });
+  Option frame = add_ground_frame(command, options->frame, "where the L-frame's markers lie: X,Y;X,Y;… in m");
   add_board(command, options->board).excludes(frame);
   command.flag("--scale", options->options.scale, "the L-frame's size sets the rig's, as for a rig by a single light");
   command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);

@@ -16,6 +16,7 @@
 #include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
+#include "ground_frame.h"
 #include "json_value.h"
 #include "live_screen.h"
 #include "rig_inputs.h"
@@ -29,8 +30,9 @@ namespace {
 struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
+  std::string frame = kUsualGroundFrame;
   pipeline::CalibrateWandOptions options;
-  bool view = false;
+  bool view = false, allow_control = false;
   viewer::WebPlace web;
   bool json = false;
   bool quiet = false;
@@ -127,11 +129,29 @@ void finish(const pipeline::WandCalibration& result, const CalibrateWand& comman
   }
 }
 
+/// The floor where the L-frame lies now; of a rig without scale its size too.
+pipeline::GroundCalibration ground_by_l_frame(const Rig& rig, const pipeline::CalibrateWandOptions& options,
+                                              const std::string& frame) {
+  const bool scale = options.wand.distances.size() < 2 && !options.how.distance;
+  return with_progress(true, [&](const Hooks& hooks) {
+    return pipeline::calibrate_ground(
+        rig, {.board = {}, .frame = ground_frame_of(frame), .observations = {}, .markers = options.markers, .scale = scale}, hooks);
+  });
+}
+
 /// Waved before live cameras, watched on the terminal and on a page.
 void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, const CalibrateWand& command) {
   std::atomic<bool> will_do = false;
   std::optional<WandPage> page;
-  if (command.view) page.emplace(command.web, rig, [&] { will_do = true; });
+  const auto desk = std::make_shared<pipeline::CameraDesk>(rig, options.markers.threshold);
+  options.desk = desk.get();
+  if (command.view) {
+    page.emplace(WandPage::Options{.place = command.web,
+                                   .allow_control = command.allow_control,
+                                   .ground = [&](const Rig& found) { return ground_by_l_frame(found, options, command.frame); },
+                                   .enough = [&] { will_do = true; }},
+                 rig, desk);
+  }
   WandScreen screen(command.quiet);
   const Keys keys([&](char key) { will_do = will_do || key == 'q'; });
   screen.begun(keys.listens());
@@ -193,6 +213,9 @@ void add_calibrate_wand(Command& calibrate) {
   command.flag("--view", options->view,
                "live cameras: a page that shows them and what they saw of the wand; its address is printed");
   add_web_place(command, options->web);
+  add_ground_frame(command, options->frame,
+                   "on the page: where the markers of an L-frame lie by which it sets the ground: X,Y;X,Y;… in m");
+  command.flag("--allow-control", options->allow_control, "a page that others can open (--listen) may change cameras");
   command.group("");
   command.reports(options->json, options->quiet, "table");
   command.runs([options] { run(*options); });

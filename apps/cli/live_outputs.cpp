@@ -2,12 +2,10 @@
 
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <fmt/core.h>
 
-#include "marey/core/error.h"
-
+#include "page_changes.h"
 #include "view_options.h"
 
 namespace marey::cli {
@@ -18,48 +16,9 @@ std::function<void(bool on)> switching(const std::shared_ptr<pipeline::RecordSwi
   return [recording](bool on) { recording->set(on); };
 }
 
-bool is_loopback(const std::string& listen) {
-  return listen.starts_with("127.") || listen == "::1" || listen == "localhost";
-}
-
-/// Camera numbers come from a page.
-std::size_t within(CameraId camera, const pipeline::CameraDesk& desk) {
-  const auto index = static_cast<std::size_t>(number(camera));
-  if (index >= desk.size()) throw Error("there is no camera {}", index + 1);
-  return index;
-}
-
-/// Does what a page asks for.
-struct Changes {
-  LiveHandles handles;
-  std::string rig;
-
-  void operator()(const viewer::TurnDial& wanted) const {
-    using source::live::Control;
-    const Control control = wanted.name == "gain" ? Control::gain : Control::exposure;
-    handles.desk->controls(within(wanted.camera, *handles.desk))->ask(control, wanted.value);
-  }
-  void operator()(const viewer::SetThreshold& wanted) const {
-    handles.desk->set_threshold(within(wanted.camera, *handles.desk), wanted.level);
-  }
-  void operator()(const viewer::ChangeMasks& wanted) const {
-    using What = viewer::ChangeMasks::What;
-    pipeline::MarkerTuning& tuning = *handles.desk->tuning(within(wanted.camera, *handles.desk));
-    if (wanted.what == What::add) tuning.mask(wanted.part);
-    if (wanted.what == What::remove) tuning.unmask(wanted.part);
-    if (wanted.what == What::remove_all) tuning.set_masks({});
-    if (wanted.what == What::learn_lit) tuning.mask_lit();
-  }
-  void operator()(const viewer::NameTrack& wanted) const { handles.naming->name(wanted.track, wanted.label); }
-  void operator()(const viewer::SaveRig& /*wanted*/) const {
-    if (rig.empty()) throw Error("{}", "there is no rig file to save in; begin with one: marey cameras -o rig.toml writes it");
-    handles.desk->save(rig);
-  }
-};
-
 std::function<void(const viewer::PageCommand&)> changing(const LiveOutputOptions& options, const LiveHandles& handles) {
-  if (!is_loopback(options.web.listen) && !options.streams.allow_control) return {};
-  return [changes = Changes{handles, options.rig}](const viewer::PageCommand& command) { std::visit(changes, command); };
+  if (!is_for_this_computer(options.web.listen) && !options.streams.allow_control) return {};
+  return page_changes(handles.desk, handles.naming, options.rig);
 }
 
 }  // namespace
@@ -97,20 +56,12 @@ std::vector<std::unique_ptr<Sink>> LiveOutputs::sinks() {
 }
 
 viewer::LiveReport::Camera LiveOutputs::camera_of(const pipeline::LiveStatus::Camera& camera, std::size_t index) const {
-  const pipeline::CameraDesk::Camera set = handles_.desk->camera(index);
   viewer::LiveReport::Camera told{.state = camera.state,
                                   .rate_hz = camera.rate_hz > 0 ? std::optional(camera.rate_hz) : std::nullopt,
                                   .frames = camera.frames,
                                   .dropped = camera.lost + camera.damaged + camera.overrun,
-                                  .finds_markers = finds_markers_,
-                                  .threshold = set.markers.threshold,
-                                  .masks = set.markers.masks,
-                                  .learning = set.markers.learning,
-                                  .refused = set.refused};
-  for (const source::live::ControlRange& range : set.controls) {
-    const char* unit = range.control == source::live::Control::exposure ? "ms" : "";
-    told.dials.push_back({std::string(to_string(range.control)), unit, range.least, range.most, range.now});
-  }
+                                  .finds_markers = finds_markers_};
+  tell_changeable(told, handles_.desk->camera(index));
   return told;
 }
 

@@ -70,6 +70,7 @@ void print_node(const pipeline::NodeSummary& summary) {
 
 void run(NodeCommand& command) {
   const Rig rig = rig_of_live_sources(command.sources);
+  command.options.allow_control = command.options.allow_control || !is_open_to_others(command.options.address);
   if (command.send == NodeSends::pictures) command.options.quality = command.quality;
   if (!command.quiet) command.options.begun = [&](const Rig& told) { print_begun(command, told); };
   const pipeline::NodeSummary summary = with_progress(
@@ -93,6 +94,8 @@ void add_node(Command& program) {
   command.whole("--quality", options->quality, "N", 1, 100, "of the pictures, which are JPEG");
   command.text("--listen", how.address, "address of this machine at which its cameras are had; 0.0.0.0: all of them");
   command.whole("--port", how.port, "N", 1, 65534, "of the cameras; the one above it answers questions");
+  command.flag("--allow-control", how.allow_control,
+               "hosts on other computers (--listen) may set exposure, gain and threshold, not this one's alone");
   command.number("--for", how.for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C)");
   command.number("--patience", how.patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   add_blob_options(command, how.markers);

@@ -9,7 +9,11 @@
 #include <fmt/format.h>
 
 #include "marey/calibrate/wand/wand_coverage.h"
+#include "marey/core/error.h"
+#include "marey/core/stop.h"
+#include "marey/format/rig/rig_file.h"
 
+#include "page_changes.h"
 #include "run_hooks.h"
 
 namespace marey::cli {
@@ -26,6 +30,12 @@ bool gives(FeedState state) {
 Json seen_by(const pipeline::WandSeen::Camera& camera) {
   return {{"name", camera.name},   {"state", to_string(camera.state)}, {"coverage", camera.coverage},
           {"views", camera.views}, {"covered", camera.covered},        {"parts", Json(camera.parts)}};
+}
+
+std::function<void(const viewer::PageCommand&)> changing_wands(const WandPage::Options& options,
+                                                               const std::shared_ptr<pipeline::CameraDesk>& desk) {
+  if (!is_for_this_computer(options.place.listen) && !options.allow_control) return {};
+  return page_changes(desk, nullptr, "");
 }
 
 }  // namespace
@@ -51,8 +61,15 @@ void WandScreen::show(const pipeline::WandSeen& seen) {
   out_->show(line);
 }
 
-WandPage::WandPage(const viewer::WebPlace& place, const Rig& rig, std::function<void()> enough)
-    : viewer_({.place = place, .job = "wand", .enough = std::move(enough)}), sink_(viewer_.make_sink()) {
+WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::CameraDesk> desk)
+    : desk_(std::move(desk)),
+      ground_(options.ground),
+      viewer_({.place = options.place,
+               .change = changing_wands(options, desk_),
+               .job = "wand",
+               .enough = options.enough,
+               .ground = [this] { ground_wanted_ = true; }}),
+      sink_(viewer_.make_sink()) {
   told_ = {{"wanted", WandCoverage::kWellCovered},
            {"across", WandCoverage::kPartsAcross},
            {"down", WandCoverage::kPartsDown},
@@ -76,9 +93,24 @@ void WandPage::tell(const char* phase) {
   viewer_.wand(compact(told_));
 }
 
+/// How the cameras are set.
+void WandPage::report(const pipeline::WandSeen& seen) {
+  viewer::LiveReport told;
+  for (const pipeline::WandSeen::Camera& camera : seen.cameras) {
+    auto& entry = told.cameras.emplace_back(viewer::LiveReport::Camera{.state = camera.state,
+                                                                       .rate_hz = camera.rate_hz,
+                                                                       .frames = camera.frames,
+                                                                       .dropped = camera.dropped,
+                                                                       .finds_markers = true});
+    tell_changeable(entry, desk_->camera(told.cameras.size() - 1));
+  }
+  viewer_.report(told);
+}
+
 void WandPage::show(const pipeline::WandSeen& seen) {
   sink_->write(seen.now);
   if (shown_++ % kToldEvery != 0 && !seen.enough) return;
+  report(seen);
   told_["seconds"] = seen.seconds;
   told_["cameras"] = Json::array();
   told_["shared"] = Json::array();
@@ -98,14 +130,37 @@ void WandPage::failed(const std::string& why) {
   std::this_thread::sleep_for(kToBeSent);
 }
 
-void WandPage::done(const Rig& rig, Json report, const std::string& file) {
+void WandPage::done(Rig rig, Json report, const std::string& file) {
   show_rig(rig);
   told_["report"] = std::move(report);
   told_["rig"] = file;
+  ground_wanted_ = false;  // before there was a rig nobody could ask
   tell("done");
   const std::stop_token stop = stop_by_signals();
   if (viewer_.count().pages > 0) fmt::print(stderr, "marey: the page shows how good it is; this ends when it is closed\n");
-  while (viewer_.count().pages > 0 && !stop.stop_requested()) std::this_thread::sleep_for(kToBeSent);
+  while (viewer_.count().pages > 0 && !stop.stop_requested()) {
+    if (ground_wanted_) set_ground(rig, file);
+    std::this_thread::sleep_for(kToBeSent);
+  }
+}
+
+void WandPage::set_ground(Rig& rig, const std::string& file) {
+  told_["ground"] = Json();
+  told_["ground"]["phase"] = "looking";
+  tell("done");
+  try {
+    const pipeline::GroundCalibration found = ground_(rig);
+    rig = found.rig;
+    format::rig::write_rig(rig, file);
+    told_["ground"] = {{"phase", "set"}, {"rms_mm", found.found.rms_mm}, {"warnings", Json(found.warnings)}};
+    show_rig(rig);
+  } catch (const Stopped&) {
+    told_["ground"] = Json();
+  } catch (const Error& error) {
+    told_["ground"] = {{"phase", "failed"}, {"why", error.what()}};
+  }
+  ground_wanted_ = false;
+  tell("done");
 }
 
 }  // namespace marey::cli

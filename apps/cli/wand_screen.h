@@ -1,11 +1,14 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "marey/core/sink.h"
+#include "marey/pipeline/calibrate_ground.h"
 #include "marey/pipeline/calibrate_wand.h"
 
 #include "json_value.h"
@@ -33,19 +36,32 @@ class WandScreen {
 /// The same on a page, with the cameras' pictures; then how good the calibration is.
 class WandPage {
  public:
-  /// Prints its address. `enough` is called, on another thread, where the page's user finds that it will do.
-  WandPage(const viewer::WebPlace& place, const Rig& rig, std::function<void()> enough);
+  struct Options {
+    viewer::WebPlace place;
+    bool allow_control = false;  ///< who opens the page from another computer may change the cameras
+    std::function<pipeline::GroundCalibration(const Rig&)> ground;  ///< by an L-frame that lies on the floor now
+    std::function<void()> enough;  ///< called, on another thread, where the page's user finds that it will do
+  };
+  /// Prints its address. What is changed of the cameras on it is in `desk`.
+  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::CameraDesk> desk);
 
   void show(const pipeline::WandSeen& seen);
   void computing();
   void failed(const std::string& why);
-  /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end.
-  void done(const Rig& rig, Json report, const std::string& file);
+  /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end; meanwhile the ground is set
+  /// as often as somebody asks for it, and the file written anew.
+  void done(Rig rig, Json report, const std::string& file);
 
  private:
   void tell(const char* phase);
   void show_rig(const Rig& rig);
+  void report(const pipeline::WandSeen& seen);
 
+  void set_ground(Rig& rig, const std::string& file);
+
+  std::shared_ptr<pipeline::CameraDesk> desk_;
+  std::function<pipeline::GroundCalibration(const Rig&)> ground_;
+  std::atomic<bool> ground_wanted_ = false;
   viewer::LiveViewer viewer_;
   std::unique_ptr<Sink> sink_;
   Json told_;

@@ -1,7 +1,6 @@
 #include "live_viewer.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -49,7 +48,7 @@ cli::Json json_of(const LiveReport::Camera& camera) {
   told["threshold"] = camera.threshold;
   told["learning"] = camera.learning;
   told["masks"] = cli::Json::array();
-  for (const cv::Rect& mask : camera.masks) told["masks"].push_back(cli::Json(std::array{mask.x, mask.y, mask.width, mask.height}));
+  for (const Mask& mask : camera.masks) told["masks"].push_back(cli::Json(mask.numbers()));
   return told;
 }
 
@@ -309,6 +308,8 @@ void LiveViewer::Core::received(PageId page, std::string_view line) {
     record(page, next_word(line));
   } else if (word == "enough" && options_.enough) {
     options_.enough();
+  } else if (word == "ground" && options_.ground) {
+    options_.ground();
   } else if (word == "ping") {
     if (const auto number = whole_in(next_word(line), 0, 1'000'000'000))
       server_->send(page, text_message(kPong, fmt::format("pong {} {}", *number, steady_ns())));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "marey/core/frame_set.h"
+#include "marey/core/mask.h"
 #include "marey/core/sink.h"
 
 #include "page_command.h"
@@ -29,7 +30,7 @@ struct LiveReport {
     std::vector<Dial> dials = {};
     bool finds_markers = false;  ///< then these count:
     std::optional<double> threshold = {};
-    std::vector<cv::Rect> masks = {};
+    std::vector<Mask> masks = {};
     bool learning = false;     ///< what is lit, to mask it
     std::string refused = {};  ///< why it did not do what was asked for last
   };
@@ -59,6 +60,8 @@ struct LiveViewOptions {
   std::string job = {};
   /// The page's button by which a wand has been waved enough; without it there is none. As `record`.
   std::function<void()> enough = {};
+  /// The page's button by which the ground is set, by an L-frame on it; without it there is none. As `record`.
+  std::function<void()> ground = {};
   /// The time now by the run's clock, so that the page can say how old is what it shows.
   std::function<Timestamp()> now = {};
   double pictures_hz = 10;  ///< of each camera that somebody watches

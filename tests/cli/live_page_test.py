@@ -5,9 +5,7 @@ import json
 import os
 import pathlib
 import random
-import re
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -15,45 +13,11 @@ import time
 import tomllib
 import unittest
 
-from shown_page import Shown, WebSocket
+import node_test
+import shown_page
+from shown_page import LivePage, WebSocket, hear_until
 
 MAREY = ""
-
-
-class LivePage(Shown):
-    """A command that shows live cameras, until the end of the block."""
-
-    def __init__(self, folder, *command):
-        self.process = subprocess.Popen([MAREY, *map(str, command)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
-        said = []
-        for line in self.process.stderr:
-            said.append(line)
-            if found := re.search(r"open (http://[^:]+:(\d+)/\?token=([0-9a-f]{48})) in a browser", line):
-                break
-        else:
-            raise AssertionError(said)
-        self.address, self.port, self.token = found[1], int(found[2]), found[3]
-        self.host = f"127.0.0.1:{self.port}"
-        self.wires = []
-
-    def end(self):
-        self.process.send_signal(signal.SIGINT)
-        told = self.process.stdout.read()
-        self.process.wait(timeout=30)
-        return told
-
-
-def hear_until(page, word, holds=lambda rest: True, patience_s=20):
-    """What is behind that word, once it holds."""
-    end = time.monotonic() + patience_s
-    while time.monotonic() < end:
-        line = page.hear()
-        if isinstance(line, str) and line.split(" ")[0] == word:
-            rest = line[len(word) + 1:]
-            rest = json.loads(rest) if word in ("status", "wand") else rest
-            if rest != {} and holds(rest):
-                return rest
-    raise AssertionError(f"no {word} like that came")
 
 
 class Page(unittest.TestCase):
@@ -79,10 +43,10 @@ class Page(unittest.TestCase):
             dials = {dial["name"]: dial for dial in status["cameras"][0]["dials"]}
             self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["most"], dials["exposure"]["now"]), ("ms", 50, 2))
             self.assertFalse(status["unsaved"])
-            for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40"):
+            for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40", "mask 1 9 9 90 9 50 80", "mask 1 1 1 2 2 3 9", "unmask 1 1 1 2 2 3 9"):
                 page.say(line)
-            status = hear_until(page, "status", lambda s: s["unsaved"] and s["cameras"][1].get("masks") and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
-            self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8]])
+            status = hear_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
+            self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8], [9, 9, 90, 9, 50, 80]])
             self.assertEqual(status["cameras"][1]["threshold"], 90)
             self.assertIsNone(status["cameras"][0]["threshold"])
             page.say("dial 0 exposure 500")
@@ -100,7 +64,7 @@ class Page(unittest.TestCase):
         one, two = self.rig()
         self.assertEqual((one["exposure"], one["gain"]), (1.5, 2))
         self.assertGreaterEqual(len(one["masks"]), 2)
-        self.assertEqual((two["threshold"], two["masks"]), (90, [[50, 60, 7, 8]]))
+        self.assertEqual((two["threshold"], two["masks"]), (90, [[50, 60, 7, 8], [9, 9, 90, 9, 50, 80]]))
         self.assertNotIn("exposure", two)
         self.assertIn("sim://room", one["source"])
         self.assertNotIn("seen from this file", (self.folder / "rig.toml").read_text())
@@ -124,7 +88,7 @@ class Page(unittest.TestCase):
         subprocess.run([MAREY, "simulate", "room", "--cameras", "2", "--frames", "30", "--size", "320", "240", "--videos", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=120)
         rig = (self.folder / "room/rig.toml").read_text()
         seen = []
-        for lines in ("", "masks = [[0, 0, 320, 240]]", "masks = [[0, 0, 160, 240]]", "threshold = 255"):
+        for lines in ("", "masks = [[0, 0, 320, 240]]", "masks = [[0, 0, 160, 240]]", "threshold = 255", "masks = [[0, 0, 319, 0, 319, 239, 0, 239]]"):
             (self.folder / "room/set.toml").write_text(rig.replace("[[camera]]", f"[[camera]]\n{lines}"))
             done = subprocess.run([MAREY, "reconstruct", "room/set.toml", "-o", "out.marey", "--json", "-q"], cwd=self.folder, capture_output=True, text=True, timeout=120)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -133,6 +97,7 @@ class Page(unittest.TestCase):
         self.assertEqual(seen[1], 0)
         self.assertTrue(0 < seen[2] < seen[0], seen)
         self.assertEqual(seen[3], 0)
+        self.assertEqual(seen[4], 0, "a polygon round all of it")
 
     def test_markers_that_come_ready_are_masked_too(self):
         self.write_rig(options="&blobs&lamps=2")
@@ -213,6 +178,77 @@ class Page(unittest.TestCase):
         self.assertEqual((self.folder / "rig.toml").read_text(), before, "nobody said save")
 
 
+class OtherComputer(unittest.TestCase):
+    """A node, here on the same computer."""
+
+    def setUp(self):
+        if "node:" not in subprocess.run([MAREY, "live", "--help"], capture_output=True, text=True).stdout:
+            self.skipTest("this build has no ZeroMQ")
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_node_page_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def node(self, *options):
+        port = node_test.free_ports()
+        node = subprocess.Popen([MAREY, "node", "left=sim://room?cameras=1&rate=20&markers=8&drawn=1&size=320x240", "--port", str(port), *options],
+                                cwd=self.folder, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(lambda: (node.kill(), node.wait(), node.stderr.close()))
+        self.assertIn("marey live node:", node.stderr.readline())
+        return f"node:127.0.0.1:{port}"
+
+    def test_its_camera_is_set_from_the_hosts_page(self):
+        where = self.node()
+        (self.folder / "rig.toml").write_text(f'[[camera]]\nname = "mine"\nsource = "{where}/left"\nexposure = 1.5\n')
+        found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
+        now = lambda s: [dial["now"] for dial in s["cameras"][0].get("dials", [])]
+        with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and now(s) == [1.5, 1])
+            self.assertEqual([dial["name"] for dial in status["cameras"][0]["dials"]], ["exposure", "gain"])
+            page.say("watch 0 320")
+            self.assertGreater(found(page), 2)
+            page.say("dial 0 exposure 2.5")
+            page.say("dial 0 gain 2")
+            hear_until(page, "status", lambda s: now(s) == [2.5, 2])
+            page.say("dial 0 exposure 500")
+            refused = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
+            self.assertTrue(refused.startswith("mine: does not take that exposure; it must be 0.02 to 50 ms"), refused)
+            page.say("threshold 0 254")
+            hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] == 254 and "refused" not in s["cameras"][0])
+            for _ in range(50):
+                if found(page) < 2:
+                    break
+            else:
+                self.fail("the node finds as many markers as before")
+            page.say("save")
+            hear_until(page, "status", lambda s: not s["unsaved"])
+        kept = tomllib.loads((self.folder / "rig.toml").read_text())["camera"][0]
+        self.assertEqual((kept["exposure"], kept["gain"], kept["threshold"]), (2.5, 2, 254))
+        with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
+            page = WebSocket(shown)
+            hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
+            page.say("threshold 0 auto")
+            hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] is None)
+            page.say("watch 0 320")
+            for _ in range(50):
+                if found(page) > 2:
+                    break
+            else:
+                self.fail("automatic finds no more")
+
+    def test_a_node_that_others_reach_is_set_where_it_allows_that(self):
+        for options, refused in (((), True), (("--allow-control",), False)):
+            where = self.node("--listen", "0.0.0.0", *options)
+            with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
+                page = WebSocket(shown)
+                hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and s["cameras"][0]["dials"])
+                page.say("dial 0 exposure 3")
+                if refused:
+                    why = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
+                    self.assertEqual(why, "left: its exposure cannot be set from here: marey node there was started without --allow-control")
+                else:
+                    hear_until(page, "status", lambda s: s["cameras"][0]["dials"][0]["now"] == 3)
+
+
 class MachineVision(unittest.TestCase):
     def test_a_machine_vision_camera_is_set(self):
         """Aravis's fake camera, in a network of its own, in which this test runs again."""
@@ -242,63 +278,6 @@ class MachineVision(unittest.TestCase):
         self.assertEqual(tomllib.loads((folder / "rig.toml").read_text())["camera"][0]["exposure"], 7.5)
 
 
-class Wand(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_wand_page_"))
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def write_rig(self, motion):
-        source = f"sim://room?cameras=4&rate=60&motion={motion}&blobs&size=1280x1024&noise=0.1"
-        cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [1280, 1024]\nsource = "{source}&camera={c}"\n' for c in range(1, 5)]
-        (self.folder / "live.toml").write_text("\n".join(cameras))
-        return ["calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", 0, "--for", 90]
-
-    def test_coverage_grows_until_it_is_enough_and_the_rig_is_written(self):
-        with LivePage(self.folder, *self.write_rig("wand"), "--json") as shown:
-            scene = shown.scene()
-            self.assertEqual(scene["job"], "wand")
-            self.assertFalse(scene["can_change"])
-            page = WebSocket(shown)
-            early = hear_until(page, "wand", lambda w: w.get("cameras") and all(c["parts"] for c in w["cameras"]), 60)
-            self.assertEqual((early["across"], early["down"]), (10, 8))
-            for camera in early["cameras"]:
-                self.assertAlmostEqual(camera["coverage"], len(camera["parts"]) / 80)
-            self.assertEqual([(pair["a"], pair["b"]) for pair in early["shared"]], [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
-            page.say("watch 0 320")
-            picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
-            tracks = [int.from_bytes(picture[64 + 4 * i:68 + 4 * i], "little") for i in range(3)]
-            self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are told from others")
-            later = hear_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
-            self.assertEqual(later["phase"], "waving")
-            done = hear_until(page, "wand", lambda w: w["phase"] == "done", 120)
-            self.assertEqual(done["rig"], "waved.toml")
-            self.assertTrue((self.folder / "waved.toml").exists())
-            self.assertIn("centre", shown.scene()["cameras"][0], "the page knows where the cameras stand")
-            self.assertIsNone(shown.process.poll(), "it waits for the page")
-            page.wire.close()
-            report = json.loads(shown.process.stdout.read())
-            self.assertEqual(shown.process.wait(timeout=20), 0)
-            self.assertEqual(report["grade"], done["report"]["grade"])
-
-    def test_enough_is_a_button_and_what_comes_of_too_little_is_told(self):
-        with LivePage(self.folder, *self.write_rig("ground")) as shown:
-            page = WebSocket(shown)
-            hear_until(page, "wand", lambda w: w.get("cameras") and w["seconds"] > 0.5)
-            page.say("mask 0 1 2 3 4")
-            page.say("enough")
-            failed = hear_until(page, "wand", lambda w: w["phase"] == "failed", 60)
-            self.assertGreater(len(failed["why"]), 20)
-            self.assertEqual(shown.process.wait(timeout=20), 1)
-        self.assertFalse((self.folder / "waved.toml").exists())
-
-    def test_only_live_cameras_are_shown(self):
-        subprocess.run([MAREY, "simulate", "room", "--motion", "wand", "--frames", "5", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=60)
-        done = subprocess.run([MAREY, "calibrate", "wand", "room/start.toml", "--observations", "room/observations.csv", "--wand", "0,0.12,0.30", "-o", "a.toml", "--view"],
-                              cwd=self.folder, capture_output=True, text=True, timeout=60)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--view: shows live cameras", done.stderr)
-
-
 if __name__ == "__main__":
-    MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    shown_page.MAREY = MAREY = str(pathlib.Path(sys.argv.pop(1)).resolve())
     unittest.main()

@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import socket
 import struct
 import subprocess
@@ -82,6 +83,29 @@ class Shown:
         return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
 
 
+class LivePage(Shown):
+    """A command that shows live cameras, until the end of the block."""
+
+    def __init__(self, folder, *command):
+        self.process = subprocess.Popen([MAREY, *map(str, command)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
+        said = []
+        for line in self.process.stderr:
+            said.append(line)
+            if found := re.search(r"open (http://[^:]+:(\d+)/\?token=([0-9a-f]{48})) in a browser", line):
+                break
+        else:
+            raise AssertionError(said)
+        self.address, self.port, self.token = found[1], int(found[2]), found[3]
+        self.host = f"127.0.0.1:{self.port}"
+        self.wires = []
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        told = self.process.stdout.read()
+        self.process.wait(timeout=30)
+        return told
+
+
 class WebSocket:
     def __init__(self, shown, **headers):
         self.wire = shown.connect()
@@ -142,6 +166,19 @@ class Stretch:
         at += 12 * n
         self.track = struct.unpack_from(f"<{rows}i", data, at)
         self.x = struct.unpack_from(f"<{rows}f", data, at + 4 * rows)
+
+
+def hear_until(page, word, holds=lambda rest: True, patience_s=20):
+    """What is behind that word, once it holds."""
+    end = time.monotonic() + patience_s
+    while time.monotonic() < end:
+        line = page.hear()
+        if isinstance(line, str) and line.split(" ")[0] == word:
+            rest = line[len(word) + 1:]
+            rest = json.loads(rest) if word in ("status", "wand") else rest
+            if rest != {} and holds(rest):
+                return rest
+    raise AssertionError(f"no {word} like that came")
 
 
 def make_walk():

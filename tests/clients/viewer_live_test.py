@@ -42,9 +42,10 @@ def write_rig(marey, folder):
 def change_cameras(marey, folder):
     write_rig(marey, folder)
     before = tomllib.loads((folder / "rig.toml").read_text())["camera"]
-    run_live([marey, "live", "rig.toml"], folder, "cameras_phone", "cameras")
+    run_live([marey, "live", "rig.toml"], folder, "list", "cameras_phone", "cameras")
     after = tomllib.loads((folder / "rig.toml").read_text())["camera"]
     assert after[0]["exposure"] == 2 and after[0]["gain"] == 1.5 and len(after[0]["masks"]) >= 2, after[0]
+    assert [len(mask) for mask in after[0]["masks"] if len(mask) != 4] == [6], "the triangle that was drawn is kept as its corners"
     assert "threshold" not in after[0], "it was automatic in the end"
     for old, new in zip(before, after):
         kept = {key: value for key, value in new.items() if key not in ("exposure", "gain", "masks")}
@@ -68,7 +69,7 @@ def run_live(command, folder, *scenarios):
 
 
 def wave(marey, folder, scenario):
-    cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [640, 480]\nsource = "sim://room?cameras=4&rate=60&motion=wand&size=640x480&camera={c}"\n' for c in range(1, 5)]
+    cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [640, 480]\nsource = "sim://room?cameras=4&rate=60&motion=wand&frame&size=640x480&camera={c}"\n' for c in range(1, 5)]
     (folder / "start.toml").write_text("\n".join(cameras))
     (folder / "waved.toml").unlink(missing_ok=True)
     command = [marey, "calibrate", "wand", "start.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", "0", "--for", "120", "--json"]
@@ -79,7 +80,8 @@ def wave(marey, folder, scenario):
     finally:
         shown.kill()
     assert shown.returncode == 0, told
-    assert "rotation" in tomllib.loads((folder / "waved.toml").read_text())["camera"][0]
+    camera = tomllib.loads((folder / "waved.toml").read_text())["camera"][0]
+    assert "rotation" in camera and camera["gain"] == 1.2 and len(camera["masks"][0]) == 6, camera
     print("the wand:", json.loads(told)["grade"])
 
 

@@ -25,6 +25,17 @@ await eventually("no part is covered", async () => /[1-9]\d*\s% of its picture/.
 await eventually("nobody says with whom it was seen", async () => /cam2/.test(await text(".pairs")));
 await shot("waving");
 await check_layout();
+await page.locator("#cameras .adjust").first().click();
+await eventually("a camera of a wand cannot be set", async () => (await page.locator('.controls:visible [data-dial="exposure"] input[type="number"]').count()) === 1);
+await page.locator('.controls:visible [data-dial="gain"] input[type="number"]').fill("1.2");
+await page.keyboard.press("Enter");
+const canvas = await page.locator("#cameras canvas").first().boundingBox();
+for (const [x, y] of [[0.02, 0.9], [0.1, 0.9], [0.05, 0.98]]) await page.mouse.click(canvas.x + x * canvas.width, canvas.y + y * canvas.height);
+await page.keyboard.press("Enter");
+await eventually("no mask is drawn", async () => (await page.locator(".controls:visible .count").textContent()) === "1");
+await shot("controls");
+await check_layout();
+await page.locator("#cameras .adjust").first().click();
 if (scenario.includes("enough")) {
   await eventually("no camera has seen enough", async () => (await page.locator(".waved.enough").count()) > 0);
   await shot("enough");
@@ -37,5 +48,11 @@ assert.equal(await page.locator(".result tr").count(), 6, "a head, four cameras,
 await eventually("the rig is not shown", async () => /Cameras/.test(await text("#rig")) && (await page.isVisible("#rig")));
 await page.waitForTimeout(1000);
 await shot("done");
+assert.match(await text(".floor p"), /Lay the L-frame down/);
+await page.click("#set_ground");
+await eventually("nobody says that the L-frame is looked at", async () => /Looking at the L-frame/.test(await text(".floor p")));
+await eventually("the ground is not set", async () => /The ground is set; the L-frame fits to [\d.]+ mm/.test(await text(".floor p")));
+await page.waitForTimeout(1000);
+await shot("ground");
 await check_layout();
 await done(scenario);

@@ -1,5 +1,5 @@
-// What a camera node sends: any message is a frame, an answer, or one Error; a frame or answer that was understood is written as it
-// was read.
+// What a camera node sends: any message is a frame, an answer, controls, or one Error; a frame or answer that was understood is
+// written as it was read. What a host asks: any text is a question about controls, or none.
 #include <cmath>
 
 #include "marey/core/error.h"
@@ -27,6 +27,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(again.cameras == answer.cameras && again.now == answer.now && again.known == answer.known);
   } catch (const marey::Error& error) {
     marey::fuzz::check_message(error.what(), "node: ");
+  }
+  try {
+    if (const auto controls = live::read_node_controls(message, "node")) {
+      for (const live::ControlRange& range : controls->has) check(std::isfinite(range.now) && range.least <= range.most);
+      check(controls->refused.find('\x1b') == std::string::npos);
+    }
+  } catch (const marey::Error& error) {
+    marey::fuzz::check_message(error.what(), "node: ");
+  }
+  if (const auto question = live::read_node_question(message)) {
+    check(!question->wish || (std::isfinite(question->wish->value) && question->wish->value >= 0));
+    check(live::read_node_question(live::text_of(*question)).has_value());
   }
   return 0;
 }

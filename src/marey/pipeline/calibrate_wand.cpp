@@ -31,12 +31,16 @@ class WavedWand {
     seen_ = {.seconds = now.seconds, .cameras = {}, .shared = {}, .now = seen_now(now), .enough = coverage_.is_enough()};
     for (std::size_t c = 0; c < now.feeds.size(); ++c) {
       const auto& parts = coverage_.parts(c);
+      const LiveReport report = now.feeds[c].report();
       seen_.cameras.push_back({now.feeds[c].camera().name,
                                now.feeds[c].state({}, now.policy),
                                coverage_.coverage(c),
                                coverage_.views(c),
                                coverage_.is_covered(c),
-                               {parts.begin(), parts.end()}});
+                               {parts.begin(), parts.end()},
+                               report.received,
+                               report.lost + report.damaged + report.overrun,
+                               now.feeds[c].info().rate_hz});
       for (std::size_t other = c + 1; other < now.feeds.size(); ++other) {
         const std::int64_t views = coverage_.shared(c, other);
         seen_.shared.push_back({c, other, views, views >= WandCoverage::kEnoughShared});
@@ -104,9 +108,12 @@ class WavedWand {
 
 CameraBlobs wave_wand(Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks) {
   WavedWand wand(options, rig.cameras.size());
-  CameraBlobs blobs = see_live_blobs(
-      rig, {.markers = options.markers, .for_s = options.wave_s, .will_do = [&](const LiveLook& now) { return wand.look(now); }},
-      hooks);
+  CameraBlobs blobs = see_live_blobs(rig,
+                                     {.markers = options.markers,
+                                      .desk = options.desk,
+                                      .for_s = options.wave_s,
+                                      .will_do = [&](const LiveLook& now) { return wand.look(now); }},
+                                     hooks);
   blobs.warnings = wand.warnings();
   if (options.waved) options.waved();
   return blobs;
@@ -123,7 +130,9 @@ WandCalibration calibrate_wand(const Rig& rig, const CalibrateWandOptions& optio
   input.seen = std::move(blobs.seen);
   calibrate::wand::WandOptions how = options.how;
   how.find_offsets = blobs.timed && !options.synced;
-  return {calibrate::wand::calibrate_wand(input, how, hooks), std::move(blobs.warnings)};
+  WandCalibration calibrated{calibrate::wand::calibrate_wand(input, how, hooks), std::move(blobs.warnings)};
+  if (live && options.desk != nullptr) options.desk->enter(calibrated.found.rig);
+  return calibrated;
 }
 
 }  // namespace marey::pipeline

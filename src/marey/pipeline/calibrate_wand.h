@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/detect/markers/marker_detector.h"
+#include "marey/pipeline/camera_desk.h"
 
 namespace marey::pipeline {
 
@@ -17,10 +19,12 @@ struct WandSeen {
   struct Camera {
     std::string name;
     FeedState state = FeedState::connecting;
-    double coverage = 0;     ///< share of its picture in which the wand was
-    std::int64_t views = 0;  ///< frames in which it was
-    bool covered = false;    ///< that is enough
-    std::vector<int> parts;  ///< in which it was, of 10 × 8 row by row
+    double coverage = 0;                   ///< share of its picture in which the wand was
+    std::int64_t views = 0;                ///< frames in which it was
+    bool covered = false;                  ///< that is enough
+    std::vector<int> parts;                ///< in which it was, of 10 × 8 row by row
+    std::int64_t frames = 0, dropped = 0;  ///< that came, and that were lost or not taken in time
+    std::optional<double> rate_hz = {};
   };
   /// Two cameras that saw it at the same time.
   struct Shared {
@@ -43,6 +47,7 @@ struct CalibrateWandOptions {
   calibrate::wand::WandShape wand;
   calibrate::wand::WandOptions how;  ///< offsets are looked for unless `synced`, or nobody says the cameras' rate
   bool synced = false;               ///< the cameras' clocks are right
+  CameraDesk* desk = nullptr;        ///< live cameras: by which they are set while the wand is waved, and the rig that is found too
   double wave_s = 600;               ///< live cameras: the wand is waved until it was seen enough, at most so long
   /// Ten times a second while it is waved; false: what was seen will do. May be empty.
   std::function<bool(const WandSeen& seen)> waving = {};

@@ -7,15 +7,20 @@
 
 #include <tbb/parallel_for.h>
 
+#include "marey/core/error.h"
 #include "marey/draw/jpeg.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/camera_desk.h"
 #include "marey/pipeline/live_feeds.h"
 
 namespace marey::pipeline {
 namespace {
 
+using source::live::Control;
 using source::live::NodeAnswer;
+using source::live::NodeControls;
 using source::live::NodeFrame;
+using source::live::NodeQuestion;
 using source::live::NodeServer;
 
 /// What hosts are told of the cameras: each as its frames are, which come with its region and by its own clock.
@@ -65,6 +70,55 @@ class ToldCameras {
   const std::shared_ptr<source::LiveTime> time_;
   mutable std::mutex mutex_;
   Rig rig_;
+};
+
+/// What hosts set of the cameras.
+class HostsWishes {
+ public:
+  HostsWishes(const Rig& rig, const NodeOptions& options, std::uint64_t session)
+      : desk_(rig, options.markers.threshold), allowed_(options.allow_control), finds_(!options.quality), session_(session) {
+    for (const RigCamera& camera : rig.cameras) names_.push_back(camera.name);
+  }
+
+  CameraDesk& desk() { return desk_; }
+
+  std::optional<NodeControls> hear(const NodeQuestion& question) {
+    const auto at = std::find(names_.begin(), names_.end(), question.camera);
+    if (at == names_.end()) return std::nullopt;
+    const auto index = static_cast<std::size_t>(at - names_.begin());
+    source::live::CameraControls& controls = *desk_.controls(index);
+    NodeControls said{.session = session_, .allowed = allowed_, .waits = false, .has = {}, .refused = {}};
+    if (question.wish && allowed_) said.refused = set(index, *question.wish);
+    if (said.refused.empty()) said.refused = controls.refused();
+    said.waits = controls.waits();
+    said.has = controls.has();
+    if (finds_) {
+      const auto threshold = desk_.camera(index).markers.threshold;
+      said.has.push_back({Control::threshold, 0, CameraDesk::kBrightest, threshold.value_or(0)});
+    }
+    return said;
+  }
+
+ private:
+  /// Why it cannot be, as far as that is known at once.
+  std::string set(std::size_t index, const NodeQuestion::Wish& wish) {
+    if (wish.control != Control::threshold) {
+      desk_.controls(index)->ask(wish.control, wish.value);
+      return "";
+    }
+    try {
+      desk_.set_threshold(index, wish.value > 0 ? std::optional(wish.value) : std::nullopt);
+      return "";
+    } catch (const Error& error) {
+      const std::string why = error.what(), begin = names_[index] + ": ";
+      return why.starts_with(begin) ? why.substr(begin.size()) : why;
+    }
+  }
+
+  CameraDesk desk_;
+  std::vector<std::string> names_;
+  bool allowed_, finds_;
+  std::uint64_t session_;
 };
 
 /// One camera's messages.
@@ -126,17 +180,18 @@ std::vector<NodeSummary::Camera> cameras_of(const std::vector<Feed>& feeds, cons
 NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
-  std::vector<Feed> feeds = open_live_feeds(without_offsets(rig), policy, options.patience_s);
   ToldCameras told(rig, policy.time);
+  HostsWishes wishes(rig, options, told.session());
+  std::vector<Feed> feeds = open_live_feeds(without_offsets(rig), policy, options.patience_s, &wishes.desk());
   told.look_at(feeds);
   std::vector<std::unique_ptr<Outgoing>> outgoing;
-  for (Feed& feed : feeds) {
-    if (!options.quality) feed.find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options.markers)));
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    if (!options.quality) feeds[i].find(std::make_unique<TunedMarkers>(options.markers, wishes.desk().tuning(i)));
     outgoing.push_back(std::make_unique<Outgoing>(told.session()));
   }
   NodeServer server(
       options.address, options.port, [&](const std::string& camera) { return told.answer(camera); },
-      [&] { return format::rig::rig_text(told.rig()); });
+      [&] { return format::rig::rig_text(told.rig()); }, [&](const NodeQuestion& question) { return wishes.hear(question); });
   if (options.begun) options.begun(told.rig());
   NodeSummary summary;
   std::int64_t frames = 0;

@@ -21,6 +21,7 @@ struct NodeOptions {
   int port = source::live::kNodePort;
   std::optional<int> quality;              ///< of JPEGs, 1 to 100: pictures are sent; else the markers that are found in them
   detect::markers::MarkerOptions markers;  ///< what they are found by
+  bool allow_control = false;              ///< hosts may set exposure, gain and threshold
   double patience_s = 3;                   ///< that cameras are waited for at the beginning
   std::optional<double> for_s;             ///< it ends after so long, not only when it is stopped
   std::function<void(const Rig&)> begun;   ///< when it listens, with what hosts are told of its cameras

@@ -56,10 +56,12 @@ bool has_live_cameras(const Rig& rig) {
 CameraBlobs see_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
-  std::vector<Feed> feeds = open_live_feeds(rig, policy, options.patience_s);
-  for (Feed& feed : feeds) {
-    feed.find(std::make_unique<detect::markers::MarkerDetector>(markers_of(feed.camera(), options.markers)));
-    feed.tune(std::make_shared<MarkerTuning>(MarkerTuning::Values{.threshold = {}, .masks = feed.camera().masks}));
+  CameraDesk as_rig_says(rig, options.markers.threshold);
+  CameraDesk& desk = options.desk != nullptr ? *options.desk : as_rig_says;
+  std::vector<Feed> feeds = open_live_feeds(rig, policy, options.patience_s, &desk);
+  for (std::size_t c = 0; c < feeds.size(); ++c) {
+    feeds[c].find(std::make_unique<TunedMarkers>(options.markers, desk.tuning(c)));
+    feeds[c].tune(desk.tuning(c));
   }
   CameraBlobs blobs;
   blobs.seen.resize(feeds.size());

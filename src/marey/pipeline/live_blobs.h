@@ -7,6 +7,7 @@
 
 #include "marey/core/hooks.h"
 #include "marey/pipeline/camera_blobs.h"
+#include "marey/pipeline/camera_desk.h"
 #include "marey/pipeline/feed.h"
 
 namespace marey::pipeline {
@@ -25,6 +26,7 @@ struct LiveLook {
 
 struct LiveBlobsOptions {
   detect::markers::MarkerOptions markers;
+  CameraDesk* desk = nullptr;                         ///< by which cameras are set meanwhile; else they stay as the rig says
   double patience_s = 5;                              ///< that cameras are waited for at the beginning
   double for_s = 3;                                   ///< they are looked at for so long, from when the first frame came
   std::function<bool(const LiveLook&)> will_do = {};  ///< called ten times a second: whether that is enough; may be empty

@@ -19,7 +19,10 @@ Rig cameras_of_node(const source::live::Address& address) {
   Rig rig;
   if (place.camera.empty()) {
     rig = format::rig::parse_rig(source::live::ask_rig_of_node(place), place.node());
-    for (RigCamera& camera : rig.cameras) camera.source = place.node() + "/" + camera.name;
+    for (RigCamera& camera : rig.cameras) {
+      camera.source = place.node() + "/" + camera.name;
+      camera.exposure_ms = camera.gain = camera.threshold = std::nullopt;  // it is set there
+    }
   } else {
     rig.cameras.emplace_back().source = address.text;
   }

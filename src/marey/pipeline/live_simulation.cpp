@@ -39,6 +39,7 @@ struct RoomBehaviour {
   double drift_ppm = 0;      ///< each camera's own clock is wrong by up to so much
   double jitter_ms = 0;      ///< mean delay of delivery, beside the exposure
   bool blobs = false;        ///< points come, not pictures
+  bool frame = false;        ///< an L-frame lies on the floor, whatever else moves
   int lamps = 0;             ///< bright spots in each camera's picture that do not move
   double exposure_ms = 0;    ///< of drawn pictures; 0: `kUsualExposure`
   double gain = 1;           ///< likewise, times
@@ -71,6 +72,7 @@ RoomName::RoomName(const Address& address) {
   options.number("drift", behaviour.drift_ppm, 0, 500);
   options.number("jitter", behaviour.jitter_ms, 0, 1000);
   options.flag("blobs", behaviour.blobs);
+  options.flag("frame", behaviour.frame);
   options.whole("lamps", behaviour.lamps, 0, 50);
   options.number("exposure", behaviour.exposure_ms, 0.01, 1000);
   options.number("gain", behaviour.gain, 1, kMostGain);
@@ -98,11 +100,17 @@ struct SharedRoom {
   double longest_exposure_ms() const { return 1000 / rate_hz(); }
   double usual_exposure_ms() const { return std::min(kUsualExposure, longest_exposure_ms()); }
 
-  /// What a camera sees: markers, and lamps.
+  /// What a camera sees: markers, an L-frame, and lamps.
   std::vector<simulate::room::RoomBlob> seen_by(int camera, double time_s, std::uint64_t draw) const {
     auto seen = scene.seen_by(camera, time_s, draw);
     simulate::Random random(scene.options().seed * 1009 + static_cast<std::uint64_t>(camera));
     const cv::Size size = scene.options().picture;
+    const auto camera_there = scene.rig().cameras[static_cast<std::size_t>(camera)].camera();
+    for (const Vector<3>& corner : behaviour.frame ? scene.options().ground_frame : std::vector<Vector<3>>()) {
+      const auto pixel = camera_there->project(corner);
+      if (pixel && cv::Rect2d({}, cv::Size2d(size)).contains({pixel->x(), pixel->y()}))
+        seen.push_back({.pixel = *pixel, .marker = {}});
+    }
     for (int i = 0; i < behaviour.lamps; ++i) {
       const double x = random.uniform(0.05, 0.95) * size.width, y = random.uniform(0.05, 0.95) * size.height;
       seen.push_back({.pixel = {x, y}, .marker = {}});

@@ -43,6 +43,8 @@ interface Waved {
   report?: Report;
   rig?: string;
   why?: string;
+  /** Asked for on this page, once the rig was found. */
+  ground?: null | { phase: "looking" | "set" | "failed"; rms_mm?: number; why?: string; warnings?: string[] };
 }
 
 const [MARGIN, GAP, BELOW, NARROWEST] = [16, 14, 118, 160]; // px; of the cards and what stands below their pictures
@@ -129,6 +131,9 @@ export class Wand {
   private detail = make("p");
   private enough = make("button", "", "That will do");
   private result = make("div", "result");
+  private floor = make("div", "floor");
+  private set_ground = make("button", "chip", "Set the ground");
+  private floor_words = make("p");
   private grid = document.querySelector<HTMLElement>("#cameras")!;
   private arranged = false;
   private cards: CameraCard[] = [];
@@ -143,7 +148,14 @@ export class Wand {
     this.enough.title = "Calibrate by what was seen so far";
     this.enough.addEventListener("click", () => say("enough"));
     this.head.append(words, this.enough);
-    this.main.append(this.head, this.result, this.grid);
+    this.set_ground.id = "set_ground";
+    this.set_ground.title = "Origin and axes by the L-frame that lies on the floor now";
+    this.set_ground.addEventListener("click", () => {
+      this.set_ground.disabled = true;
+      say("ground");
+    });
+    this.floor.append(make("h2", "", "The floor"), this.floor_words, this.set_ground);
+    this.main.append(this.head, this.result, this.floor, this.grid);
     document.querySelector("#panel")!.before(this.main);
     new ResizeObserver(() => this.arrange()).observe(this.grid);
     this.tell();
@@ -216,7 +228,20 @@ export class Wand {
       put(this.title, "Calibrated");
       put(this.detail, `The rig was written to ${rig ?? ""}`);
       this.result.replaceChildren(...this.judged(report));
+      this.tell_floor();
     }
+  }
+
+  private tell_floor(): void {
+    const { ground } = this.waved;
+    const looking = ground?.phase === "looking";
+    this.set_ground.disabled = looking;
+    put(this.set_ground, ground?.phase === "set" ? "Set it again" : "Set the ground");
+    this.floor.dataset.phase = ground?.phase ?? "";
+    if (!ground) put(this.floor_words, "Lay the L-frame down, step back, and set the ground: its first marker becomes the origin, z is up.");
+    else if (looking) put(this.floor_words, "Looking at the L-frame for three seconds …");
+    else if (ground.phase === "set") put(this.floor_words, [`The ground is set; the L-frame fits to ${(ground.rms_mm ?? 0).toFixed(2)} mm. The rig file has it.`, ...(ground.warnings ?? [])].join(" "));
+    else put(this.floor_words, `Not set: ${ground.why ?? ""}`);
   }
 
   private judged(report: Report): HTMLElement[] {
@@ -237,7 +262,6 @@ export class Wand {
     if (held) facts.append(make("li", "", `Judged on ${held.frames} places of the wand that took no part: its length is off by ${held.length_rms_mm.toFixed(2)} mm`));
     facts.append(make("li", "", `A marker's place is known to ${volume.median_mm.toFixed(2)} mm, in the worst tenth of the volume to ${volume.worst_tenth_mm.toFixed(2)} mm`));
     for (const note of report.notes) facts.append(make("li", "", capital(note.replaceAll("`", ""))));
-    const next = make("p", "hint", "Next: lay the L-frame down and run marey calibrate ground, so that the floor is where it is. Close this page to end.");
-    return [grade, table, facts, next];
+    return [grade, table, facts, make("p", "hint", "Close this page to end.")];
   }
 }

@@ -8,7 +8,15 @@
 namespace marey::source::live {
 
 std::string_view to_string(Control control) {
-  return control == Control::exposure ? "exposure" : "gain";
+  switch (control) {
+    case Control::exposure:
+      return "exposure";
+    case Control::gain:
+      return "gain";
+    case Control::threshold:
+      break;
+  }
+  return "threshold";
 }
 
 void Connection::set(Control control, double /*value*/) {
@@ -19,6 +27,11 @@ void CameraControls::ask(Control control, double value) {
   const std::lock_guard lock(mutex_);
   fresh_[control] = value;
   refused_.clear();
+}
+
+bool CameraControls::waits() const {
+  const std::lock_guard lock(mutex_);
+  return setting_ || !fresh_.empty();
 }
 
 std::vector<ControlRange> CameraControls::has() const {
@@ -72,9 +85,11 @@ void CameraControls::apply(Connection& camera) {
     const std::lock_guard lock(mutex_);
     if (fresh_.empty()) return;
     fresh = std::exchange(fresh_, {});
+    setting_ = true;
   }
   const Values taken = set(camera, fresh);
   const std::lock_guard lock(mutex_);
+  setting_ = false;
   for (const auto& [control, value] : taken) wanted_[control] = taken_[control] = value;
 }
 

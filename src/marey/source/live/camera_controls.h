@@ -9,9 +9,10 @@
 
 namespace marey::source::live {
 
-enum class Control { exposure, gain };  ///< ms; the camera's own unit
+/// ms; the camera's own unit; grey level that a marker's pixels pass where the camera finds them itself, 0: automatic.
+enum class Control { exposure, gain, threshold };
 
-/// "exposure", "gain".
+/// "exposure", "gain", "threshold".
 std::string_view to_string(Control control);
 
 /// What a camera has, and between what it can be set.
@@ -31,6 +32,8 @@ class CameraControls {
 
   // From any thread.
   void ask(Control control, double value);
+  /// Whether what was asked for is not set yet.
+  bool waits() const;
   /// None where the camera has none, or was not there yet.
   std::vector<ControlRange> has() const;
   /// What was asked for and taken.
@@ -51,6 +54,7 @@ class CameraControls {
   Values wanted_, fresh_, taken_;
   std::vector<ControlRange> has_;
   std::string refused_;
+  bool setting_ = false;  // what was fresh a moment ago
 };
 
 }  // namespace marey::source::live

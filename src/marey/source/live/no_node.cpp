@@ -24,7 +24,7 @@ std::string ask_rig_of_node(const NodePlace&) {
   throw Error("{}", kWithoutZeroMq);
 }
 
-NodeServer::NodeServer(const std::string&, int, Answer, RigText) {
+NodeServer::NodeServer(const std::string&, int, Answer, RigText, Set) {
   throw Error("{}", kWithoutZeroMq);
 }
 

@@ -1,11 +1,13 @@
 // A camera node: cameras of another computer, by ZeroMQ. The node publishes each camera's frames (PUB, on a port) and answers
 // questions (REP, on the port above it): a camera's name with what it knows of it and the time by its clock, an empty question with
-// its rig. Frames that nobody could take in time are let go, never kept. An optional part of the build.
+// its rig, and what a camera is set to, or is to be set to (node_message.h). Frames that nobody could take in time are let go,
+// never kept. An optional part of the build.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "marey/source/live/address.h"
@@ -47,9 +49,12 @@ class NodeServer {
   /// The answer to who asks for a camera, and the rig as text: asked from another thread.
   using Answer = std::function<NodeAnswer(const std::string& camera)>;
   using RigText = std::function<std::string()>;
+  /// Sets what is wished for; nothing where there is no such camera.
+  using Set = std::function<std::optional<NodeControls>(const NodeQuestion&)>;
 
   /// Listens at `address`, an address of this machine or "0.0.0.0", from `port` on. Throws Error where that cannot be had.
-  NodeServer(const std::string& address, int port, Answer answer, RigText rig);
+  /// Without `set` nothing can be set from hosts.
+  NodeServer(const std::string& address, int port, Answer answer, RigText rig, Set set = {});
   ~NodeServer();
   NodeServer(const NodeServer&) = delete;
   NodeServer& operator=(const NodeServer&) = delete;

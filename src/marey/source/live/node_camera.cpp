@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +24,8 @@ constexpr double kAnswersWithin = 2;                   // s
 constexpr std::chrono::milliseconds kAskOften{20};     // between the first questions, which find the node's clock
 constexpr std::chrono::milliseconds kAskSeldom{1000};  // between those that keep it
 constexpr int kFirstQuestions = 8;
+constexpr std::chrono::seconds kSetWithin{1};
+constexpr std::chrono::milliseconds kAskWhetherSet{5};
 constexpr double kOldest = 60;  // s that a frame may be old by the node's clock; else it counts as taken when it came
 constexpr int kWaiting = 8;     // frames that are kept for a host that is late; the rest is let go
 constexpr std::int64_t kLongestFrame = 256 << 20;
@@ -56,6 +60,7 @@ class NodeCamera final : public Connection {
   NodeCamera(NodePlace place, LiveTime& time, const std::stop_token& stop)
       : place_(std::move(place)),
         time_(time),
+        stop_(stop),
         context_(node_context()),
         questions_(open_questions(*context_, place_)),
         frames_(*context_, zmq::socket_type::sub) {
@@ -94,11 +99,45 @@ class NodeCamera final : public Connection {
       shot.given.detections = *frame.detections;
       return Came::frame;
     }
+    gives_pictures_ = true;
     shot.given.frame.picture = decoder_.decode(frame.jpeg);
     return shot.given.frame.picture.empty() ? Came::damaged : Came::frame;
   }
 
+  std::vector<ControlRange> controls() override {
+    try {
+      const auto said = ask({.camera = place_.camera, .wish = {}});
+      return said ? said->has : std::vector<ControlRange>();
+    } catch (const Error&) {
+      return {};  // it has gone, which its frames tell
+    }
+  }
+
+  void set(Control control, double value) override {
+    if (control == Control::threshold && gives_pictures_) return;  // who gets them finds the markers
+    const auto end = std::chrono::steady_clock::now() + kSetWithin;
+    auto said = ask({.camera = place_.camera, .wish = NodeQuestion::Wish{control, value}});
+    while (said && said->allowed && said->waits && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(kAskWhetherSet);
+      said = ask({.camera = place_.camera, .wish = {}});
+    }
+    const char* why = !said            ? "marey node there is of an older version; install this one there too"
+                      : !said->allowed ? "marey node there was started without --allow-control"
+                      : said->waits    ? "the camera is not live there; it is set when it is back"
+                                       : nullptr;
+    if (why != nullptr) throw Error("{}: its {} cannot be set from here: {}", info_.name, to_string(control), why);
+    if (!said->refused.empty()) throw Error("{}: {}", info_.name, said->refused);
+  }
+
  private:
+  /// Nothing where the node knows nothing of controls.
+  std::optional<NodeControls> ask(const NodeQuestion& question) {
+    is_asked_ = false;  // the answer about the clock is not waited for
+    const auto said = read_node_controls(answer_to(text_of(question), questions_, place_, stop_), place_.node());
+    if (said && said->session != session_) throw Error("{}: was started anew", place_.node());
+    return said;
+  }
+
   void ask_now_and_then() {
     const Timestamp now = time_.now();
     if (asked_ && now - *asked_ < pause()) return;
@@ -128,6 +167,7 @@ class NodeCamera final : public Connection {
 
   NodePlace place_;
   LiveTime& time_;
+  std::stop_token stop_;
   std::shared_ptr<zmq::context_t> context_;  // outlives its sockets
   zmq::socket_t questions_, frames_;
   SourceInfo info_;
@@ -135,6 +175,7 @@ class NodeCamera final : public Connection {
   NodeClock clock_;
   std::uint64_t session_ = 0;
   std::optional<Timestamp> asked_;
+  bool gives_pictures_ = false;
   bool is_asked_ = false;  // and has not answered
   int answers_ = 0;
 };

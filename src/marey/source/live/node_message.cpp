@@ -1,20 +1,27 @@
 #include "marey/source/live/node_message.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
+
+#include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/core/limits.h"
 #include "marey/core/rig.h"
+#include "marey/core/text_safety.h"
 
 namespace marey::source::live {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "messages of nodes are written as they lie in memory");
 
-constexpr std::string_view kFrameMark = "MRYF", kAnswerMark = "MRYA";
+constexpr std::string_view kFrameMark = "MRYF", kAnswerMark = "MRYA", kControlsMark = "MRYC";
+constexpr std::array kNodeControls{Control::exposure, Control::gain, Control::threshold};
+constexpr std::size_t kLongestRefusal = 1000;  // bytes
 constexpr std::size_t kNumbersOfDetection = 11;
 constexpr std::size_t kMostNames = 1000;
 constexpr int kMostNodeSide = 1 << 20;                                                                  // px
@@ -169,6 +176,65 @@ NodeAnswer read_node_answer(std::string_view message, const std::string& name) {
     rest.remove_prefix(end + 1);
   }
   return answer;
+}
+
+std::string message_of(const NodeControls& controls) {
+  std::string message(kControlsMark);
+  put(message, controls.session);
+  put(message, static_cast<std::uint8_t>(controls.allowed));
+  put(message, static_cast<std::uint8_t>(controls.waits));
+  put(message, static_cast<std::uint8_t>(controls.has.size()));
+  for (const ControlRange& range : controls.has) {
+    put(message, static_cast<std::uint8_t>(range.control));
+    for (const double value : {range.least, range.most, range.now}) put(message, value);
+  }
+  return message + controls.refused.substr(0, kLongestRefusal);
+}
+
+std::optional<NodeControls> read_node_controls(std::string_view message, const std::string& name) {
+  if (message.starts_with(kAnswerMark)) return std::nullopt;
+  NodeReader reader(message, name);
+  reader.mark(kControlsMark);
+  NodeControls controls;
+  controls.session = reader.next<std::uint64_t>();
+  controls.allowed = reader.next<std::uint8_t>() != 0;
+  controls.waits = reader.next<std::uint8_t>() != 0;
+  const std::size_t count = reader.next<std::uint8_t>();
+  if (count > kNodeControls.size()) reader.refuse("a camera has more controls than there are");
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t which = reader.next<std::uint8_t>();
+    if (which >= kNodeControls.size()) reader.refuse("a control is none that is known");
+    ControlRange& range = controls.has.emplace_back();
+    range.control = kNodeControls[which];
+    for (double* value : {&range.least, &range.most, &range.now}) *value = reader.number();
+    if (range.least > range.most) reader.refuse("a control's bounds are none");
+  }
+  if (reader.rest().size() > kLongestRefusal) reader.refuse("a sentence is too long");
+  controls.refused = plain_text(reader.rest());
+  return controls;
+}
+
+std::string text_of(const NodeQuestion& question) {
+  if (!question.wish) return question.camera + "=";
+  return fmt::format("{}={} {}", question.camera, to_string(question.wish->control), question.wish->value);
+}
+
+std::optional<NodeQuestion> read_node_question(std::string_view text) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string_view::npos || sign == 0) return std::nullopt;
+  NodeQuestion question{.camera = std::string(text.substr(0, sign)), .wish = {}};
+  const std::string_view wish = text.substr(sign + 1);
+  if (wish.empty()) return question;
+  const std::size_t blank = std::min(wish.find(' '), wish.size());
+  const auto control = std::find_if(kNodeControls.begin(), kNodeControls.end(),
+                                    [&](Control each) { return to_string(each) == wish.substr(0, blank); });
+  const std::string_view digits = wish.substr(std::min(blank + 1, wish.size()));
+  double value = 0;
+  const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (control == kNodeControls.end() || failed != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  if (!(value >= 0 && value <= kMostNumber)) return std::nullopt;
+  question.wish = {*control, value};
+  return question;
 }
 
 }  // namespace marey::source::live

@@ -6,6 +6,11 @@
 //              each
 //   an answer  "MRYA" session:u64 now_ns:i64 known:u8 width:u32 height:u32 rate_hz:f64 (0: not known), then the names of all
 //              cameras, each with a line break behind it
+//   controls   "MRYC" session:u64 allowed:u8 waits:u8 count:u8, and for each which:u8 (0 exposure, 1 gain, 2 threshold) least:f64
+//              most:f64 now:f64, then why the last that was asked for was refused, a sentence to the end
+//
+// What a host asks is text: a camera's name (answer), nothing (the rig as text), NAME= (controls), NAME=exposure 2.5 (set it, then
+// controls). No camera's name has a "=", so a node that knows nothing of controls answers that it has no such camera.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +24,7 @@
 
 #include "marey/core/detection.h"
 #include "marey/core/time.h"
+#include "marey/source/live/camera_controls.h"
 
 namespace marey::source::live {
 
@@ -42,11 +48,37 @@ struct NodeAnswer {
   std::vector<std::string> cameras;  ///< the names of all that it has
 };
 
+/// How a camera of a node is set. None of `has` where it has nothing to be set.
+struct NodeControls {
+  std::uint64_t session = 0;
+  bool allowed = false;           ///< whether hosts may set it
+  bool waits = false;             ///< what was asked for is not set yet
+  std::vector<ControlRange> has;  ///< threshold: where the node finds the markers
+  std::string refused;            ///< why the last that was asked for was not taken; empty where it was
+};
+
+/// About the controls of a node's camera.
+struct NodeQuestion {
+  struct Wish {
+    Control control{};
+    double value = 0;
+  };
+  std::string camera;
+  std::optional<Wish> wish;
+};
+
+std::string text_of(const NodeQuestion& question);
+/// Nothing where it asks for something else, or for a value that is none.
+std::optional<NodeQuestion> read_node_question(std::string_view text);
+
 std::string message_of(const NodeFrame& frame);
 std::string message_of(const NodeAnswer& answer);
+std::string message_of(const NodeControls& controls);
 
 /// Throw Error, with `name` of the node, for what is no such message.
 NodeFrame read_node_frame(std::string_view message, const std::string& name);
 NodeAnswer read_node_answer(std::string_view message, const std::string& name);
+/// Nothing where it is an answer: the node knows nothing of controls.
+std::optional<NodeControls> read_node_controls(std::string_view message, const std::string& name);
 
 }  // namespace marey::source::live

@@ -82,6 +82,54 @@ TEST(NodeMessage, WhatIsNoneIsRefused) {
   }
 }
 
+TEST(NodeMessage, ControlsComeAsTheyAreSaid) {
+  const NodeControls said{.session = 7,
+                          .allowed = true,
+                          .waits = true,
+                          .has = {{Control::exposure, 0.02, 50, 2.5}, {Control::threshold, 0, 65535, 0}},
+                          .refused = "too long"};
+  const std::string message = message_of(said);
+  const auto heard = read_node_controls(message, "node");
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->session, 7u);
+  EXPECT_TRUE(heard->allowed && heard->waits);
+  ASSERT_EQ(heard->has.size(), 2u);
+  EXPECT_EQ(heard->has[0].now, 2.5);
+  EXPECT_EQ(heard->has[1].control, Control::threshold);
+  EXPECT_EQ(heard->refused, "too long");
+  EXPECT_FALSE(read_node_controls(message_of(NodeAnswer{}), "node")) << "of a node that knows nothing of them";
+  for (std::size_t length = 0; length < message.size() - said.refused.size(); ++length)
+    EXPECT_THROW(read_node_controls(std::string_view(message).substr(0, length), "node"), Error) << length;
+  EXPECT_THROW(read_node_controls(message + std::string(1000, 'x'), "node"), Error);
+  std::mt19937 random(5);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string mutated = message;
+    for (int k = 0; k < 3; ++k) mutated[4 + random() % (mutated.size() - 4)] = static_cast<char>(random());
+    try {
+      const auto read = read_node_controls(mutated, "node");
+      for (const ControlRange& range : read->has) EXPECT_TRUE(range.least <= range.most && std::isfinite(range.now));
+    } catch (const Error& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("node: ")) << error.what();
+    }
+  }
+}
+
+TEST(NodeMessage, QuestionsAboutControlsAreReadAsTheyAreWritten) {
+  const NodeQuestion wish{.camera = "left one", .wish = NodeQuestion::Wish{Control::exposure, 2.5}};
+  EXPECT_EQ(text_of(wish), "left one=exposure 2.5");
+  const auto heard = read_node_question(text_of(wish));
+  ASSERT_TRUE(heard && heard->wish);
+  EXPECT_EQ(heard->camera, "left one");
+  EXPECT_EQ(heard->wish->control, Control::exposure);
+  EXPECT_EQ(heard->wish->value, 2.5);
+  const auto state = read_node_question("left=");
+  ASSERT_TRUE(state);
+  EXPECT_FALSE(state->wish);
+  for (const char* none : {"", "left", "=", "=exposure 1", "left=focus 1", "left=exposure", "left=exposure ", "left=exposure -1",
+                           "left=exposure nan", "left=exposure inf", "left=exposure 1e99", "left=exposure 1x", "left= "})
+    EXPECT_FALSE(read_node_question(none)) << none;
+}
+
 TEST(NodePlace, IsReadFromAnAddress) {
   const auto place = [](const std::string& text) { return node_place(parse_address(text)); };
   EXPECT_EQ(place("node:lab2:7000/left").questions(), "tcp://lab2:7001");

@@ -1,8 +1,10 @@
 // A node and the host that listens to it, over this machine's loopback.
 #include "marey/source/live/node.h"
 
+#include <atomic>
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <random>
 #include <thread>
 
@@ -23,13 +25,13 @@ bool becomes_true(const std::function<bool()>& is) {
 /// A node whose clock is a quarter of an hour ahead, on whatever ports are free.
 class Node {
  public:
-  explicit Node(std::uint64_t session, int port = 0) : session_(session) {
+  explicit Node(std::uint64_t session, int port = 0, NodeServer::Set set = {}) : session_(session) {
     std::mt19937 random(std::random_device{}());
     for (int tries = 0; server_ == nullptr; ++tries) {
       port_ = port != 0 ? port : 20'000 + static_cast<int>(random() % 20'000) * 2;
       try {
         server_ = std::make_unique<NodeServer>(
-            "127.0.0.1", port_, [this](const std::string& camera) { return answer(camera); }, [] { return "the rig"; });
+            "127.0.0.1", port_, [this](const std::string& camera) { return answer(camera); }, [] { return "the rig"; }, set);
       } catch (const Error&) {
         if (tries == 100) throw;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));  // of one that has just gone
@@ -111,6 +113,75 @@ TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
   sequence = 0;
   ASSERT_TRUE(gives());
   EXPECT_EQ(camera->report().connections, 2);
+}
+
+/// How the only camera of a node is set, which takes exposures up to 10 ms, after it was asked three times.
+class Settings {
+ public:
+  std::optional<NodeControls> hear(const NodeQuestion& question) {
+    const std::lock_guard lock(mutex_);
+    if (question.camera != "left") return std::nullopt;
+    if (question.wish) {
+      wished_ = question.wish;
+      asked_ = 0;
+    }
+    const bool waits = wished_ && ++asked_ < 3;
+    std::string refused;
+    if (wished_ && !waits && wished_->value > 10) refused = "too long";
+    if (wished_ && !waits && wished_->value <= 10) now_ = wished_->value;
+    return NodeControls{
+        .session = 1, .allowed = allowed, .waits = waits, .has = {{Control::exposure, 0.1, 10, now_}}, .refused = refused};
+  }
+
+  std::atomic<bool> allowed = true;
+
+ private:
+  std::mutex mutex_;
+  std::optional<NodeQuestion::Wish> wished_;
+  int asked_ = 0;
+  double now_ = 5;
+};
+
+TEST(Node, ItsCamerasAreSetFromTheHost) {
+  Settings settings;
+  Node node(1, 0, [&](const NodeQuestion& question) { return settings.hear(question); });
+  const auto time = steady_time();
+  const std::unique_ptr<Connection> camera = connect_node(node.place("left"))(*time, {});
+  ASSERT_EQ(camera->controls().size(), 1u);
+  EXPECT_EQ(camera->controls()[0].now, 5);
+  EXPECT_EQ(camera->controls()[0].most, 10);
+  camera->set(Control::exposure, 2.5);
+  EXPECT_EQ(camera->controls()[0].now, 2.5) << "when the call is over it is set";
+  EXPECT_THROW(camera->set(Control::exposure, 20), Error);
+  EXPECT_EQ(camera->controls()[0].now, 2.5);
+  settings.allowed = false;
+  try {
+    camera->set(Control::exposure, 3);
+    FAIL() << "it is not allowed";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("without --allow-control"), std::string::npos) << error.what();
+  }
+  std::int64_t sequence = 0;
+  Shot shot;
+  ASSERT_TRUE(becomes_true([&] {
+    node.send(sequence++);
+    return camera->next(shot) == Came::frame;
+  })) << "frames come as before";
+}
+
+TEST(Node, OneOfAnOlderVersionIsNotSetAndThatIsSaid) {
+  Node node(1);  // which knows nothing of controls
+  const auto time = steady_time();
+  const std::unique_ptr<Connection> camera = connect_node(node.place("left"))(*time, {});
+  EXPECT_TRUE(camera->controls().empty());
+  try {
+    camera->set(Control::gain, 2);
+    FAIL() << "it cannot be set";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("its gain cannot be set from here: marey node there is of an older version"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(Node, WhatIsNotThereIsSaid) {
