@@ -70,7 +70,7 @@ WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipel
                .enough = options.enough,
                .ground = [this] { ground_wanted_ = true; }}),
       sink_(viewer_.make_sink()) {
-  told_ = {{"wanted", WandCoverage::kWellCovered},
+  told_ = {{"wanted", WandCoverage::wanted(pipeline::knows_lenses(rig))},
            {"across", WandCoverage::kPartsAcross},
            {"down", WandCoverage::kPartsDown},
            {"needed", WandCoverage::kEnoughShared}};

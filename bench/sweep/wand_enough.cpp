@@ -58,7 +58,8 @@ Waved waved(int cameras, double rate_hz, std::uint64_t seed, bool lenses) {
 
 /// When it is said to be enough, s.
 double enough_after(const Waved& all) {
-  WandCoverage coverage(all.input.wand, all.input.seen.size());
+  const bool lenses_known = all.input.rig.cameras.front().lens.has_value();
+  WandCoverage coverage(all.input.wand, all.input.seen.size(), lenses_known);
   const auto step = static_cast<std::size_t>(kLookEvery * all.rate_hz);
   for (std::size_t at = 0; at + step <= all.input.seen.front().size(); at += step) {
     std::vector<WandCoverage::Seen> seen;

@@ -189,7 +189,7 @@ class OtherComputer(unittest.TestCase):
 
     def node(self, *options):
         port = node_test.free_ports()
-        node = subprocess.Popen([MAREY, "node", "left=sim://room?cameras=1&rate=20&markers=8&drawn=1&size=320x240", "--port", str(port), *options],
+        node = subprocess.Popen([MAREY, "node", "sim://room?cameras=2&rate=20&markers=8&drawn=1&size=320x240", "--port", str(port), *options],
                                 cwd=self.folder, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.addCleanup(lambda: (node.kill(), node.wait(), node.stderr.close()))
         self.assertIn("marey live node:", node.stderr.readline())
@@ -197,12 +197,12 @@ class OtherComputer(unittest.TestCase):
 
     def test_its_camera_is_set_from_the_hosts_page(self):
         where = self.node()
-        (self.folder / "rig.toml").write_text(f'[[camera]]\nname = "mine"\nsource = "{where}/left"\nexposure = 1.5\n')
+        (self.folder / "rig.toml").write_text("".join(f'[[camera]]\nname = "mine{c}"\nsource = "{where}/cam{c}"\nexposure = 1.5\n' for c in (1, 2)))
         found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
         now = lambda s: [dial["now"] for dial in s["cameras"][0].get("dials", [])]
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and now(s) == [1.5, 1])
+            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [1.5, 1])
             self.assertEqual([dial["name"] for dial in status["cameras"][0]["dials"]], ["exposure", "gain"])
             page.say("watch 0 320")
             self.assertGreater(found(page), 2)
@@ -211,7 +211,7 @@ class OtherComputer(unittest.TestCase):
             hear_until(page, "status", lambda s: now(s) == [2.5, 2])
             page.say("dial 0 exposure 500")
             refused = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
-            self.assertTrue(refused.startswith("mine: does not take that exposure; it must be 0.02 to 50 ms"), refused)
+            self.assertTrue(refused.startswith("mine1: does not take that exposure; it must be 0.02 to 50 ms"), refused)
             page.say("threshold 0 254")
             hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] == 254 and "refused" not in s["cameras"][0])
             for _ in range(50):
@@ -225,7 +225,7 @@ class OtherComputer(unittest.TestCase):
         self.assertEqual((kept["exposure"], kept["gain"], kept["threshold"]), (2.5, 2, 254))
         with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
+            hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
             page.say("threshold 0 auto")
             hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] is None)
             page.say("watch 0 320")
@@ -240,11 +240,11 @@ class OtherComputer(unittest.TestCase):
             where = self.node("--listen", "0.0.0.0", *options)
             with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
                 page = WebSocket(shown)
-                hear_until(page, "status", lambda s: len(s["cameras"]) == 1 and s["cameras"][0]["dials"])
+                hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
                 page.say("dial 0 exposure 3")
                 if refused:
                     why = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
-                    self.assertEqual(why, "left: its exposure cannot be set from here: marey node there was started without --allow-control")
+                    self.assertEqual(why, "cam1: its exposure cannot be set from here: marey node there was started without --allow-control")
                 else:
                     hear_until(page, "status", lambda s: s["cameras"][0]["dials"][0]["now"] == 3)
 

@@ -11,6 +11,10 @@
 
 namespace marey::pipeline {
 
+bool knows_lenses(const Rig& rig) {
+  return std::all_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.lens.has_value(); });
+}
+
 namespace {
 
 constexpr double kCountEvery = 2;  // s of waving that are looked through at a time
@@ -18,8 +22,11 @@ constexpr double kCountEvery = 2;  // s of waving that are looked through at a t
 /// Counts what cameras see of the wand while it is waved.
 class WavedWand {
  public:
-  WavedWand(const CalibrateWandOptions& options, std::size_t cameras)
-      : options_(options), coverage_(options.wand, cameras), counted_(cameras) {}
+  WavedWand(const CalibrateWandOptions& options, const Rig& rig)
+      : options_(options),
+        lenses_known_(knows_lenses(rig)),
+        coverage_(options.wand, rig.cameras.size(), lenses_known_),
+        counted_(rig.cameras.size()) {}
 
   /// Whether that will do.
   bool look(const LiveLook& now) {
@@ -55,7 +62,7 @@ class WavedWand {
     for (const WandSeen::Camera& camera : seen_.cameras) {
       if (!camera.covered)
         sentences.push_back(fmt::format("camera \"{}\" saw the wand in {:.0f} % of its picture; {:.0f} % are wanted", camera.name,
-                                        100 * camera.coverage, 100 * calibrate::wand::WandCoverage::kWellCovered));
+                                        100 * camera.coverage, 100 * calibrate::wand::WandCoverage::wanted(lenses_known_)));
     }
     return sentences;
   }
@@ -99,6 +106,7 @@ class WavedWand {
   }
 
   const CalibrateWandOptions& options_;
+  bool lenses_known_;
   calibrate::wand::WandCoverage coverage_;
   std::vector<std::size_t> counted_;
   double counted_s_ = 0;
@@ -107,7 +115,7 @@ class WavedWand {
 };
 
 CameraBlobs wave_wand(Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks) {
-  WavedWand wand(options, rig.cameras.size());
+  WavedWand wand(options, rig);
   CameraBlobs blobs = see_live_blobs(rig,
                                      {.markers = options.markers,
                                       .desk = options.desk,

@@ -41,6 +41,9 @@ struct WandSeen {
   bool enough = false;  ///< every camera is covered, and all are chained by views that two of them share
 };
 
+/// Whether every camera's lens is given: else more of the wand is wanted.
+bool knows_lenses(const Rig& rig);
+
 struct CalibrateWandOptions {
   std::string observations;  ///< what another program saw of the wand; empty: it is looked for in the cameras' sources
   detect::markers::MarkerOptions markers;

@@ -89,7 +89,9 @@ class HostsWishes {
     source::live::CameraControls& controls = *desk_.controls(index);
     NodeControls said{.session = session_, .allowed = allowed_, .waits = false, .has = {}, .refused = {}};
     if (question.wish && allowed_) said.refused = set(index, *question.wish);
-    if (said.refused.empty()) said.refused = controls.refused();
+    // Of a threshold that is known at once; what was refused before it is another matter.
+    const bool of_camera = !question.wish || question.wish->control != Control::threshold;
+    if (of_camera) said.refused = controls.refused();
     said.waits = controls.waits();
     said.has = controls.has();
     if (finds_) {

@@ -58,8 +58,9 @@ double WandCoverage::coverage(std::size_t camera) const {
 }
 
 bool WandCoverage::is_covered(std::size_t camera) const {
-  const bool no_more = cameras_[camera].views - cameras_[camera].views_at_growth >= kNothingNew;
-  return coverage(camera) >= (no_more ? kCovered : kWellCovered);
+  const std::int64_t same = cameras_[camera].views - cameras_[camera].views_at_growth;
+  const bool no_more = same >= (lenses_known_ ? kNothingNew : kNothingNewOfLens);
+  return coverage(camera) >= (no_more ? kCovered : wanted(lenses_known_));
 }
 
 bool WandCoverage::is_enough() const {

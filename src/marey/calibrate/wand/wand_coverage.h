@@ -15,7 +15,11 @@ namespace marey::calibrate::wand {
 
 class WandCoverage {
  public:
-  WandCoverage(WandShape wand, std::size_t cameras) : wand_(std::move(wand)), cameras_(cameras) {}
+  /// `lenses_known`: whether every camera's lens is given. Those that are not are estimated from what is seen, which takes more of
+  /// it: with less than half of the picture the cameras stood several times as far off as after a minute
+  /// (bench/sweep/wand_enough.cpp).
+  WandCoverage(WandShape wand, std::size_t cameras, bool lenses_known = true)
+      : wand_(std::move(wand)), cameras_(cameras), lenses_known_(lenses_known) {}
 
   /// What a camera gave since the last call, a few seconds of it. Times are by one clock here, as those of live cameras are.
   struct Seen {
@@ -40,9 +44,12 @@ class WandCoverage {
   bool is_enough() const;
 
   static constexpr int kPartsAcross = 10, kPartsDown = 8;
+  /// Share of a camera's picture that is wanted.
+  static constexpr double wanted(bool lenses_known) { return lenses_known ? kWellCovered : kLensCovered; }
+  static constexpr double kLensCovered = 0.5;  ///< so much tells its lens too
   static constexpr double kWellCovered = 0.3;  ///< a rig whose least covered camera has so much may be excellent,
   static constexpr double kCovered = 0.2;      ///< and good with so much
-  static constexpr std::int64_t kNothingNew = 400, kEnoughShared = 200;  ///< views
+  static constexpr std::int64_t kNothingNew = 400, kNothingNewOfLens = 1200, kEnoughShared = 200;  ///< views
 
  private:
   struct Camera {
@@ -52,6 +59,7 @@ class WandCoverage {
 
   WandShape wand_;
   std::vector<Camera> cameras_;
+  bool lenses_known_;
   std::map<std::pair<std::size_t, std::size_t>, std::int64_t> shared_;
 };
 

@@ -23,8 +23,8 @@ std::vector<BlobFrame> frames_of(WandScene& scene, std::size_t c, double from_s,
 
 /// Two seconds at a time, as they come.
 template <typename Sees>
-WandCoverage waved(WandScene& scene, double duration_s, Sees sees) {
-  WandCoverage coverage(scene.wand, scene.rig.cameras.size());
+WandCoverage waved(WandScene& scene, double duration_s, Sees sees, bool lenses_known = true) {
+  WandCoverage coverage(scene.wand, scene.rig.cameras.size(), lenses_known);
   for (double t = 0; t < duration_s; t += 2) {
     std::vector<std::vector<BlobFrame>> frames;
     std::vector<WandCoverage::Seen> seen;
@@ -54,6 +54,20 @@ TEST(WandCoverage, GrowsUntilItIsEnough) {
   }
   EXPECT_GE(late.shared(0, 1), WandCoverage::kEnoughShared);
   EXPECT_EQ(late.shared(0, 1), late.shared(1, 0));
+}
+
+TEST(WandCoverage, OfLensesThatAreNotKnownMoreIsWanted) {
+  WandScene scene(1);
+  const auto always = [](std::size_t, double) { return true; };
+  for (double t = 2; t <= 60; t += 6) {
+    const WandCoverage known = waved(scene, t, always), unknown = waved(scene, t, always, false);
+    for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
+      EXPECT_EQ(unknown.coverage(c), known.coverage(c));
+      EXPECT_TRUE(known.is_covered(c) || !unknown.is_covered(c));
+      const bool little = known.coverage(c) < WandCoverage::kLensCovered && unknown.views(c) < WandCoverage::kNothingNewOfLens;
+      EXPECT_FALSE(little && unknown.is_covered(c)) << known.coverage(c);
+    }
+  }
 }
 
 TEST(WandCoverage, IsNotEnoughWhereOneCameraSeesNothing) {
