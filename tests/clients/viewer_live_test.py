@@ -70,6 +70,8 @@ def run_live(command, folder, *scenarios):
 
 def wave(marey, folder, scenario):
     cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [640, 480]\nsource = "sim://room?cameras=4&rate=60&motion=wand&frame&size=640x480&camera={c}"\n' for c in range(1, 5)]
+    if scenario == "wand":
+        cameras[0] += "masks = [[0, 0, 640, 440]]\n"
     (folder / "start.toml").write_text("\n".join(cameras))
     (folder / "waved.toml").unlink(missing_ok=True)
     command = [marey, "calibrate", "wand", "start.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", "0", "--for", "120", "--json"]
@@ -81,7 +83,9 @@ def wave(marey, folder, scenario):
         shown.kill()
     assert shown.returncode == 0, told
     camera = tomllib.loads((folder / "waved.toml").read_text())["camera"][0]
-    assert "rotation" in camera and camera["gain"] == 1.2 and len(camera["masks"][0]) == 6, camera
+    assert "rotation" in camera
+    if scenario == "wand":
+        assert camera["gain"] == 1.2 and [len(mask) for mask in camera["masks"]] == [6], "as it was set on the page"
     print("the wand:", json.loads(told)["grade"])
 
 

@@ -18,24 +18,34 @@ const has_colour = ([r, g, b]) =>
     return false;
   }, [r, g, b]);
 
+/** The first camera, whose picture is masked but for a strip below: the wand is not seen enough before the mask is gone. */
+async function set_camera() {
+  const first = page.locator("#cameras figure").first();
+  const masks = (count) => eventually(`there are not ${count} masks`, async () => (await first.locator(".count").textContent()) === count);
+  await first.locator(".adjust").click();
+  await masks("1");
+  await first.locator('[data-dial="gain"] input[type="number"]').fill("1.2");
+  await page.keyboard.press("Enter");
+  const canvas = await first.locator("canvas").boundingBox();
+  const click = (x, y) => page.mouse.click(canvas.x + x * canvas.width, canvas.y + y * canvas.height);
+  for (const corner of [[0.02, 0.94], [0.1, 0.94], [0.06, 0.99]]) await click(...corner);
+  await page.keyboard.press("Enter");
+  await masks("2");
+  await shot("controls");
+  await check_layout();
+  await click(0.5, 0.3);
+  await masks("1");
+  await first.locator(".adjust").click();
+}
+
 await page.goto(address);
 await eventually("nobody says what to do", async () => /Wave the wand/.test(await text("#wand h1")));
+if (!scenario.includes("enough")) await set_camera();
 await eventually("the wand is not drawn", () => has_colour([255, 209, 102]));
 await eventually("no part is covered", async () => /[1-9]\d*\s% of its picture/.test(await text(".coverage")));
 await eventually("nobody says with whom it was seen", async () => /cam2/.test(await text(".pairs")));
 await shot("waving");
 await check_layout();
-await page.locator("#cameras .adjust").first().click();
-await eventually("a camera of a wand cannot be set", async () => (await page.locator('.controls:visible [data-dial="exposure"] input[type="number"]').count()) === 1);
-await page.locator('.controls:visible [data-dial="gain"] input[type="number"]').fill("1.2");
-await page.keyboard.press("Enter");
-const canvas = await page.locator("#cameras canvas").first().boundingBox();
-for (const [x, y] of [[0.02, 0.9], [0.1, 0.9], [0.05, 0.98]]) await page.mouse.click(canvas.x + x * canvas.width, canvas.y + y * canvas.height);
-await page.keyboard.press("Enter");
-await eventually("no mask is drawn", async () => (await page.locator(".controls:visible .count").textContent()) === "1");
-await shot("controls");
-await check_layout();
-await page.locator("#cameras .adjust").first().click();
 if (scenario.includes("enough")) {
   await eventually("no camera has seen enough", async () => (await page.locator(".waved.enough").count()) > 0);
   await shot("enough");

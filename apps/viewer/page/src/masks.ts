@@ -115,6 +115,7 @@ export class MaskEditor {
   private pressed(event: PointerEvent): void {
     if (!this.active || !this.size[0] || event.button !== 0) return;
     event.preventDefault();
+    (document.activeElement as HTMLElement | null)?.blur(); // of a number's field: Enter and Escape are for the mask now
     this.canvas.setPointerCapture(event.pointerId);
     const from = this.place(event);
     this.drag = { from, to: from, begun: [event.clientX, event.clientY], far: false };
