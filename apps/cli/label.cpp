@@ -40,8 +40,14 @@ void run(LearnLabelsCommand& command) {
                                  : labels_in(command.markers);
   }
   const LearnedMarkers learned = pipeline::learn_labels(command.recordings, command.out, command.options);
+  const std::vector<std::string> warnings = pipeline::warnings_of(learned);
+  warn(warnings);
   if (command.json) {
-    print({{"labels", learned.labels}, {"moves", learned.moves}, {"scaled", learned.scaled}, {"set", command.out}});
+    print({{"labels", learned.labels},
+           {"moves", learned.moves},
+           {"scaled", learned.scaled},
+           {"set", command.out},
+           {"warnings", warnings}});
   } else if (!command.quiet) {
     fmt::print(stderr, "{} markers from {} recording{}{}\nset: {}\n", learned.size(), command.recordings.size(),
                command.recordings.size() == 1 ? "" : "s",

@@ -40,10 +40,15 @@ std::string joined(const std::vector<std::string>& names, std::size_t most) {
   return fmt::format("{}{}", fmt::join(shown, ", "), names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
 }
 
-/// How well markers that are right lie, in words: OpenSim's own advice is 20 mm RMS.
-const char* verdict(double rms_m) {
-  if (rms_m < 0.010) return "good";
-  return rms_m < 0.020 ? "fair" : "poor: is the skeleton scaled to this person, and are the labels right?";
+/// How well markers that are right lie, in words: OpenSim's own advice is 20 mm RMS. Few markers fit any skeleton.
+std::string verdict(const SolveSummary& summary) {
+  const std::string seen =
+      fmt::format("{:.0f} of the skeleton's {} markers are seen in a frame", summary.markers_a_frame, summary.skeleton_markers);
+  if (3 * summary.markers_a_frame <= summary.freedoms)
+    return fmt::format("that says nothing, {}, too few for its {} angles and shifts", seen, summary.freedoms);
+  if (summary.rms_m >= 0.020) return "poor: is the skeleton scaled to this person, and are the labels right?";
+  const std::string word = summary.rms_m < 0.010 ? "good" : "fair";
+  return 2 * summary.markers_a_frame < summary.skeleton_markers ? fmt::format("{}, but only {}", word, seen) : word;
 }
 
 void print_worst(const SolveSummary& summary) {
@@ -60,7 +65,7 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
              summary.skeleton.empty() ? "skeleton" : summary.skeleton, summary.markers.size(), summary.frames, summary.seconds,
              summary.rate_hz);
   fmt::print(stderr, "markers lie {:.2f} mm RMS from where the skeleton has them (worst {:.1f} mm): {}\n", 1000 * summary.rms_m,
-             1000 * summary.worst_m, verdict(summary.rms_m));
+             1000 * summary.worst_m, verdict(summary));
   print_worst(summary);
   std::vector<std::string> hidden;
   for (const SolveSummary::Coordinate& coordinate : summary.coordinates) {
@@ -112,6 +117,8 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"frames_without_markers", summary.empty},
           {"rate_hz", summary.rate_hz},
           {"seconds", summary.seconds},
+          {"skeleton_markers", summary.skeleton_markers},
+          {"markers_a_frame", summary.markers_a_frame},
           {"rms_mm", 1000 * summary.rms_m},
           {"worst_mm", 1000 * summary.worst_m},
           {"starts", summary.starts},

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "marey/core/error.h"
 #include "marey/pipeline/gait_markers.h"
 #include "marey/pipeline/joints_by_motion.h"
 #include "marey/solve/skeleton/human.h"
@@ -19,6 +21,7 @@ namespace {
 constexpr double kRegressionM = 0.020;
 constexpr double kVagueM = 0.035;  // a motion that says less than this says nothing beside the regression
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kNeckShare = 0.3;                    // of the way from there to the head's middle
 constexpr double kConventionalAxisRad = 8 * kDegree;  // assumed: how well markers on thighs and arms are put by eye
 constexpr double kSkinAxisRad = 5 * kDegree;          // assumed: what skin does that the jackknife does not see
 constexpr double kVagueAxisRad = 10 * kDegree;
@@ -136,6 +139,62 @@ gait::GaitPose pose_by_motion(const gait::MarkerPlaces& standing, const gait::Ma
   return pose;
 }
 
+/// What is wanted of a pelvis, in the set's own labels; throws Error where it is not there.
+void need_a_pelvis(const gait::GaitPose& pose, const gait::MarkerPlaces& standing, const gait::BodyMarkerSet& set,
+                   const std::string& path) {
+  if (pose[gait::SegmentId::pelvis]) return;
+  std::vector<std::string> wanted, lacking;
+  for (const char* key : {"LASI", "RASI", "SACR", "LPSI", "RPSI"}) {
+    if (!set.segment_of(key)) continue;
+    wanted.push_back(set.label_of(key));
+    if (!standing.contains(key)) lacking.push_back(set.label_of(key));
+  }
+  const bool either = set.segment_of("SACR") && set.segment_of("LPSI");
+  throw Error("{}: the pelvis is not known, with which a skeleton begins: {} show it{}, and {} not seen", path,
+              fmt::join(wanted, ", "), either ? fmt::format(" ({} or the two behind it)", set.label_of("SACR")) : "",
+              lacking.empty() ? "they lie in a line or are"
+                              : fmt::format("{} {}", fmt::join(lacking, ", "), lacking.size() == 1 ? "is" : "are"));
+}
+
+std::optional<Vector<3>> midway(const gait::MarkerPlaces& standing, const std::string& a, const std::string& b) {
+  const auto at = standing.find(a), there = standing.find(b);
+  if (at == standing.end() || there == standing.end()) return std::nullopt;
+  return Vector<3>(0.5 * (at->second + there->second));
+}
+
+/// A head's own joint: where the neck begins, between C7 and the collarbones; its frame's origin is the head's middle.
+std::optional<Vector<3>> neck_of(const gait::MarkerPlaces& standing, const gait::GaitPose& pose) {
+  const auto base = midway(standing, "C7", "CLAV");
+  const auto& head = pose[gait::SegmentId::head];
+  if (!base || !head) return std::nullopt;
+  return Vector<3>(*base + kNeckShare * (head->translation - *base));
+}
+
+/// Where a segment ends on which nothing hangs: a foot at its toe's marker, a hand at its knuckle, the head at its top.
+std::optional<Vector<3>> end_of(gait::SegmentId segment, const gait::MarkerPlaces& standing, const gait::GaitPose& pose) {
+  using gait::SegmentId;
+  const auto& own = pose[segment];
+  if (!own) return std::nullopt;
+  if (segment == SegmentId::trunk) return midway(standing, "C7", "CLAV");
+  if (segment == SegmentId::head) {
+    const auto front = midway(standing, "LFHD", "RFHD"), back = midway(standing, "LBHD", "RBHD");
+    const auto& trunk = pose[SegmentId::trunk];
+    if (!front || !back || !trunk) return std::nullopt;
+    return Vector<3>(own->translation + 0.5 * (*front - *back).norm() * trunk->rotation.col(2));
+  }
+  for (const gait::Side side : gait::kSides) {
+    const std::string letter = side == gait::Side::left ? "L" : "R";
+    if (segment == gait::of_side(SegmentId::left_foot, side)) return midway(standing, letter + "TOE", letter + "TOE");
+    if (segment == gait::of_side(SegmentId::left_forearm, side)) return midway(standing, letter + "WRA", letter + "WRB");
+    if (segment == gait::of_side(SegmentId::left_clavicle, side)) return midway(standing, letter + "SHO", letter + "SHO");
+    const auto finger = midway(standing, letter + "FIN", letter + "FIN");
+    if (segment != gait::of_side(SegmentId::left_hand, side) || !finger) continue;
+    const Vector<3> along = own->rotation.col(2);
+    return Vector<3>(own->translation + along * along.dot(*finger - own->translation));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 HumanSkeleton human_from_static(const std::string& path, const HumanOptions& options, const Hooks& hooks) {
@@ -147,7 +206,10 @@ HumanSkeleton human_from_static(const std::string& path, const HumanOptions& opt
   subject.learn_from(model);
   HumanSkeleton human;
   human.marker_set = set.title();
+  human.set = &set;
+  human.standing = standing;
   gait::GaitPose pose = gait::pose_of(model, subject);
+  need_a_pelvis(pose, standing, set, path);
   if (!options.motion.empty()) {
     const GaitMarkers moving = read_gait_markers(options.motion, options.up, hooks, set);
     pose = pose_by_motion(standing, model, subject, moving, human.joints);
@@ -158,7 +220,11 @@ HumanSkeleton human_from_static(const std::string& path, const HumanOptions& opt
   }
   std::vector<solve::skeleton::StandingSegment> segments;
   for (std::size_t s = 0; s < gait::kSegments; ++s) {
-    if (pose.world_from[s]) segments.push_back({std::string(gait::name_of(static_cast<gait::SegmentId>(s))), *pose.world_from[s]});
+    const auto segment = static_cast<gait::SegmentId>(s);
+    if (!pose.world_from[s]) continue;
+    segments.push_back({std::string(gait::name_of(segment)), *pose.world_from[s], end_of(segment, standing, pose)});
+    if (segment == gait::SegmentId::head)
+      segments.back().world_from.translation = neck_of(standing, pose).value_or(pose.world_from[s]->translation);
   }
   std::vector<solve::skeleton::StandingMarker> markers;
   for (const auto& [key, place] : standing)

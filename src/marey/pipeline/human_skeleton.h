@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/core/hooks.h"
 #include "marey/core/skeleton.h"
 #include "marey/format/format.h"
@@ -32,6 +33,8 @@ struct HumanSkeleton {
   std::string marker_set;          ///< its title
   std::vector<FoundJoint> joints;  ///< that the motion was asked for
   std::vector<std::string> warnings;
+  const analyse::gait::BodyMarkerSet* set = nullptr;
+  analyse::gait::MarkerPlaces standing;  ///< m, by the model's labels
 };
 
 /// The human skeleton of a person who stands still with a marker set of the field, calibrated to it. Throws Error where the labels

@@ -106,7 +106,10 @@ std::optional<solve::skeleton::FunctionalAxis> JointsByMotion::knee(gait::Side s
 std::optional<solve::skeleton::FunctionalAxis> JointsByMotion::elbow(gait::Side side) const {
   const auto& upper_arm = conventional_[gait::of_side(gait::SegmentId::left_upper_arm, side)];
   if (!upper_arm) return std::nullopt;
-  const Poses trunk = poses_of(labels_of(gait::SegmentId::trunk));
+  // The shoulder goes with the trunk and with its own marker.
+  std::vector<std::string> above = labels_of(gait::SegmentId::trunk);
+  for (const std::string& label : labels_of(gait::of_side(gait::SegmentId::left_clavicle, side))) above.push_back(label);
+  const Poses trunk = poses_of(above);
   const Poses upper = poses_of(labels_of(gait::of_side(gait::SegmentId::left_upper_arm, side)), {{upper_arm->translation, &trunk}});
   std::vector<std::string> forearm = labels_of(gait::of_side(gait::SegmentId::left_forearm, side));
   const std::string elbow = of_side(side, "ELB");

@@ -35,6 +35,15 @@ LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const st
   return learned;
 }
 
+std::vector<std::string> warnings_of(const LearnedMarkers& learned) {
+  const std::vector<std::string> near = solve::labels::too_near_for_markers(learned);
+  if (near.empty()) return {};
+  return {
+      fmt::format("{} of the set's {} points, as {} and {}, lie within 10 mm of another, as points do that a program computed "
+                  "(joints' centres): name the markers alone with --markers",
+                  near.size(), learned.size(), near.front(), near.back())};
+}
+
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks) {
   LabelSummary summary;

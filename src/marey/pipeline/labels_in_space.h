@@ -14,6 +14,8 @@ namespace marey::pipeline {
 /// Throws Error where a file cannot be read or written, or holds no such set.
 LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
                             const solve::labels::LearnOptions& options);
+/// What is to be said of the set besides: points that are no markers.
+std::vector<std::string> warnings_of(const LearnedMarkers& learned);
 
 struct LabelSummary {
   std::vector<solve::labels::MarkerHealth> health;

@@ -166,7 +166,28 @@ void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
     measure.warnings.push_back(fmt::format("{}: {}: {}", recording, listed(names), reason));
 }
 
+/// Throws Error where nothing of a walk is left to be told.
+void need_steps(const std::string& recording, const GaitMeasure& measure) {
+  if (measure.events.empty())
+    throw Error(
+        "{}: no steps were found: HEE and TOE of a side are needed, and a person who walks; --angles writes the angles of one "
+        "who does not",
+        recording);
+}
+
+/// Throws Error where the pelvis' up is the recording's y, which was not said.
+void need_up(const std::string& recording, const GaitMarkers& markers, const gait::GaitSubject& subject) {
+  constexpr double kMostly = 0.8;  // cosine
+  Vector<3> up = Vector<3>::Zero();
+  for (const gait::MarkerPlaces& row : markers.rows) {
+    if (const auto pelvis = gait::pose_of(row, subject)[gait::SegmentId::pelvis]) up += pelvis->rotation.col(2);
+  }
+  if (up.norm() > 0 && up.normalized().y() > kMostly)
+    throw Error("{}: z was taken for up, and the person's up is along y: give --up y (or --up z, if it lies down)", recording);
+}
+
 void need_a_cycle(const std::string& recording, const GaitMeasure& measure) {
+  need_steps(recording, measure);
   if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
     return;
   if (!measure.cycles.cycles.empty()) throw Error("{}: no angle is known over a whole gait cycle: markers are missing", recording);
@@ -202,6 +223,7 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
     measure.subject.sole_from_ankle_toe = options.subject.sole_from_ankle_toe;
   }
   take_soles(recording, measure.subject);
+  if (!options.up) need_up(recording, markers, measure.subject);
   const gait::FeetPaths feet = feet_of(markers);
   measure.angles = angle_curves(markers, measure.subject, feet.sacrum);
   const bool any = std::any_of(measure.angles.begin(), measure.angles.end(), [](const gait::AngleCurve& curve) {
@@ -222,6 +244,7 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
 
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
   GaitMeasure measure = measure_gait(recording, options, hooks);
+  if (output.angles.empty() && output.c3d.empty()) need_steps(recording, measure);
   if (!output.angles.empty()) write_angles(output.angles, measure);
   if (!output.c3d.empty()) write_gait_c3d(output.c3d, recording, options.up, measure);
   if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure);

@@ -13,6 +13,7 @@
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
+#include "marey/pipeline/gait_markers.h"
 #include "marey/pipeline/skeleton_in_space.h"
 #include "marey/solve/skeleton/calibrate.h"
 #include "marey/solve/skeleton/smooth.h"
@@ -70,10 +71,14 @@ class SolveCounts {
       summary.worst_m = std::max(summary.worst_m, marker.worst_m);
       summary.markers.push_back(marker);
     }
+    summary.skeleton_markers = static_cast<int>(markers_.size());
+    const std::int64_t with_any = std::ssize(motion.rows) - empty_;
+    summary.markers_a_frame = with_any > 0 ? static_cast<double>(count) / static_cast<double>(with_any) : 0;
     summary.rms_m = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
     for (std::size_t c = 0; c < skeleton_.coordinates.size(); ++c) {
       if (skeleton_.coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
     }
+    summary.freedoms = static_cast<int>(summary.coordinates.size());
   }
 
  private:
@@ -227,8 +232,8 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
   return frames;
 }
 
-format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const SolveOptions& options, SolveSummary& found,
-                                           const Hooks& hooks) {
+format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
+                                           SolveSummary& found, const Hooks& hooks) {
   if (!skeleton.empty()) {
     format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
     if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
@@ -241,9 +246,31 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& skeleton, const So
                                           {.motion = options.motion, .marker_set = options.marker_set, .up = options.up}, hooks);
   file.skeleton = std::move(human.skeleton);
   file.warnings = std::move(human.warnings);
+  GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set);
+  if (const auto other = other_person(human.standing, moving))
+    file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
+                                        options.static_trial, *other, recording));
   found.joints = std::move(human.joints);
   found.marker_set = std::move(human.marker_set);
   return file;
+}
+
+/// Where the skeleton's up is mostly the recording's other axis: that one is up, unless the person lies down.
+std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, const std::string& recording) {
+  constexpr std::size_t kLooks = 64;
+  constexpr double kMostly = 0.8;  // cosine
+  const auto& rows = solved.motion.rows;
+  if (rows.empty()) return std::nullopt;
+  const Matrix<3> rest = pose_of(solved.skeleton, solved.skeleton.rest()).front().rotation;
+  Vector<3> up = Vector<3>::Zero();
+  for (std::size_t r = 0; r < rows.size(); r += std::max<std::size_t>(1, rows.size() / kLooks))
+    up += (pose_of(solved.skeleton, rows[r]).front().rotation * rest.transpose()).col(2);
+  // A file's y is z here where its y was taken for up, and its z is then −y.
+  const double other = taken == UpAxis::z ? up.normalized().y() : -up.normalized().y();
+  if (!(other > kMostly)) return std::nullopt;
+  const char *named = taken == UpAxis::z ? "z" : "y", *there = taken == UpAxis::z ? "y" : "z";
+  return fmt::format("{}: {} was taken for up, and the skeleton's up is along {}: is {} up in this file? then give --up {}",
+                     recording, named, there, there, there);
 }
 
 void write_skeleton_file(const std::string& path, const Skeleton& skeleton) {
@@ -258,7 +285,7 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
                                     const Hooks& hooks) {
   SolveOptions options = given;
   SolveSummary found;
-  format::skeleton::SkeletonFile file = skeleton_of(skeleton, options, found, hooks);
+  format::skeleton::SkeletonFile file = skeleton_of(recording, skeleton, options, found, hooks);
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
   if (options.calibrate) {
@@ -266,6 +293,9 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
+  if (!given.up) {
+    if (auto sentence = lies_on_its_side(solved, *options.up, recording)) solved.summary.warnings.push_back(std::move(*sentence));
+  }
   solved.summary.joints = std::move(found.joints);
   solved.summary.marker_set = std::move(found.marker_set);
   if (calibration) {

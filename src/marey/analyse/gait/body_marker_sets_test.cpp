@@ -41,7 +41,8 @@ TEST(BodyMarkerSets, EveryLabelHasASideAndComesBack) {
   EXPECT_EQ(cmu.label_of("RTIB"), "RSHN");
   EXPECT_EQ(cmu.segment_of("LTIB"), SegmentId::left_shank);
   EXPECT_EQ(cmu.segment_of("RTIB"), SegmentId::right_shank);
-  EXPECT_EQ(cmu.segment_of("RSHO"), SegmentId::trunk) << "the middle has no sides";
+  EXPECT_EQ(cmu.segment_of("RFHD"), SegmentId::head) << "the middle has no sides";
+  EXPECT_EQ(cmu.segment_of("RSHO"), SegmentId::right_clavicle);
   const BodyMarkerSet& cleveland = body_marker_set("cleveland-clinic");
   EXPECT_EQ(cleveland.segment_of("R.Thigh.Rear"), SegmentId::right_thigh);
   EXPECT_FALSE(body_marker_set("helen-hayes").has("R.Thigh.Rear"));

@@ -9,7 +9,8 @@ namespace marey::analyse::gait {
 namespace {
 
 constexpr double kHipTheta = 0.5, kHipBeta = 0.314;  // rad: Davis 1991
-constexpr double kNearlyStraight = 0.087;            // sine of 5°: 2 cm of a forearm
+constexpr int kSidedSegments = 7;
+constexpr double kNearlyStraight = 0.087;  // sine of 5°: 2 cm of a forearm
 
 std::optional<Vector<3>> place(const MarkerPlaces& markers, std::string_view label) {
   const auto found = markers.find(label);
@@ -152,12 +153,17 @@ Vector<3> bends_to(const Vector<3>& down, const Vector<3>& forearm, const Vector
   return (1 - straight) * across.normalized() + straight * thumb.normalized();
 }
 
+/// Where the clavicles hang on the trunk: behind the breastbone's upper marker.
+Vector<3> clavicles_at(const Vector<3>& marker, const GaitSubject& subject, const Rigid3& trunk) {
+  return marker - subject.marker_radius * trunk.rotation.col(0);
+}
+
 /// A shoulder's centre below its marker: with a right angle there, in the plane of the trunk's origin, the marker and what is up
 /// across the trunk's x.
 std::optional<Vector<3>> shoulder_of(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
   const auto marker = place(markers, side, "SHO"), clavicle = place(markers, "CLAV");
   if (!marker || !clavicle) return std::nullopt;
-  const Vector<3> origin = *clavicle - subject.marker_radius * trunk.rotation.col(0);
+  const Vector<3> origin = clavicles_at(*clavicle, subject, trunk);
   Vector<3> up = (*marker - origin).cross(trunk.rotation.col(0));
   if (up.dot(trunk.rotation.col(2)) < 0) up = -up;
   return chord(origin, *marker + up.normalized(), *marker, shoulder_offset(subject, side) + subject.marker_radius);
@@ -184,10 +190,12 @@ std::optional<Arm> arm_of(const MarkerPlaces& markers, const GaitSubject& subjec
   return arm.wrist.allFinite() ? std::optional(arm) : std::nullopt;
 }
 
-/// Of one arm: upper arm, forearm, hand. The elbow is a hinge: the upper arm's y is across the plane that it bends in, so that its
-/// flexion is the angle between the two and has no sign to choose.
+/// Of one arm: clavicle, upper arm, forearm, hand. The elbow is a hinge: the upper arm's y is across the plane that it bends in, so
+/// that its flexion is the angle between the two and has no sign to choose.
 void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
   const auto& trunk = pose[SegmentId::trunk];
+  if (const auto clavicle = place(markers, "CLAV"); trunk && clavicle && place(markers, side, "SHO"))
+    pose[of_side(SegmentId::left_clavicle, side)] = Rigid3{trunk->rotation, clavicles_at(*clavicle, subject, *trunk)};
   const auto arm = trunk ? arm_of(markers, subject, side, *trunk) : std::nullopt;
   if (!arm) return;
   const Vector<3> ahead = bends_to(arm->elbow - arm->shoulder, arm->wrist - arm->elbow, arm->thumb_side);
@@ -214,8 +222,8 @@ constexpr std::array<std::pair<std::string_view, SegmentId>, 39> kMarkers = {{
     {"CLAV", SegmentId::trunk},
     {"STRN", SegmentId::trunk},
     {"RBAK", SegmentId::trunk},
-    {"LSHO", SegmentId::trunk},
-    {"RSHO", SegmentId::trunk},
+    {"LSHO", SegmentId::left_clavicle},
+    {"RSHO", SegmentId::right_clavicle},
     {"LELB", SegmentId::left_upper_arm},
     {"LWRA", SegmentId::left_forearm},
     {"LWRB", SegmentId::left_forearm},
@@ -250,13 +258,14 @@ constexpr std::array<std::pair<std::string_view, SegmentId>, 39> kMarkers = {{
 
 std::string_view name_of(SegmentId segment) {
   constexpr std::array<std::string_view, kSegments> names = {
-      "pelvis",    "trunk",       "head",        "left_thigh", "left_shank",      "left_foot",     "left_upper_arm", "left_forearm",
-      "left_hand", "right_thigh", "right_shank", "right_foot", "right_upper_arm", "right_forearm", "right_hand"};
+      "pelvis",         "trunk",           "head",          "left_thigh",    "left_shank",    "left_foot",
+      "left_upper_arm", "left_forearm",    "left_hand",     "left_clavicle", "right_thigh",   "right_shank",
+      "right_foot",     "right_upper_arm", "right_forearm", "right_hand",    "right_clavicle"};
   return names[static_cast<std::size_t>(segment)];
 }
 
 SegmentId of_side(SegmentId left, Side side) {
-  return side == Side::left ? left : static_cast<SegmentId>(static_cast<int>(left) + 6);
+  return side == Side::left ? left : static_cast<SegmentId>(static_cast<int>(left) + kSidedSegments);
 }
 
 void GaitSubject::learn_from(const MarkerPlaces& standing) {

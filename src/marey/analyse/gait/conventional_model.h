@@ -24,7 +24,7 @@ inline constexpr std::array kSides = {Side::left, Side::right};
 
 /// A body's segments, each with x ahead, y to the person's left, z up when it stands straight with its arms down. A limb's origin
 /// is its upper joint; the pelvis' is midway between the hips' front spines, the trunk's between the hips' top and neck, the head's
-/// in its middle.
+/// in its middle. A clavicle reaches from the breastbone's top to the shoulder, its axes parallel to the trunk's.
 enum class SegmentId : std::uint8_t {
   pelvis,
   trunk,
@@ -35,14 +35,16 @@ enum class SegmentId : std::uint8_t {
   left_upper_arm,
   left_forearm,
   left_hand,
+  left_clavicle,
   right_thigh,
   right_shank,
   right_foot,
   right_upper_arm,
   right_forearm,
   right_hand,
+  right_clavicle,
 };
-inline constexpr std::size_t kSegments = 15;
+inline constexpr std::size_t kSegments = 17;
 std::string_view name_of(SegmentId segment);
 /// "thigh" of a side.
 SegmentId of_side(SegmentId left, Side side);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "marey/geometry/layout.h"
 
@@ -11,6 +12,9 @@ namespace {
 
 constexpr double kFlattest = 0.15;          // sine of the least angle of a triangle at its first corner
 constexpr std::size_t kMostPairs = 20'000;  // of one edge that are tried
+constexpr double kNearestM = 2e-4;          // nothing is known to be nearer
+constexpr double kAroundM = 0.5;            // m, within which points count for how dense they lie
+constexpr double kRoomM = 2;                // m, within which all points lie at least
 
 /// The points of a candidate, whichever marker each is taken for.
 std::vector<int> points_of(const BootCandidate& candidate) {
@@ -135,9 +139,65 @@ bool BodyBoot::fits_better_mirrored(std::span<const Vector<3>> points, const Boo
   return std::count_if(mirrored.begin(), mirrored.end(), is_there) > candidate.matched;
 }
 
+/// Pairs of points as long as one edge of the candidate (those there are, without its own), times the thirds to be expected in the
+/// ring where a third marker would be, times the chance that as many others have a point where they are due; all as near as the
+/// candidate's own distances are to the body's.
+double BodyBoot::expected_by_chance(std::span<const Vector<3>> points, const BootCandidate& candidate) const {
+  const auto& layout = layouts_[static_cast<std::size_t>(candidate.body)];
+  std::vector<std::size_t> matched;
+  for (std::size_t m = 0; m < layout.size(); ++m) {
+    if (candidate.point_of[m]) matched.push_back(m);
+  }
+  const auto point_of = [&](std::size_t m) -> const Vector<3>& { return points[static_cast<std::size_t>(*candidate.point_of[m])]; };
+  double off = kNearestM;
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double length = (layout[matched[i]] - layout[matched[j]]).norm(),
+                   seen = (point_of(matched[i]) - point_of(matched[j])).norm();
+      off = std::max(off, std::abs(seen - length));
+      lengths.push_back(seen);
+    }
+  }
+  // The triangle with the rarest edge, and the third that is farthest from it.
+  double fewest = 0, height = 0;
+  bool any = false;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double length = (layout[matched[i]] - layout[matched[j]]).norm();
+      const auto [first, last] = pairs_near(length);
+      const auto own =
+          std::count_if(lengths.begin(), lengths.end(), [&](double each) { return std::abs(each - length) < 2 * tolerance_; });
+      const double others = std::max(0.0, static_cast<double>(last - first) - static_cast<double>(own));
+      double farthest = 0;
+      for (const std::size_t c : matched) {
+        const Vector<3> along = (layout[matched[i]] - layout[matched[j]]) / length, to = layout[c] - layout[matched[j]];
+        farthest = std::max(farthest, (to - along * along.dot(to)).norm());
+      }
+      if (any && (others > fewest || (others == fewest && farthest <= height))) continue;
+      any = true;
+      fewest = others;
+      height = farthest;
+    }
+  }
+  const Vector<3> centre = point_of(matched.front());
+  const auto near = std::count_if(points.begin(), points.end(), [&](const Vector<3>& p) { return (p - centre).norm() < kAroundM; });
+  const auto all = static_cast<double>(points.size()), own = static_cast<double>(matched.size());
+  constexpr double kBall = 4 * std::numbers::pi / 3;
+  const double density = std::max(0.0, static_cast<double>(near) - own) / (kBall * kAroundM * kAroundM * kAroundM) +
+                         (all - own) / (kBall * kRoomM * kRoomM * kRoomM);
+  const double share = std::min(1.0, off / (2 * tolerance_));
+  double expected = 2 * (fewest + 1) * share * 2 * std::numbers::pi * height * 4 * off * off * density;
+  const double here = std::min(1.0, density * kBall * off * off * off);
+  const auto rest = static_cast<double>(layout.size() - 3);
+  for (std::size_t more = 3; more < matched.size(); ++more)
+    expected *= here * (rest - static_cast<double>(more - 3)) / static_cast<double>(more - 2);
+  return expected;
+}
+
 void BodyBoot::confirm(std::span<const Vector<3>> points, int body, Rigid3 pose) {
   const auto& layout = layouts_[static_cast<std::size_t>(body)];
-  BootCandidate candidate{body, pose, {}, 0, 0};
+  BootCandidate candidate{.body = body, .world_from_body = pose, .point_of = {}};
   for (int round = 0; round < 2; ++round) {
     const double limit = (round == 0 ? 2 : 1) * tolerance_;
     candidate.point_of.assign(layout.size(), std::nullopt);
@@ -163,6 +223,7 @@ void BodyBoot::confirm(std::span<const Vector<3>> points, int body, Rigid3 pose)
   if (candidate.matched < std::ssize(layout) && fits_better_mirrored(points, candidate)) return;
   const std::vector<int> mine = points_of(candidate);
   if (std::adjacent_find(mine.begin(), mine.end()) != mine.end()) return;  // one point for two markers
+  candidate.by_chance = expected_by_chance(points, candidate);
   for (BootCandidate& other : found_) {
     if (other.body != body || points_of(other) != mine) continue;
     if (candidate.rms < other.rms) other = candidate;

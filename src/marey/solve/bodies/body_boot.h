@@ -24,6 +24,9 @@ struct BootCandidate {
   std::vector<std::optional<int>> point_of;  ///< by marker
   int matched = 0;
   double rms = 0;  ///< m
+  /// How many sets of points that fit the body as well as these are to be expected by chance, of points that lie as densely as
+  /// those round about: the number of false alarms of a-contrario tests (Desolneux, Moisan, Morel 2000).
+  double by_chance = 0;
 };
 
 /// So many markers must be seen before a body of `markers` is believed to be there.
@@ -54,6 +57,8 @@ class BodyBoot {
   /// Of a body that is there in part: its markers that are almost in a plane lie in its mirror image's places too, and that image
   /// has more.
   bool fits_better_mirrored(std::span<const Vector<3>> points, const BootCandidate& candidate) const;
+
+  double expected_by_chance(std::span<const Vector<3>> points, const BootCandidate& candidate) const;
 
   struct Pair {
     double length;

@@ -262,6 +262,7 @@ void BodyFollower::look_everywhere(Timestamp now, std::span<const FollowedPoint>
   std::vector<Choice> choices;
   for (const BootCandidate& candidate : boot_.find(free, wanted)) {
     const Followed& one = followed_[static_cast<std::size_t>(candidate.body)];
+    if (candidate.by_chance > options_.by_chance) continue;
     double distance = 1e3;  // where it was never seen, others come first
     if (one.motion) {
       const double hidden = seconds(now - one.seen_at);

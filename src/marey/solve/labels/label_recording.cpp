@@ -10,6 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/geometry/layout.h"
 #include "marey/solve/labels/labelled_result.h"
+#include "marey/solve/labels/learn_markers.h"
 #include "marey/solve/labels/named_chains.h"
 
 namespace marey::solve::labels {
@@ -56,6 +57,7 @@ class Labelling {
 
  private:
   void boot();
+  [[noreturn]] void fail_to_boot(std::ptrdiff_t booted, std::size_t crowd) const;
   void refine();
   void share_out();
   void cut_strangers();
@@ -142,16 +144,35 @@ BootAnswer Labelling::boot_again(const BootScene& scene, const BootAnswer& first
   return boot_labels(scene, learned_, model, options_.boot, turn);
 }
 
+void Labelling::fail_to_boot(std::ptrdiff_t booted, std::size_t crowd) const {
+  const std::vector<std::string> near = too_near_for_markers(learned_);
+  if (!near.empty())
+    throw Error(
+        "{}: of the {} points of the set {} can be told by their distances: {} of them, as {} and {}, lie within 10 mm of another, "
+        "as points do that a program computed (joints' centres); learn the set again and name the markers alone: "
+        "\"marey label learn --markers ...\"",
+        recording_.header.name, learned_.size(), booted, near.size(), near.front(), near.back());
+  if (crowd > 0)
+    throw Error(
+        "{}: {} points stand in a frame, and names are looked for among {} at most; where a program computed most of them "
+        "(joints' centres), leave those out first",
+        recording_.header.name, crowd, kMostPointsToBoot);
+  throw Error("{}: of the {} markers of the set {} can be told by their distances; is it this subject's, and in metres?",
+              recording_.header.name, learned_.size(), booted);
+}
+
 void Labelling::boot() {
   const auto shortest = static_cast<std::int32_t>(std::max(4.0, kBootS * recording_.header.rate_hz));
   double best_score = 0;
   std::vector<int> best_chains;
   BootAnswer best;
+  std::size_t crowd = 0;  // points of the fullest instant that was passed over for them
   for (const std::size_t instant : boot_instants()) {
     hooks_.advance({.step = "naming", .done = 0, .total = options_.rounds + 1});
     BootScene scene;
     std::vector<int> chains;
     scene.seen = chains_.distances_at(instant, shortest, chains, scene.places);
+    if (chains.size() > kMostPointsToBoot) crowd = std::max(crowd, chains.size());
     if (chains.size() < 4 || chains.size() > kMostPointsToBoot) continue;
     for (const double scale : best_score > 0 && learned_.scaled ? std::vector{scale_} : scales(instant)) {
       const DistanceModel model(learned_, scale, options_.distances);
@@ -162,9 +183,7 @@ void Labelling::boot() {
     }
   }
   const auto booted = std::count_if(best.point_of.begin(), best.point_of.end(), [](int point) { return point != kNoIndex; });
-  if (static_cast<double>(booted) < kFewestBooted * static_cast<double>(learned_.size()))
-    throw Error("{}: of the {} markers of the set {} can be told by their distances; is it this subject's, and in metres?",
-                recording_.header.name, learned_.size(), booted);
+  if (static_cast<double>(booted) < kFewestBooted * static_cast<double>(learned_.size())) fail_to_boot(booted, crowd);
   model_ = std::make_unique<DistanceModel>(learned_, scale_, options_.distances);
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (best.point_of[name] != kNoIndex)

@@ -20,6 +20,7 @@ constexpr double kStillShare = 0.6;          // of all: with more the subject st
 constexpr double kSided = 0.01;              // m: what stands out less of a plane has no side
 constexpr std::size_t kAsked = 6;            // neighbours, the steadiest, of which sides are compared
 constexpr double kUnknownDeviation = 0.25;   // m: of two markers that were never seen together
+constexpr double kNearestMarkersM = 0.010;
 
 std::string without_prefix(const std::string& label, const std::string& prefix) {
   return label.starts_with(prefix) ? label.substr(prefix.size()) : label;
@@ -234,6 +235,18 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
   learned.places = std::move(postures[chosen]);
   for (Vector<3>& place : learned.places) place *= mean_size / size[chosen];
   return learned;
+}
+
+std::vector<std::string> too_near_for_markers(const LearnedMarkers& learned) {
+  std::vector<std::string> near;
+  for (std::size_t a = 0; a < learned.size(); ++a) {
+    for (std::size_t b = 0; b < learned.size(); ++b) {
+      if (a == b || learned.between(a, b).mean >= kNearestMarkersM) continue;
+      near.push_back(learned.labels[a]);
+      break;
+    }
+  }
+  return near;
 }
 
 }  // namespace marey::solve::labels

@@ -1,6 +1,7 @@
 #include "marey/solve/skeleton/calibrate.h"
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -94,6 +95,93 @@ TEST(Calibrate, FindsSizesAndPlacesOfMarkers) {
     EXPECT_NEAR(found.skeleton.segments[s].joint.parent_from_joint.translation.norm(),
                 truth.segments[s].joint.parent_from_joint.translation.norm(), 0.006)
         << name;
+  }
+}
+
+/// A thigh whose shank may only bend one way, and a person whose knee goes 12° beyond that.
+Skeleton leg(double lowest) {
+  Skeleton skeleton{.name = "leg", .coordinates = {}, .segments = {}, .markers = {}};
+  Segment thigh{.name = "thigh", .parent = {}, .joint = {}, .end = {}};
+  for (int i = 0; i < 6; ++i) {
+    thigh.joint.axes.push_back({i >= 3, Vector<3>::Unit(i % 3), {}, i});
+    skeleton.coordinates.push_back(
+        {.name = "root" + std::to_string(i), .turns = i >= 3, .lowest = {}, .highest = {}, .coupling = {}});
+  }
+  skeleton.segments.push_back(thigh);
+  Segment shank{.name = "shank", .parent = 0, .joint = {}, .end = {}};
+  shank.joint.parent_from_joint.translation = {0, 0, -0.4};
+  shank.joint.axes.push_back({true, Vector<3>::UnitY(), {}, 6});
+  skeleton.coordinates.push_back({.name = "knee", .turns = true, .lowest = lowest, .highest = 2.5, .coupling = {}});
+  skeleton.segments.push_back(shank);
+  for (const double side : {-0.05, 0.05}) {
+    skeleton.markers.push_back({"t" + std::to_string(side), 0, {0.03, side, -0.1}, 1});
+    skeleton.markers.push_back({"u" + std::to_string(side), 0, {-0.04, side, -0.35}, 1});
+    skeleton.markers.push_back({"s" + std::to_string(side), 1, {0.04, side, -0.1}, 1});
+    skeleton.markers.push_back({"a" + std::to_string(side), 1, {0.02, side, -0.36}, 1});
+  }
+  return skeleton;
+}
+
+/// What a calibration makes least, with the priors of its options, at these sizes of thigh and shank: poses by the solver.
+double cost_of(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, const std::vector<Vector<3>>& scales,
+               const std::vector<Vector<3>>& offsets, const CalibrateOptions& options) {
+  Skeleton trial = scaled(skeleton, scales);
+  double cost = 0;
+  for (std::size_t j = 0; j < offsets.size(); ++j) {
+    trial.markers[j].position += offsets[j];
+    cost += offsets[j].squaredNorm() / (options.offset_sigma_m * options.offset_sigma_m);
+  }
+  for (const Vector<3>& scale : scales)
+    cost += (scale - Vector<3>::Ones()).squaredNorm() / (options.scale_sigma * options.scale_sigma);
+  for (const SeenMarkers& seen : frames) {
+    PoseSolver solver(trial, {.marker_sigma_m = options.marker_sigma_m, .robust_m = 0.2});
+    const SolvedPose& pose = solver.step(0.1, seen);
+    cost += pose.rms_m * pose.rms_m * pose.seen / (options.marker_sigma_m * options.marker_sigma_m);
+    const double beyond = std::max(0.0, *trial.coordinates[6].lowest - pose.coordinates[6]);
+    cost += beyond * beyond / (0.005 * 0.005);
+  }
+  return cost;
+}
+
+TEST(Calibrate, HonoursLimits) {
+  const Skeleton truth = leg(-1), generic = leg(0);
+  std::vector<SeenMarkers> frames;
+  for (int f = 0; f < 20; ++f) {
+    const double bent = f % 2 == 0 ? -0.21 : 0.3 + 0.03 * f;
+    const auto pose = pose_of(truth, std::vector<double>{0.01 * f, 0, 1, 0.02 * f, 0, 0, bent});
+    SeenMarkers& seen = frames.emplace_back();
+    for (const SkeletonMarker& marker : truth.markers)
+      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+  }
+  const CalibrateOptions options{.overall = false, .rounds = 40};
+  const Calibration found = calibrate(generic, frames, options);
+  const Skeleton sized = scaled(generic, found.scales);
+  std::vector<Vector<3>> offsets;
+  for (std::size_t j = 0; j < sized.markers.size(); ++j)
+    offsets.push_back(found.skeleton.markers[j].position - sized.markers[j].position);
+  const double least = cost_of(generic, frames, found.scales, offsets, options);
+  std::printf("cost %.2f, at the generic sizes %.2f\n", least,
+              cost_of(generic, frames, {Vector<3>::Ones(), Vector<3>::Ones()},
+                      std::vector<Vector<3>>(sized.markers.size(), Vector<3>::Zero()), options));
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double step : {-0.004, 0.004}) {
+        std::vector<Vector<3>> scales = found.scales;
+        scales[s][axis] += step;
+        EXPECT_GT(cost_of(generic, frames, scales, offsets, options), 0.999 * least)
+            << "segment " << s << " axis " << axis << " by " << step;
+      }
+    }
+  }
+  for (std::size_t j = 0; j < offsets.size(); ++j) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double step : {-0.0005, 0.0005}) {
+        std::vector<Vector<3>> moved = offsets;
+        moved[j][axis] += step;
+        EXPECT_GT(cost_of(generic, frames, found.scales, moved, options), 0.999 * least)
+            << "marker " << j << " axis " << axis << " by " << step;
+      }
+    }
   }
 }
 

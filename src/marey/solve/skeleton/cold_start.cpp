@@ -18,6 +18,7 @@ constexpr double kGoodStartM = 0.03;  // RMS with which a start is believed with
 constexpr int kRandomStarts = 12;
 constexpr double kWeakPrior = 1;       // 1/rad²
 constexpr double kAtLimitRad = 0.035;  // 2°
+constexpr double kOneWay = 0.2;        // of a range: how lopsided a hinge's is that bends one way
 constexpr double kBentRad = 0.7;       // 40°: the way a hinge may bend
 constexpr double kTurnedRad = 0.4;     // assumed: one σ of an arm's or thigh's turn about itself
 constexpr double kBackRad = 0.1;       // assumed: one σ of what an elbow or knee bends backwards
@@ -110,6 +111,8 @@ void PoseSolver::find_limbs() {
       if (!hinge.turns || !hinge.coordinate) continue;
       const Coordinate& bends = skeleton.coordinates[static_cast<std::size_t>(*hinge.coordinate)];
       if (!bends.free() || !bends.lowest || !bends.highest) continue;
+      // What goes as far either way, as a shoulder's girdle, is no elbow that could be bent backwards.
+      if (std::abs(*bends.lowest + *bends.highest) < kOneWay * (*bends.highest - *bends.lowest)) continue;
       const Vector<3> along = above.joint.joint_from_segment * segment.joint.parent_from_joint.translation;
       if (along.norm() < 1e-3) continue;
       Limb limb{.ball = b, .hinge = *hinge.coordinate, .beside = {}, .along = along.normalized(), .rest = rest.balls[b]};

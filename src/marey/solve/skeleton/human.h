@@ -15,8 +15,9 @@ namespace marey::solve::skeleton {
 /// One of a standing person's segments: x ahead, y to its left, z up; its origin is the joint by which it hangs on its parent.
 struct StandingSegment {
   std::string
-      name;  ///< of the human skeleton: "pelvis", "trunk", "head", "left_thigh", "left_shank", "left_foot", "left_upper_arm", …
+      name;  ///< of the human skeleton: "pelvis", "trunk", "head", "left_thigh", "left_shank", "left_foot", "left_clavicle", …
   Rigid3 world_from;
+  std::optional<Vector<3>> end = {};  ///< m, in the world: where it ends, if nothing hangs on it
 };
 
 struct StandingMarker {
@@ -26,7 +27,7 @@ struct StandingMarker {
 };
 
 /// The human skeleton of those segments that are there. A segment whose parent is missing is left out, and its markers. Throws
-/// Error without a pelvis.
+/// Error without a pelvis. Where there is no clavicle the upper arm hangs on the trunk.
 Skeleton human_skeleton(const std::string& name, std::span<const StandingSegment> segments,
                         std::span<const StandingMarker> markers);
 
