@@ -30,17 +30,35 @@ struct InfoOptions {
   bool quiet = false;
 };
 
+/// What the edits that count have left of a take; what cameras saw they do not touch.
+RecordingSummary edited_summary(const InfoOptions& options, const format::Format& format, const RecordingSummary& recorded) {
+  RecordingSummary summary = format::open_recording(options.file, format, {})->summary();
+  summary.seen = recorded.seen;
+  summary.complete = recorded.complete;
+  return summary;
+}
+
 void report_recording(const InfoOptions& options, const format::Format& format) {
   format::ReadOptions how;
   how.as_recorded = true;
   how.metadata = options.metadata;
   const auto reader = format::open_recording(options.file, format, how);
-  const RecordingSummary summary = reader->summary();
-  print_warnings(reader->warnings());
+  RecordingSummary summary = reader->summary();
+  std::vector<std::string> warnings = reader->warnings();
+  std::vector<pipeline::EditLine> edits;
+  if (!reader->info().edits.empty()) {
+    try {
+      edits = pipeline::lines_of(pipeline::edit_history(options.file));
+      if (reader->info().head) summary = edited_summary(options, format, summary);
+    } catch (const Error& error) {
+      warnings.push_back(fmt::format("{}; what follows is as it was recorded", error.what()));
+    }
+  }
+  print_warnings(warnings);
   if (options.json) {
-    print(info_json(format, reader->info(), summary));
+    print(info_json(format, reader->info(), summary, edits));
   } else if (!options.quiet) {
-    print_recording(options.file, format, reader->info(), summary);
+    print_recording(options.file, format, reader->info(), summary, edits);
   }
 }
 

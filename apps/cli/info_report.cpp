@@ -142,7 +142,7 @@ void print_rig(const Rig& rig) {
 }
 
 void print_recording(const std::string& path, const format::Format& format, const format::FileInfo& info,
-                     const RecordingSummary& summary) {
+                     const RecordingSummary& summary, const std::vector<pipeline::EditLine>& edits) {
   fmt::print("{}: {}{}\n", path, format.title,
              summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
   print_row("name", info.header.name);
@@ -171,7 +171,8 @@ void print_recording(const std::string& path, const format::Format& format, cons
   if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
   print_row("positions", to_string(info.header.frame));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
-  for (const Edit& edit : info.edits) print_row("edit", fmt::format("{} {}", edit.operation, edit.payload));
+  for (const pipeline::EditLine& edit : edits)
+    print_row("edit", fmt::format("{} {}{}", edit.id, edit.words, edit.counts ? "" : " (does not count)"));
   if (info.header.rig) {
     print_row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
     print_calibration(*info.header.rig);
@@ -195,7 +196,8 @@ Json info_json(const Rig& rig) {
   return cameras;
 }
 
-Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary) {
+Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary,
+               const std::vector<pipeline::EditLine>& edits) {
   Json tracks = Json::array();
   for (const auto& count : summary.tracks) {
     Json entry{{"id", number(count.name.id)},
@@ -227,9 +229,14 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
   if (info.header.rig) result["cameras"] = info_json(*info.header.rig);
-  Json edits = Json::array();
-  for (const Edit& edit : info.edits) edits.push_back({{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}});
-  if (!edits.empty()) result["edits"] = std::move(edits);
+  Json told = Json::array();
+  for (const Edit& edit : info.edits) {
+    Json entry{{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}};
+    const auto line = std::find_if(edits.begin(), edits.end(), [&](const pipeline::EditLine& each) { return each.id == edit.id; });
+    if (line != edits.end()) entry["words"] = line->words, entry["counts"] = line->counts;
+    told.push_back(std::move(entry));
+  }
+  if (!told.empty()) result["edits"] = std::move(told);
   return result;
 }
 

@@ -49,6 +49,25 @@ class BodiesAndLabels(unittest.TestCase):
         for line in lines:
             self.marey(*shlex.split(line)[1:])
 
+    def test_computed_points_are_named_as_what_they_are(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 100, "-o", "walk", "-q")
+        with open(self.folder / "walk" / "truth.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        # Four points beside each marker, as joints' centres and axes' ends stand in files of other systems.
+        with open(self.folder / "computed.csv", "w") as file:
+            file.write("frame,time,id,label,x,y,z\n")
+            for row in rows:
+                for copy in range(5):
+                    file.write(f"{row['frame']},{row['time']},{int(row['id']) + 100 * copy},{row['label']}{'_' * copy},{float(row['x']) + 0.002 * copy},{row['y']},{row['z']}\n")
+        told = json.loads(self.marey("label", "learn", "computed.csv", "-o", "set.toml", "--json").stdout)
+        self.assertIn("200 of the set's 200 points", told["warnings"][0])
+        done = self.marey("label", "computed.csv", "--set", "set.toml", "-o", "named.csv", code=1)
+        self.assertIn("name the markers alone", done.stderr)
+        self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
+        done = self.marey("label", "computed.csv", "--set", "set.toml", "-o", "named.csv", code=1)
+        self.assertIn("200 points stand in a frame", done.stderr)
+        self.assertNotIn("in metres?", done.stderr)
+
     def test_bodies_as_the_page_says(self):
         self.run_page("bodies.md")
         database = sqlite3.connect(self.folder / "bodies.marey")

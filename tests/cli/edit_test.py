@@ -55,6 +55,21 @@ class Edit(unittest.TestCase):
         self.assertEqual(len(self.places("knee")), FRAMES - 5)
         self.assertEqual(self.exported("raw.csv", "--as-recorded"), self.before)
 
+    def test_info_says_what_the_edits_have_left_and_what_they_are(self):
+        marey("edit", self.take, "rename A ankle", "delete B", "fill all", "rename C hip")
+        marey("edit", self.take, "--undo")
+        said = json.loads(marey("info", self.take, "--json").stdout)
+        self.assertEqual([(track["label"], track["measured"], track["filled"]) for track in said["tracks"]], [("ankle", FRAMES, 0), ("C", FRAMES - 5, 5)])
+        self.assertEqual([edit["counts"] for edit in said["edits"]], [True, True, True, False])
+        self.assertEqual(said["edits"][0]["words"], "rename A to ankle")
+        shown = marey("info", self.take).stdout
+        self.assertIn("rename A to ankle\n", shown)
+        self.assertIn("rename C to hip (does not count)", shown)
+        self.assertNotIn("{", shown)
+        marey("edit", self.take, "--to", 0)
+        said = json.loads(marey("info", self.take, "--json").stdout)
+        self.assertEqual([track["label"] for track in said["tracks"]], ["A", "B", "C"])
+
     def test_a_copy_keeps_the_edits_to_be_undone(self):
         marey("edit", self.take, "rename A ankle")
         copy = self.folder / "copy.marey"

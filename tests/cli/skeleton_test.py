@@ -132,6 +132,87 @@ class Skeleton(unittest.TestCase):
         self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--marker-set", "cmu-41", "-o", "x.mot", code=2)
         self.assertFalse((self.folder / "x.mot").exists())
 
+    CHILDREN = ("HC002D", "HC030A", "HC031A", "HC033A", "HC038A", "HC044A")
+
+    def child(self, name, kind):
+        return next((DATA / "gait_children" / name).glob(kind + "_*.c3d"))
+
+    def column(self, name, column, separator):
+        """Of a table whose head is the first line that names the column; nothing where a cell is empty."""
+        lines = (self.folder / name).read_text().splitlines()
+        begin = next(i for i, line in enumerate(lines) if column in line.split(separator))
+        at = lines[begin].split(separator).index(column)
+        cells = [line.split(separator)[at].strip() for line in lines[begin + 1:]]
+        return [float(cell) if cell else None for cell in cells]
+
+    def test_elbows_bend_as_the_conventional_model_has_them(self):
+        # Shoulders stand otherwise when children walk than when they stand: by 30 mm with HC031A.
+        for name in self.CHILDREN:
+            static, walk = self.child(name, "static"), self.child(name, "straight")
+            told = json.loads(self.marey("solve", walk, "--static", static, "-o", "walk.mot", "--json").stdout)
+            self.marey("gait", walk, "--static", static, "--angles", "angles.csv", "-q")
+            shoulder = max(marker["rms_mm"] for marker in told["markers"] if marker["label"] in ("LSHO", "RSHO"))
+            offs = {}
+            for side in ("left", "right"):
+                solved = self.column("walk.mot", f"{side}_elbow_flexion", "\t")
+                model = self.column("angles.csv", f"{side}_elbow_flexion", ",")
+                pairs = [(a, b) for a, b in zip(solved, model) if b is not None]
+                offs[side] = (sum((a - b) ** 2 for a, b in pairs) / len(pairs)) ** 0.5
+            print(f"{name}: elbows off by {offs['left']:.1f} and {offs['right']:.1f} deg RMS, shoulders' markers {shoulder:.1f} mm, all {told['rms_mm']:.1f} mm")
+            self.assertLess(max(offs.values()), 8, name)
+            self.assertLess(shoulder, 15, name)
+
+    def test_bones_have_ends(self):
+        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.bvh", "-q")
+        joint, ends = "", {}
+        for line in (self.folder / "walk.bvh").read_text().splitlines():
+            words = line.split()
+            if words[:1] in (["JOINT"], ["ROOT"]):
+                joint = words[1]
+            elif words[:1] == ["End"]:
+                joint += ".end"
+            elif words[:1] == ["OFFSET"] and joint.endswith(".end"):
+                ends[joint] = sum(float(word) ** 2 for word in words[1:]) ** 0.5
+        self.assertEqual(set(ends), {"head.end", "left_foot.end", "right_foot.end", "left_hand.end", "right_hand.end"})
+        for name, cm in ends.items():  # of a child of 1.3 m
+            self.assertTrue((4 if "hand" in name else 10) < cm < 30, (name, cm))
+
+    def test_few_markers_are_not_called_good(self):
+        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
+        self.marey("convert", "walk.c3d", "walk.csv", "-q")
+        head, *rows = (self.folder / "walk.csv").read_text().splitlines()
+        label = head.split(",").index("label")
+        for kept, words in (({"LASI"}, "says nothing, 1 of the skeleton's"),
+                            ({"LASI", "RASI", "SACR", "LTHI", "LKNE", "LTIB", "LANK", "RTHI", "RKNE", "RTIB", "RANK", "LTOE", "RTOE"}, "13 of the skeleton's")):
+            (self.folder / "few.csv").write_text("\n".join([head, *(row for row in rows if row.split(",")[label] in kept)]) + "\n")
+            self.assertIn(words, self.marey("solve", "few.csv", "--skeleton", "person.toml", "-o", "x.mot").stderr)
+
+    def test_what_is_up_is_asked(self):
+        triads = ("solve", "triads.trc", "--static", "triads_standing.trc", "-o", "walk.mot")
+        self.assertIn("triads.trc: z was taken for up", self.marey(*triads).stderr)
+        self.assertNotIn("taken for up", self.marey(*triads, "--up", "y").stderr)
+        self.assertNotIn("taken for up", self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.mot").stderr)
+        self.marey("convert", "walk.c3d", "walk_y.trc", "--up", "y", "-q")
+        self.assertIn("walk_y.trc: z was taken for up, and the person's up is along y: give --up y", self.marey("gait", "walk_y.trc", code=1).stderr)
+        self.marey("gait", "walk_y.trc", "--up", "y", "-q")
+
+    def test_who_the_static_trial_is_of_and_what_it_lacks(self):
+        other = self.marey("solve", "walk.c3d", "--static", "other.c3d", "-o", "x.mot", "-q").stderr
+        self.assertIn("another person's static trial than walk.c3d", other)
+        own = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "x.mot", "-q").stderr
+        self.assertNotIn("another person", own)
+        self.marey("convert", "standing.c3d", "standing.csv", "-q")
+        kept = [row for row in (self.folder / "standing.csv").read_text().splitlines() if not any(f",{label}," in row for label in ("SACR", "LPSI", "RPSI"))]
+        (self.folder / "standing.csv").write_text("\n".join(kept) + "\n")
+        done = self.marey("solve", "walk.c3d", "--static", "standing.csv", "-o", "y.mot", code=1)
+        self.assertIn("standing.csv: the pelvis is not known", done.stderr)
+        self.assertIn("SACR, LPSI, RPSI are not seen", done.stderr)
+
+    def test_gait_of_who_stands_is_refused(self):
+        done = self.marey("gait", "standing.c3d", code=1)
+        self.assertIn("standing.c3d: no steps were found", done.stderr)
+        self.marey("gait", "standing.c3d", "--angles", "angles.csv", "-q")
+
     def test_gait_finds_the_steps(self):
         said = json.loads(self.marey("gait", "walk.c3d", "--static", "standing.c3d", "-o", "cycles.csv", "--json").stdout)
         self.assertEqual(len([e for e in said["events"] if e["event"] == "strike"]), 6)
@@ -143,7 +224,7 @@ class Skeleton(unittest.TestCase):
 
     def test_gait_of_who_does_not_walk_is_refused(self):
         done = self.marey("gait", "punches.c3d", "-o", "none.csv", code=1)
-        self.assertIn("no gait cycle", done.stderr)
+        self.assertIn("no steps were found", done.stderr)
         self.assertFalse((self.folder / "none.csv").exists())
 
     def test_gait_warns_of_another_persons_static_trial(self):
@@ -220,6 +301,15 @@ class Skeleton(unittest.TestCase):
         self.marey("convert", name, "points.csv", *options, "-q")
         with open(self.folder / "points.csv", newline="") as file:
             return {(row["frame"], row["label"]): [float(row[axis]) for axis in "xyz"] for row in csv.DictReader(file)}
+
+    def test_a_marker_a_joint(self):
+        # OpenMoCap's semantics: a marker bears the name of the joint that it sits on.
+        self.marey("convert", "dance.bvh", "joints.c3d", "-q")
+        said = json.loads(self.marey("solve", "joints.c3d", "--skeleton", "dance.bvh", "-o", "again.bvh", "-o", "again.mot", "--json").stdout)
+        self.assertLess(said["rms_mm"], 2)
+        self.assertEqual((said["not_recorded"], said["not_known"]), ([], []))
+        self.assertTrue(any("one is taken to sit on each joint" in warning for warning in said["warnings"]), said["warnings"])
+        self.assertTrue(any(coordinate["observed"] < 0.5 for coordinate in said["coordinates"]), "no marker shows how a bone turns about itself")
 
     def test_skeletons_motions_that_cannot_be_are_refused(self):
         (self.folder / "01.asf").rename(self.folder / "bones.txt")

@@ -98,6 +98,53 @@ TEST(Edit, SplitJoinRenameDelete) {
   EXPECT_EQ(picture(edited(recording)), "A:1111.. ");
 }
 
+/// What was found when a fill was decided stays with the edit: who then wants one track reads that one alone.
+TEST(Edit, FillsKeepTheirPlaces) {
+  Recording recording = letters(4, 60);
+  edit(recording, "delete A 20:22");
+  edit(recording, "delete B 40:43");
+  edit(recording, "fill all");
+  const Recording whole = edited(recording);
+  std::vector<TrackName> names;
+  for (const TrackColumns& track : recording.tracks()) names.push_back(track.name);
+  std::vector<TrackId> read;
+  Tracks tracks(recording.instants(), names, [&](TrackId track) {
+    read.push_back(track);
+    return *recording.find(track);
+  });
+  for (const Edit& one : recording.edits) {
+    const Operation operation = operation_of(one).value();
+    if (operation.kind == Operation::Kind::fill) {
+      EXPECT_EQ(read, (std::vector{TrackId{1}, TrackId{2}}));
+      ASSERT_EQ(operation.gaps.size(), 2U);
+      EXPECT_EQ(operation.gaps[1].places.size(), 4U);
+    }
+    tracks.apply(operation);
+  }
+  EXPECT_EQ(tracks.rows(TrackId{1}).size(), 60U);
+  EXPECT_EQ(read.size(), 2U) << "nobody wanted the others";
+  for (const TrackId track : {TrackId{1}, TrackId{2}}) {
+    const TrackColumns now = tracks.columns(track, 3);
+    for (std::size_t row = 0; row < 60; ++row) EXPECT_EQ(now.sample(row).position, whole.find(track)->sample(row).position);
+  }
+  // Edits of before have no places: they are found anew, and are the same.
+  Recording older = recording;
+  for (Edit& one : older.edits) {
+    Operation operation = operation_of(one).value();
+    for (FilledGap& gap : operation.gaps) gap.places.clear();
+    one.payload = edit_of(operation).payload;
+  }
+  const Recording again = edited(older);
+  for (std::size_t row = 0; row < 60; ++row) {
+    EXPECT_EQ(again.find(TrackId{1})->sample(row).position, whole.find(TrackId{1})->sample(row).position);
+    EXPECT_EQ(again.find(TrackId{2})->sample(row).position, whole.find(TrackId{2})->sample(row).position);
+  }
+  Operation damaged = operation_of(recording.edits.back()).value();
+  damaged.gaps.front().places.pop_back();
+  recording.edits.back().payload = edit_of(damaged).payload;
+  EXPECT_THROW(edited(recording), Error);
+}
+
 TEST(Edit, TeamsAreGivenAndGoAlong) {
   Recording recording = letters(3, 6);
   edit(recording, "team A,C \"Real, Madrid\"");

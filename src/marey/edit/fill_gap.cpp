@@ -135,7 +135,8 @@ std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, c
                     .frames = {index(gap.first), index(gap.last)},
                     .method = best->first,
                     .donors = {},
-                    .expected_m = best->second.expected_m};
+                    .expected_m = best->second.expected_m,
+                    .places = *filled(best->first, piece.places, piece.hole, donors, piece.hole)};
   if (decided.method != FillMethod::spline) {
     for (const std::size_t donor : donors) decided.donors.push_back(markers[donor]);
   }
@@ -172,29 +173,42 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
   return fills;
 }
 
-Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap) {
+namespace {
+
+[[noreturn]] void fail_to_fill(const Tracks& tracks, const FilledGap& gap) {
+  throw Error("the gap of {} in frames {} to {} cannot be filled again: what it was filled from is not there any more",
+              tracks.name(gap.track).label, gap.frames.first, gap.frames.last);
+}
+
+/// As it was found when it was decided.
+Path found_again(Tracks& tracks, const FilledGap& gap, const Gap& at) {
   std::vector<TrackId> markers{gap.track};
   markers.insert(markers.end(), gap.donors.begin(), gap.donors.end());
-  const Gap at{instant_of(tracks, gap.frames.first), instant_of(tracks, gap.frames.last + 1) - 1};
-  const auto refuse = [&] {
-    throw Error("the gap of {} in frames {} to {} cannot be filled again: what it was filled from is not there any more",
-                tracks.name(gap.track).label, gap.frames.first, gap.frames.last);
-  };
-  if (at.first <= 0 || at.last < at.first || at.last + 1 >= std::ssize(tracks.moments())) refuse();
   const Surroundings piece = surroundings_of(tracks, markers, at);
   std::vector<std::size_t> donors(gap.donors.size());
   for (std::size_t i = 0; i < donors.size(); ++i) donors[i] = i + 1;
   const bool told =
       std::all_of(donors.begin(), donors.end(), [&](std::size_t one) { return piece.places.markers[one].spans(piece.hole); });
-  const auto path = told ? filled(gap.method, piece.places, piece.hole, donors, piece.hole) : std::nullopt;
-  if (!path) refuse();
+  auto path = told ? filled(gap.method, piece.places, piece.hole, donors, piece.hole) : std::nullopt;
+  if (!path) fail_to_fill(tracks, gap);
+  return std::move(*path);
+}
+
+}  // namespace
+
+Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap) {
+  const Gap at{instant_of(tracks, gap.frames.first), instant_of(tracks, gap.frames.last + 1) - 1};
+  if (at.first <= 0 || at.last < at.first || at.last + 1 >= std::ssize(tracks.moments())) fail_to_fill(tracks, gap);
+  const bool kept = std::ssize(gap.places) == at.last - at.first + 1;
+  if (!kept && !gap.places.empty()) fail_to_fill(tracks, gap);
+  const Path path = kept ? gap.places : found_again(tracks, gap, at);
   Tracks::Rows rows;
-  for (std::size_t i = 0; i < path->size(); ++i) {
-    const double share = static_cast<double>(i + 1) / static_cast<double>(path->size() + 1);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / static_cast<double>(path.size() + 1);
     const double variance = gap.expected_m * gap.expected_m * 4 * share * (1 - share) / 3;  // of each coordinate
     Sample sample;
     sample.track = gap.track;
-    sample.position = (*path)[i];
+    sample.position = path[i];
     sample.provenance = Provenance::filled;
     sample.covariance = Matrix<3>(variance * Matrix<3>::Identity());
     rows.push_back({at.first + static_cast<std::int32_t>(i), sample});

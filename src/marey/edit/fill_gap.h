@@ -21,7 +21,8 @@ struct FillOptions {
 std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::optional<FrameRange>& frames,
                                     const FillOptions& options);
 
-/// The rows of a gap, filled as was decided. Throws Error where what it was decided on is not there any more.
+/// The rows of a gap, filled as was decided; other tracks are asked only where the edit does not keep its places. Throws Error
+/// where what it was decided on is not there any more.
 Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap);
 
 }  // namespace marey::edit

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -69,6 +71,41 @@ double positive(const json& value) {
   return number;
 }
 
+/// Sixteen hexadecimal digits a number, its bits from the highest on: exact, and read at once where there are many.
+std::string digits_of(const std::vector<Vector<3>>& places) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  text.reserve(48 * places.size());
+  for (const Vector<3>& place : places) {
+    for (const double value : place) {
+      const auto bits = std::bit_cast<std::uint64_t>(value);
+      for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(bits >> shift) & 15];
+    }
+  }
+  return text;
+}
+
+std::vector<Vector<3>> places_of(const json& value) {
+  const auto& text = value.get_ref<const std::string&>();
+  if (text.size() % 48 != 0) throw json::other_error::create(500, "places", &value);
+  std::vector<Vector<3>> places(text.size() / 48);
+  std::size_t at = 0;
+  for (Vector<3>& place : places) {
+    for (double& coordinate : place) {
+      std::uint64_t bits = 0;
+      for (int digit = 0; digit < 16; ++digit, ++at) {
+        const char c = text[at];
+        const int amount = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+        if (amount < 0) throw json::other_error::create(500, "places", &value);
+        bits = bits << 4 | static_cast<std::uint64_t>(amount);
+      }
+      coordinate = std::bit_cast<double>(bits);
+    }
+    if (!place.allFinite()) throw json::other_error::create(500, "places", &value);
+  }
+  return places;
+}
+
 FilledGap gap_of(const json& value) {
   FilledGap gap{.track = track_of(value.at("track")),
                 .frames = range_of(value.at("frames")),
@@ -77,6 +114,7 @@ FilledGap gap_of(const json& value) {
   const auto method = method_named(value.at("method").get<std::string>());
   if (!method) throw json::other_error::create(500, "a method", &value);
   gap.method = *method;
+  if (value.contains("places")) gap.places = places_of(value["places"]);
   return gap;
 }
 
@@ -136,6 +174,7 @@ Edit edit_of(const Operation& operation) {
                {"method", name_of(gap.method)},
                {"expected_m", gap.expected_m}};
     if (!gap.donors.empty()) entry["donors"] = ids(gap.donors);
+    if (!gap.places.empty()) entry["places"] = digits_of(gap.places);
     payload["gaps"].push_back(std::move(entry));
   }
   if (!operation.cutoffs_hz.empty()) payload["cutoffs_hz"] = operation.cutoffs_hz;

@@ -33,6 +33,7 @@ struct FilledGap {
   FillMethod method{};
   std::vector<TrackId> donors;  ///< of `rigid` and `pattern`: the markers that it is told by
   double expected_m = 0;        ///< standard deviation of a filled place's distance from the true one, in the middle of the gap
+  std::vector<Vector<3>> places = {};  ///< instant by instant, as found when it was decided; empty in edits of before: found anew
 
   bool operator==(const FilledGap&) const = default;
 };

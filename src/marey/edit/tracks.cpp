@@ -78,6 +78,7 @@ Rows& Tracks::rows(TrackId track) {
     wanted.rows.emplace();
     wanted.rows->reserve(columns.size());
     for (std::size_t row = 0; row < columns.size(); ++row) wanted.rows->push_back({columns.at()[row], columns.sample(row)});
+    for (const FilledGap& gap : std::exchange(wanted.due, {})) put_in(*wanted.rows, rows_in_gap(*this, gap));
   }
   return *wanted.rows;
 }
@@ -99,7 +100,6 @@ void Tracks::apply(const Operation& operation) {
   switch (operation.kind) {
     case Kind::rename:
       entry(operation.tracks[0]).name.label = operation.label;
-      rows(operation.tracks[0]);
       entry(operation.tracks[0]).changed = true;
       return;
     case Kind::swap:
@@ -114,7 +114,6 @@ void Tracks::apply(const Operation& operation) {
       return fill(operation);
     case Kind::team:
       for (const TrackId track : operation.tracks) {
-        rows(track);
         entry(track).name.team = operation.label;
         entry(track).changed = true;
       }
@@ -171,11 +170,18 @@ void Tracks::remove(const Operation& operation) {
 }
 
 void Tracks::fill(const Operation& operation) {
-  std::vector<Rows> filled;  // a marker that is filled tells nothing of another
-  for (const FilledGap& gap : operation.gaps) filled.push_back(rows_in_gap(*this, gap));
+  std::vector<Rows> filled(operation.gaps.size());  // a marker that is filled tells nothing of another
   for (std::size_t i = 0; i < filled.size(); ++i) {
-    put_in(rows(operation.gaps[i].track), std::move(filled[i]));
-    entry(operation.gaps[i].track).changed = true;
+    Entry& own = entry(operation.gaps[i].track);
+    if (operation.gaps[i].places.empty() || own.rows) {
+      filled[i] = rows_in_gap(*this, operation.gaps[i]);
+    } else {
+      own.due.push_back(operation.gaps[i]);
+    }
+    own.changed = true;
+  }
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    if (!filled[i].empty()) put_in(rows(operation.gaps[i].track), std::move(filled[i]));
   }
 }
 

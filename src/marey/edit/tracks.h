@@ -1,5 +1,5 @@
 // A recording's tracks while operations are applied to them: taken out of their columns when an operation first wants them, and
-// put back at the end. Operations that name two tracks of fifty touch two.
+// put back at the end. Operations that name two tracks of fifty touch two; a fill of all of them waits for who asks for one.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +51,7 @@ class Tracks {
     TrackName name;
     std::optional<Rows> rows;  // nothing until they are wanted
     bool changed = false;
+    std::vector<FilledGap> due = {};  // fills that keep their places, for when the rows are wanted
   };
 
   Entry& entry(TrackId track);

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/format/skeleton/skeleton_file.h"
 #include "marey/pipeline/stopwatch.h"
 
 namespace marey::pipeline {
@@ -182,10 +181,26 @@ solve::skeleton::PoseOptions live_pose_options() {
   return options;
 }
 
+format::skeleton::SkeletonFile with_a_marker_a_joint(format::skeleton::SkeletonFile file) {
+  Skeleton& skeleton = file.skeleton;
+  if (!skeleton.markers.empty()) return file;
+  for (std::size_t s = 0; s < skeleton.segments.size(); ++s) {
+    const Segment& segment = skeleton.segments[s];
+    skeleton.markers.push_back({segment.name, static_cast<int>(s), Vector<3>::Zero(), 1});
+    if (segment.end && segment.end->norm() > 0)
+      skeleton.markers.push_back({segment.name + ".end", static_cast<int>(s), *segment.end, 1});
+  }
+  file.warnings.push_back(
+      fmt::format("{}: has no markers, so that one is taken to sit on each joint, called as the joint; how bones turn "
+                  "about themselves no such marker shows",
+                  skeleton.name));
+  return file;
+}
+
 std::shared_ptr<const Skeleton> skeleton_with_markers(const std::string& path, std::vector<std::string>& warnings) {
   format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(path);
   if (file.skeleton.name.empty()) file.skeleton.name = std::filesystem::path(path).stem().string();
-  if (file.skeleton.markers.empty()) throw Error("{}: the skeleton has no markers; without them nothing shows its pose", path);
+  file = with_a_marker_a_joint(std::move(file));
   for (std::string& warning : file.warnings) warnings.push_back(std::move(warning));
   return std::make_shared<const Skeleton>(std::move(file.skeleton));
 }

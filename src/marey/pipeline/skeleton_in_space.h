@@ -14,6 +14,7 @@
 #include "marey/core/recording_reader.h"
 #include "marey/core/skeleton.h"
 #include "marey/core/stage_times.h"
+#include "marey/format/skeleton/skeleton_file.h"
 #include "marey/solve/skeleton/calibrate.h"
 #include "marey/solve/skeleton/pose_solver.h"
 
@@ -90,8 +91,12 @@ class SkeletonInSpace {
 /// frame.
 solve::skeleton::PoseOptions live_pose_options();
 
+/// A skeleton file without markers (BVH, ASF) with one on each joint, called as the joint, and `NAME.end` where a segment ends, as
+/// OpenMoCap's semantics have it. Its warnings say so.
+format::skeleton::SkeletonFile with_a_marker_a_joint(format::skeleton::SkeletonFile file);
+
 /// From a file, for those who solve as they go. Its warnings are added to `warnings`. Throws Error where the file is no skeleton,
-/// or one without markers.
+/// or one that has neither markers nor joints.
 std::shared_ptr<const Skeleton> skeleton_with_markers(const std::string& path, std::vector<std::string>& warnings);
 
 /// The recording with the skeleton's segments in the place of its bodies. Throws Error where it has no points in space.

@@ -237,7 +237,7 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
   if (!skeleton.empty()) {
     format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
     if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
-    return file;
+    return with_a_marker_a_joint(std::move(file));
   }
   if (options.static_trial.empty())
     throw Error("a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field");

@@ -1,6 +1,7 @@
 #include "marey/solve/bodies/body_follower.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -73,6 +74,29 @@ TEST(BodyFollower, FindsAndFollowsBodiesWithoutNames) {
     EXPECT_EQ(wrong, 0) << "seed " << seed;
     EXPECT_GT(measured, 6 * 300 * 0.97) << "seed " << seed;
     EXPECT_NEAR(follower.noise(), 0.0002, 0.00003) << "seed " << seed;
+  }
+}
+
+/// Points drift through a room as markers of people do; the bodies that are looked for are not there.
+TEST(BodyFollower, FindsNoBodyThatIsNotThere) {
+  for (const auto& [count, half] : {std::pair{60, 1.0}, {100, 1.5}, {300, 2.0}}) {
+    int found = 0, looks = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      moving::Random random(seed);
+      std::vector<Body> bodies;
+      for (int b = 0; b < 9; ++b) bodies.push_back(moving::body_of(b + 1, moving::scattered(random, 3 + b / 3, 0.12, 0.04)));
+      std::vector<moving::Path> paths;
+      for (int p = 0; p < count; ++p) paths.emplace_back(random, random.in_box(half));
+      BodyFollower follower(bodies);
+      for (int i = 0; i < 200; ++i) {
+        std::vector<FollowedPoint> points;
+        for (const moving::Path& path : paths) points.push_back({path.at(i / 100.0).translation + random.gaussian(0.0002), {}});
+        for (const BodyPose& pose : follower.step(timestamp_from_seconds(i / 100.0), points)) found += pose.tracked;
+        looks += static_cast<int>(bodies.size());
+      }
+    }
+    std::printf("%d points: of %d looks for bodies that are absent %d found one\n", count, looks, found);
+    EXPECT_LT(found, 0.003 * looks) << count << " points";
   }
 }
 

@@ -125,8 +125,8 @@ class Calibrator {
     const Eigen::Index scales = 3 * std::ssize(group_scale_), unknowns = scales + 3 * std::ssize(offsets_);
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns);
-    Articulation articulation(now_);
-    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(articulation, *frames_[f], poses_[f], information, gradient);
+    PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m});
+    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(solver, *frames_[f], poses_[f], information, gradient);
     const Eigen::VectorXd data = information.diagonal();
     const double of_scale = 1 / (options_.scale_sigma * options_.scale_sigma),
                  of_offset = 1 / (options_.offset_sigma_m * options_.offset_sigma_m);
@@ -150,16 +150,21 @@ class Calibrator {
     return step.cwiseAbs().maxCoeff() > 1e-5;
   }
 
-  /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ.
-  void add_frame(Articulation& articulation, const SeenMarkers& seen, const std::vector<double>& coordinates,
-                 Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
+  /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ. A joint that is held at its limit does not give way to a size.
+  void add_frame(PoseSolver& solver, const SeenMarkers& seen, const std::vector<double>& coordinates, Eigen::MatrixXd& information,
+                 Eigen::VectorXd& gradient) const {
+    Articulation& articulation = solver.articulation();
     const int n = articulation.dofs();
-    articulation.place(articulation.state_of(coordinates));
+    const SkeletonState state = articulation.state_of(coordinates);
+    articulation.place(state);
     const auto& pose = articulation.world_from_segment();
     const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
     Eigen::MatrixXd by_pose = Eigen::MatrixXd::Zero(3, n), by_model(3, gradient.size());
-    Eigen::MatrixXd h = Eigen::MatrixXd::Identity(n, n), e = Eigen::MatrixXd::Zero(n, gradient.size());
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd e = Eigen::MatrixXd::Zero(n, gradient.size());
+    PoseEquations own_pose{.information = Eigen::MatrixXd::Identity(n, n), .gradient = Eigen::VectorXd::Zero(n)};
+    solver.add_limits(state, own_pose);
+    Eigen::MatrixXd& h = own_pose.information;
+    Eigen::VectorXd& b = own_pose.gradient;
     for (std::size_t j = 0; j < seen.size(); ++j) {
       if (!seen[j]) continue;
       const auto own = static_cast<std::size_t>(now_.markers[j].segment);
