@@ -35,6 +35,8 @@ struct SolveCommand {
 
 using pipeline::SolveSummary;
 
+constexpr std::ptrdiff_t kFreeBody = 6;  // what even one segment's markers show, if they are enough
+
 std::string joined(const std::vector<std::string>& names, std::size_t most) {
   const auto shown = std::span(names).first(std::min(most, names.size()));
   return fmt::format("{}{}", fmt::join(shown, ", "), names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
@@ -44,8 +46,10 @@ std::string joined(const std::vector<std::string>& names, std::size_t most) {
 std::string verdict(const SolveSummary& summary) {
   const std::string seen =
       fmt::format("{:.0f} of the skeleton's {} markers are seen in a frame", summary.markers_a_frame, summary.skeleton_markers);
-  if (3 * summary.markers_a_frame <= summary.freedoms)
-    return fmt::format("that says nothing, {}, too few for its {} angles and shifts", seen, summary.freedoms);
+  const auto observed = std::count_if(summary.coordinates.begin(), summary.coordinates.end(),
+                                      [](const SolveSummary::Coordinate& coordinate) { return coordinate.observed >= 0.5; });
+  if (observed < std::min<std::ptrdiff_t>(kFreeBody, std::ssize(summary.coordinates)))
+    return fmt::format("that says nothing, {}, too few to show a pose", seen);
   if (summary.rms_m >= 0.020) return "poor: is the skeleton scaled to this person, and are the labels right?";
   const std::string word = summary.rms_m < 0.010 ? "good" : "fair";
   return 2 * summary.markers_a_frame < summary.skeleton_markers ? fmt::format("{}, but only {}", word, seen) : word;

@@ -89,7 +89,7 @@ const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::str
 }
 
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
-                              const gait::BodyMarkerSet& set) {
+                              const gait::BodyMarkerSet& set, const std::optional<std::int64_t>& most) {
   format::ReadOptions how;
   how.up = up.value_or(format::UpAxis::z);
   const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
@@ -112,6 +112,7 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
       markers.begin_s = seconds(instant->time);
     }
     const std::int64_t row = instant->index - *first;
+    if (most && row >= *most) break;
     if (row >= kMostRows) throw Error("{}: frame {} is beyond what one walk has", path, instant->index);
     markers.rows.resize(static_cast<std::size_t>(row) + 1);
     for (const Sample& sample : instant->samples) {

@@ -36,8 +36,9 @@ struct GaitMarkers {
 /// where they are none, or that one's lack.
 const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::string& name);
 
+/// `most` rows, or all.
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
-                              const gait::BodyMarkerSet& set = gait::plug_in_gait());
+                              const gait::BodyMarkerSet& set = gait::plug_in_gait(), const std::optional<std::int64_t>& most = {});
 
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
 gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);

@@ -24,6 +24,7 @@ namespace {
 using format::Content;
 using format::UpAxis;
 constexpr std::size_t kMostCalibrationFrames = 4096;
+constexpr std::int64_t kLooksAtPerson = 2000;  // rows by which it is told whether the static trial is another's
 
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
@@ -78,7 +79,6 @@ class SolveCounts {
     for (std::size_t c = 0; c < skeleton_.coordinates.size(); ++c) {
       if (skeleton_.coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
     }
-    summary.freedoms = static_cast<int>(summary.coordinates.size());
   }
 
  private:
@@ -246,7 +246,7 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
                                           {.motion = options.motion, .marker_set = options.marker_set, .up = options.up}, hooks);
   file.skeleton = std::move(human.skeleton);
   file.warnings = std::move(human.warnings);
-  GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set);
+  const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kLooksAtPerson);
   if (const auto other = other_person(human.standing, moving))
     file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
                                         options.static_trial, *other, recording));

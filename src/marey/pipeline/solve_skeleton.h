@@ -50,7 +50,6 @@ struct SolveSummary {
   std::int64_t frames = 0, empty = 0;  ///< instants; those without any of the skeleton's markers
   int skeleton_markers = 0;            ///< that the skeleton has
   double markers_a_frame = 0;          ///< seen on the mean, of instants with any
-  int freedoms = 0;                    ///< angles and shifts that move by themselves
   double rate_hz = 0, seconds = 0;
   double rms_m = 0, worst_m = 0;          ///< of all markers, all instants
   std::int64_t starts = 0;                ///< poses found without the one before

@@ -20,7 +20,7 @@ struct LearnOptions {
 LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options);
 
 /// Those of the set that lie nearer to another than two markers do, on the mean: points that a program computed among them (joints'
-/// centres, axes' ends). In twelve takes of the field no two markers ever came nearer than 19 mm.
+/// centres, axes' ends). Of the real takes that were measured no two markers ever came nearer than 19 mm.
 std::vector<std::string> too_near_for_markers(const LearnedMarkers& learned);
 
 }  // namespace marey::solve::labels
