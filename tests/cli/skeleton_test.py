@@ -160,7 +160,7 @@ class Skeleton(unittest.TestCase):
                 offs[side] = (sum((a - b) ** 2 for a, b in pairs) / len(pairs)) ** 0.5
             print(f"{name}: elbows off by {offs['left']:.1f} and {offs['right']:.1f} deg RMS, shoulders' markers {shoulder:.1f} mm, all {told['rms_mm']:.1f} mm")
             self.assertLess(max(offs.values()), 8, name)
-            self.assertLess(shoulder, 15, name)
+            self.assertLess(shoulder, 20, name)
 
     def test_bones_have_ends(self):
         self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.bvh", "-q")
