@@ -40,7 +40,7 @@ Picture picture_of(const std::string& path) {
 
 std::vector<std::string> files_of(const SimulatePeople& command) {
   std::vector<std::string> files;
-  for (const char* name : {"video.mp4", "truth.txt", "positions.csv", "silhouettes.jsonl"})
+  for (const char* name : {"video.mp4", "rig.toml", "truth.txt", "positions.csv", "silhouettes.jsonl"})
     files.push_back((std::filesystem::path(command.folder) / name).string());
   return files;
 }
@@ -59,7 +59,7 @@ void run(const SimulatePeople& command) {
            {"folder", command.folder},
            {"files", files_of(command)}});
   if (command.quiet || command.json) return;
-  fmt::print(stderr, "{} frames, {} {}\n{}: video.mp4, truth.txt, positions.csv, silhouettes.jsonl\n", film.frames(),
+  fmt::print(stderr, "{} frames, {} {}\n{}: video.mp4, rig.toml, truth.txt, positions.csv, silhouettes.jsonl\n", film.frames(),
              film.figures().size(), film.figures().size() == 1 ? "person" : "people", command.folder);
 }
 

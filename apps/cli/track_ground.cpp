@@ -110,7 +110,7 @@ void add_ground_options(Command& command, GroundFlags& flags) {
   command
       .text("--associate", flags.associate,
             "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live, and for boxes where "
-            "cameras agree)")
+            "cameras agree); or bramble, which looks at pictures by particles, without detections")
       .needs(ground)
       .check(track::ground::ground_association_named);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);
@@ -131,6 +131,11 @@ std::vector<std::string> ground_files(const GroundCommand& command, const Ground
 }
 
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
+  if (flags.associate == "bramble" && (!people.detector.empty() || !command.filter.empty() || !flags.teams.empty()))
+    throw WrongUsage("--associate bramble has a likelihood and a motion of its own and sees no clothes; leave out --{}",
+                     !people.detector.empty()  ? "detector"
+                     : !command.filter.empty() ? "filter"
+                                               : "teams");
   if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
   set_sources(rig, flags.sources);

@@ -40,7 +40,7 @@ class People(unittest.TestCase):
         self.run_marey("simulate", "people", "-o", "film", *SMALL)
         folder = self.folder / "film"
         self.assertEqual(sorted(p.name for p in folder.iterdir()),
-                         ["positions.csv", "silhouettes.jsonl", "truth.txt", "video.mp4"])
+                         ["positions.csv", "rig.toml", "silhouettes.jsonl", "truth.txt", "video.mp4"])
         boxes = {}
         for line in (folder / "truth.txt").read_text().splitlines():
             frame, person, left, top, width, height, *_ = map(float, line.split(","))

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "marey/core/blob_evidence.h"
 #include "marey/core/detection.h"
 #include "marey/core/foreground.h"
 #include "marey/core/frame.h"
@@ -15,7 +17,8 @@ namespace marey::detect {
 
 struct Detections {
   std::vector<Detection> detections;
-  Foreground foreground;  ///< empty where the detector has no background model
+  Foreground foreground;                              ///< empty where the detector has no background model
+  std::shared_ptr<const BlobEvidence> evidence = {};  ///< of a detector that gives it in place of detections; else nothing
 };
 
 /// What a detector's results mean: a value, so that our own silhouettes, a network's boxes and another program's stand side by

@@ -1,5 +1,6 @@
 #include "marey/pipeline/ground_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -61,6 +62,41 @@ Box moved(const Box& box, const cv::Point& by) {
   return {box.left + by.x, box.top + by.y, box.width, box.height};
 }
 
+/// The same evidence in the whole picture.
+std::shared_ptr<const BlobEvidence> moved(const std::shared_ptr<const BlobEvidence>& evidence, const cv::Point& by) {
+  if (!evidence || by == cv::Point()) return evidence;
+  auto whole = std::make_shared<BlobEvidence>(*evidence);
+  whole->origin += Vector<2>(by.x, by.y);
+  return whole;
+}
+
+/// How far apart a grid's points are, px, of which a person spans about twelve rows: most do.
+int grid_step(const GroundView& view, const reconstruct::GroundArea& area) {
+  constexpr int every = 24, rows = 12, least = 2, most = 8;  // px, points, px, px
+  std::vector<double> heights;
+  for (int y = 0; y < view.size().height; y += every) {
+    for (int x = 0; x < view.size().width; x += every) {
+      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
+      if (!place || !area.holds(place->ground, kBeyondArea)) continue;
+      const auto box = person_at(view, place->ground);
+      if (box && box->height >= kSmallest) heights.push_back(box->height);
+    }
+  }
+  if (heights.empty()) return most;
+  const auto quarter = heights.begin() + std::ssize(heights) / 4;
+  std::nth_element(heights.begin(), quarter, heights.end());
+  return std::clamp(static_cast<int>(std::lround(*quarter / rows)), least, most);
+}
+
+/// Evidence is of pictures, through whole cameras that stand.
+void check_for_blobs(const RigCamera& camera, const GroundView& view, bool pictures, bool turns) {
+  if (!pictures) throw Error("camera \"{}\" brings detections; bramble looks at pictures", camera.name);
+  if (turns) throw Error("camera \"{}\" turns, and bramble needs cameras that stand", camera.name);
+  if (view.camera() == nullptr)
+    throw Error("camera \"{}\" is known by ground_from_image alone; bramble must know how tall people are seen: calibrate it",
+                camera.name);
+}
+
 /// A camera that turns has no empty scene to learn: a network looks at every frame.
 detect::DetectorOptions for_turning(detect::DetectorOptions options, const std::string& name) {
   auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
@@ -92,6 +128,8 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
     : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)), turning_(options.turning) {
   const GroundView& view = view_at(Timestamp{});
   const Camera* whole = view.camera();
+  const auto* asked = std::get_if<detect::blobs::BlobDetectorOptions>(&options.detector);
+  if (asked != nullptr) check_for_blobs(camera_, view, feed.has_pictures(), turning_ != nullptr);
   if (feed.has_pictures()) {
     detect::DetectorOptions detector = turning_ ? for_turning(options.detector, camera_.name) : options.detector;
     if (whole != nullptr && !turning_) {
@@ -100,6 +138,8 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
       if (detect::people::PeopleOptions* people = detect::people_options_of(detector))
         people->sizes = std::make_shared<detect::people::PersonSizeMap>(sizes_over(view, area, part));
     }
+    if (auto* blobs = std::get_if<detect::blobs::BlobDetectorOptions>(&detector); blobs != nullptr && !blobs->step)
+      blobs->step = grid_step(view, area);
     detector_ = detect::make_detector(detector);
   }
   const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
@@ -136,7 +176,7 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
   }
   if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_at(frame.time).size());
   place(frame, found);
-  return {id_, given.frame.time, seen_};
+  return {id_, given.frame.time, seen_, moved(found.evidence, corner())};
 }
 
 /// Who is expected is where the detector need not learn the background.

@@ -50,10 +50,18 @@ std::array<std::uint8_t, 3> bytes_of(const draw::Colour& colour) {
   return {static_cast<std::uint8_t>(colour.red), static_cast<std::uint8_t>(colour.green), static_cast<std::uint8_t>(colour.blue)};
 }
 
+/// BraMBLe has no detections, and so nothing to learn of them.
+PeopleOnGroundOptions suited(PeopleOnGroundOptions options) {
+  if (options.tracker.associate != track::ground::GroundAssociation::bramble) return options;
+  options.detector = detect::blobs::BlobDetectorOptions{};
+  options.learn = {.agreement = false, .walk = false, .association = false};
+  return options;
+}
+
 class GroundStage final : public PeopleOnGround {
  public:
   GroundStage(const std::vector<Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)
-      : options_(options),
+      : options_(suited(options)),
         rig_(as_fed(rig, feeds)),
         area_(area_of(rig, options)),
         paths_(offsets_of(rig)),
@@ -65,7 +73,7 @@ class GroundStage final : public PeopleOnGround {
     if (options.live) {
       tracker_ = track::ground::make_ground_tracker(tracker, views_);
     } else {
-      run_.emplace(tracker, options.join, options.learn, views_,
+      run_.emplace(tracker, options_.join, options_.learn, views_,
                    [this](const GroundInstant& instant, std::span<const ObservationMatch> matches) { note(instant, matches); });
     }
     header_.name = "people on the ground";

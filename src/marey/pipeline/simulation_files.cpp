@@ -75,6 +75,28 @@ std::string run_lengths(const cv::Mat& mask) {
   return text + "]";
 }
 
+/// World: as the film's (simulate/ground_picture.h), whose ground is at z = 0.
+Rig people_rig(const simulate::people::PeopleFilm& film) {
+  const simulate::LevelCamera& level = film.camera();
+  const double c = std::cos(level.pitch), s = std::sin(level.pitch);
+  geometry::BrownLens lens;
+  lens.focal.setConstant(level.focal);
+  lens.principal = {(level.size.width - 1) / 2.0, (level.size.height - 1) / 2.0};
+  Rigid3 pose;
+  pose.rotation << 1, 0, 0, 0, -s, -c, 0, c, -s;
+  pose.translation = {0, 0, level.distance};
+  Rig rig;
+  RigCamera& camera = rig.cameras.emplace_back();
+  camera.name = "camera";
+  camera.source = "video.mp4";
+  camera.size = level.size;
+  camera.lens = lens;
+  camera.camera_from_world = pose;
+  rig.calibration = Rig::Calibration{
+      .method = "simulated: the exact truth", .mean_px = {}, .rms_px = {}, .inliers = {}, .observations = {}, .grade = {}};
+  return rig;
+}
+
 class PeopleTruth {
  public:
   explicit PeopleTruth(const fs::path& folder)
@@ -269,6 +291,7 @@ void write_markers(const simulate::markers::MarkerScene& scene, const std::strin
 void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks) {
   const fs::path place = folder;
   const simulate::people::PeopleFilmOptions& options = film.options();
+  write_text(place / "rig.toml", format::rig::rig_text(people_rig(film)));
   draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
   PeopleTruth truth(place);
   for (int i = 0; i < film.frames(); ++i) {

@@ -24,6 +24,7 @@ void write_markers(const simulate::markers::MarkerScene& scene, const std::strin
 ///   video.mp4          H.264, hardly compressed
 ///   truth.txt          MOTChallenge truth: the box of each whole person, cut at the picture's border; the ninth column is the
 ///                      share that can be seen
+///   rig.toml           the exact camera, its film as its source
 ///   positions.csv      frame,time,id,team,x,y,foot_x,foot_y,visible: 0-based frames, s, m on the ground, px
 ///   silhouettes.jsonl  an object a person and frame: frame, id, size [height, width], and the silhouettes `whole` and `visible`
 ///                      within the picture as COCO's run lengths (column by column, background first)

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "marey/core/blob_evidence.h"
 #include "marey/core/ids.h"
 #include "marey/core/observation.h"
 #include "marey/core/time.h"
@@ -16,8 +17,9 @@ namespace marey::track {
 template <int D>
 struct CameraObservations {
   CameraId camera{};
-  Timestamp time{};                           ///< of the frame, by the rig's clock: near the instant's, seldom equal
-  std::span<const Observation<D>> seen = {};  ///< `box` in px of this camera
+  Timestamp time{};                                   ///< of the frame, by the rig's clock: near the instant's, seldom equal
+  std::span<const Observation<D>> seen = {};          ///< `box` in px of this camera
+  std::shared_ptr<const BlobEvidence> evidence = {};  ///< on the ground, for a tracker that has no use for detections
 };
 
 /// Which track an observation of the last step belongs to.
@@ -32,7 +34,9 @@ template <int D>
 struct Decision {
   Timestamp now{};
   std::span<const Track<D>> tracks = {};           ///< by id
-  std::span<const ObservationMatch> matches = {};  ///< of the views of that instant
+  std::span<const ObservationMatch> matches = {};  ///< of the views of that instant, or of `seen`
+  /// What a tracker takes the cameras to have seen that was given evidence in place of observations; else nothing.
+  std::span<const CameraObservations<D>> seen = {};
 };
 
 /// Follows many targets: observations of one instant in, tracks out. D = 2 in the image (px) and on the ground (m), 3 in space.
