@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kUsualStep = 5;       // px, as the paper's grid is remembered
 constexpr float kForeground = 4;    // standard deviations from all that was learned of a point
-constexpr std::size_t kFewest = 3;  // frames that a median can be taken of
+constexpr std::size_t kFewestFrames = 3;  // frames that a median can be taken of
 
 }  // namespace
 
@@ -24,7 +24,7 @@ BlobDetector::BlobDetector(const BlobDetectorOptions& options) : options_(option
 void BlobDetector::prime(std::span<const Frame> samples) {
   std::vector<cv::Mat> seen;
   for (const Frame& frame : samples) seen.push_back(filter_responses(frame.picture, options_.step.value_or(kUsualStep)));
-  if (seen.size() >= kFewest) learn(seen);
+  if (seen.size() >= kFewestFrames) learn(seen);
 }
 
 Detections BlobDetector::detect(const Frame& frame, std::span<const Expected> /*expected*/) {

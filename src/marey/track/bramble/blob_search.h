@@ -6,9 +6,11 @@
 // proposes by what was likely beforehand over what was proposed.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/geometry/ground_view.h"
 #include "marey/track/bramble/evidence_sums.h"
 
 namespace marey::track::bramble {

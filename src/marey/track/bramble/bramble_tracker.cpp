@@ -16,6 +16,13 @@
 namespace marey::track::bramble {
 namespace {
 
+// Neighbouring points of the grid are no independent witnesses: of their sum this share counts.
+constexpr double kIndependence = 0.2;
+constexpr double kArrivals = 1e-3;               // people a m² and second
+constexpr double kDepartures = 0.02, kLost = 1;  // a person and second: in view; out of every camera's view
+constexpr double kAcceleration = 2.5;            // of people, m/s^1.5
+constexpr double kLeastShare = 0.5;              // of the particles, that must hold a person who is told of
+constexpr double kSettles = 0.2;                 // s for which a person must be held before being told of
 constexpr double kStature = 1.75, kStatureSpread = 0.08, kStatureSettles = 5;  // m, m, s
 constexpr double kGirthSpread = 0.15, kGirthSettles = 0.4;                     // s
 constexpr double kPlaceJitter = 0.1;                                           // m/√s: feet are not where a body is
@@ -34,19 +41,11 @@ double settled(double value, double mean, double spread, double memory, double n
   return mean + memory * (value - mean) + spread * std::sqrt(1 - memory * memory) * normal;
 }
 
-void check(const BrambleOptions& o) {
-  if (o.particles < 1) throw Error("{} particles; 1 is the least", o.particles);
-  if (!(o.independence > 0) || o.independence > 1) throw Error("independence is {}; it lies in (0, 1]", o.independence);
-  if (!(o.arrivals > 0) || !(o.departures > 0) || !(o.lost > 0) || !(o.acceleration > 0))
-    throw Error("{}", "arrivals, departures, lost and acceleration of people must be positive");
-  if (!(o.least_share > 0) || o.least_share >= 1) throw Error("least_share is {}; it lies in (0, 1)", o.least_share);
-}
-
 class BrambleTracker final : public Tracker<2> {
  public:
   BrambleTracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views)
       : options_(options), views_(std::move(views)), particles_(options.particles, options.seed) {
-    check(options_);
+    if (options.particles < 1) throw Error("{} particles; 1 is the least", options.particles);
     for (int i = 0; i < views_->cameras(); ++i) {
       if (views_->view_at(CameraId{i}, {}).camera() == nullptr)
         throw Error("camera {} is known by ground_from_image alone; bramble must know how tall people are seen: calibrate it",
@@ -144,7 +143,7 @@ class BrambleTracker final : public Tracker<2> {
       }
       gained += seen_[c].sums.gain(shapes_of(blob.slot)[c], others).evidence;
     }
-    gained *= options_.independence;
+    gained *= kIndependence;
     for (const Blob& other : particle.people) {
       if (other.slot < 0 || other.id == blob.id) continue;
       const double apart = (other.place - blob.place).norm();
@@ -162,8 +161,8 @@ class BrambleTracker final : public Tracker<2> {
     const auto [off_x, off_y] = random.normal_pair();
     const auto [taller, wider] = random.normal_pair();
     blob.place += dt_ * blob.velocity + kPlaceJitter * std::sqrt(dt_) * Vector<2>(off_x, off_y);
-    blob.velocity += options_.acceleration * std::sqrt(dt_) * Vector<2>(push_x, push_y);
-    blob.place += 0.5 * dt_ * options_.acceleration * std::sqrt(dt_) * Vector<2>(push_x, push_y);
+    blob.velocity += kAcceleration * std::sqrt(dt_) * Vector<2>(push_x, push_y);
+    blob.place += 0.5 * dt_ * kAcceleration * std::sqrt(dt_) * Vector<2>(push_x, push_y);
     blob.stature = settled(blob.stature, kStature, kStatureSpread, std::exp(-dt_ / kStatureSettles), taller);
     blob.girth = std::max(0.5, settled(blob.girth, 1, kGirthSpread, std::exp(-dt_ / kGirthSettles), wider));
   }
@@ -177,7 +176,7 @@ class BrambleTracker final : public Tracker<2> {
       move(*blob, random);
       blob->slot = slots + i;
       project(*blob, shapes_of(blob->slot));
-      const double stays = std::exp(-dt_ * (in_view(shapes_of(blob->slot)) ? options_.departures : options_.lost));
+      const double stays = std::exp(-dt_ * (in_view(shapes_of(blob->slot)) ? kDepartures : kLost));
       if (random.uniform() < kProposeDeparture) {
         particle.log_weight += std::log((1 - stays) / kProposeDeparture);
         particle.people.erase(particle.people.begin() + (blob - particle.people.data()));
@@ -190,7 +189,7 @@ class BrambleTracker final : public Tracker<2> {
 
   /// Those who may have arrived.
   void welcome() {
-    const auto found = search_.find(seen_, explained(), kCandidate / options_.independence);
+    const auto found = search_.find(seen_, explained(), kCandidate / kIndependence);
     for (const BlobSearch::Candidate& candidate : found) {
       arrive(candidate);
       particles_.resample(false);
@@ -202,7 +201,7 @@ class BrambleTracker final : public Tracker<2> {
     std::vector<GridShape> of_one(seen_.size());
     for (const int id : particles_.ids()) {
       const ParticleSet::Estimate estimate = particles_.estimate(id);
-      if (estimate.share < options_.least_share) continue;
+      if (estimate.share < kLeastShare) continue;
       project(estimate.mean, of_one.data());
       for (std::size_t c = 0; c < seen_.size(); ++c) shapes[c].push_back(of_one[c]);
     }
@@ -211,7 +210,7 @@ class BrambleTracker final : public Tracker<2> {
 
   void arrive(const BlobSearch::Candidate& candidate) {
     const int id = next_id_++, slots = next_slots();
-    const double rate = options_.arrivals * dt_;
+    const double rate = kArrivals * dt_;
     particles_.each([&](int i, Particle& particle, filter::RandomStream& random) {
       if (random.uniform() >= kProposeArrival) {
         particle.log_weight -= std::log(1 - kProposeArrival);
@@ -241,9 +240,9 @@ class BrambleTracker final : public Tracker<2> {
     for (const int id : particles_.ids()) {
       const ParticleSet::Estimate estimate = particles_.estimate(id);
       Known one = known_.contains(id) ? known_[id] : Known{};
-      if (estimate.share >= options_.least_share) {
+      if (estimate.share >= kLeastShare) {
         one.held_s += dt_;
-        one.confirmed |= one.held_s >= options_.settles;
+        one.confirmed |= one.held_s >= kSettles;
         tell(estimate, one.confirmed);
         shapes.emplace_back(seen_.size());
         project(estimate.mean, shapes.back().data());
