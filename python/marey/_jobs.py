@@ -180,7 +180,7 @@ def track_ground(
     """Follows everybody on the ground that a rig's cameras look at, under one identity: `marey track --ground`.
 
     rig: a rig file, or a Rig. sources: {camera: file} in place of the rig's own. pitch: length and width in m, (105, 68); only people on it, and
-    `margin` m round it, count. teams: "white,blue" or "City=white,United=blue". associate: "gnn", "jpda" or "mht". The rest as in `track`.
+    `margin` m round it, count. teams: "white,blue" or "City=white,United=blue". associate: "gnn", "jpda", "mht" or "bramble". The rest as in `track`.
 
     Returns a Recording in m on the ground, in the coordinates of the rig's user. Raises marey.Error where a camera is not calibrated or cannot be
     read, KeyboardInterrupt.
