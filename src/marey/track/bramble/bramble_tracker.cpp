@@ -17,12 +17,12 @@ namespace marey::track::bramble {
 namespace {
 
 // Neighbouring points of the grid are no independent witnesses: of their sum this share counts.
-constexpr double kIndependence = 0.2;
-constexpr double kArrivals = 1e-3;               // people a m² and second
-constexpr double kDepartures = 0.02, kLost = 1;  // a person and second: in view; out of every camera's view
-constexpr double kAcceleration = 2.5;            // of people, m/s^1.5
-constexpr double kLeastShare = 0.5;              // of the particles, that must hold a person who is told of
-constexpr double kSettles = 0.2;                 // s for which a person must be held before being told of
+constexpr double kIndependence = 0.08;
+constexpr double kArrivals = 0.01;                // people a m² and second
+constexpr double kDepartures = 0.001, kLost = 1;  // a person and second: in view; out of every camera's view
+constexpr double kAcceleration = 4;               // of people, m/s^1.5
+constexpr double kLeastShare = 0.5;               // of the particles, that must hold a person who is told of
+constexpr double kSettles = 0.2;                  // s for which a person must be held before being told of
 constexpr double kStature = 1.75, kStatureSpread = 0.08, kStatureSettles = 5;  // m, m, s
 constexpr double kGirthSpread = 0.15, kGirthSettles = 0.4;                     // s
 constexpr double kPlaceJitter = 0.1;                                           // m/√s: feet are not where a body is
@@ -30,7 +30,7 @@ constexpr double kNewSpread = 0.25;                                            /
 constexpr double kNewSpeed = 1.5;                                              // m/s, of each coordinate
 constexpr double kProposeArrival = 0.5;                                        // of the particles, at each candidate
 constexpr double kProposeDeparture = 0.03;                                     // of the particles, of each person
-constexpr double kCandidate = 6;                                               // nats that a candidate must be worth
+constexpr double kCandidate = 3;                                               // nats that a candidate must be worth
 constexpr double kRoom = 0.35;                                                 // m: nobody stands nearer to another
 constexpr double kRoomCost = 30;                                               // nats, of two in the same place
 constexpr double kVisible = 0.35;     // of a person, that a camera must see to have seen it
