@@ -131,6 +131,24 @@ class TrackGround(unittest.TestCase):
         self.track(self.made / "films" / "rig.toml", f"cam2={self.made / 'films' / 'cam2.txt'}", "-o", "match.csv", "--size", "105x68")
         self.assertEqual({c for r in rows_of(self.folder / "match.csv") for c in r["cameras"].split()}, {"cam1", "cam2"})
 
+    def test_bramble_follows_two_without_detections(self):
+        self.marey("simulate", "people", "--people", 2, "--frames", 60, "--seed", 1, "-o", "two", "-q")
+        for name in ("a.csv", "b.csv"):
+            self.track("two/rig.toml", "--associate", "bramble", "-o", name, "-q")
+        rows = rows_of(self.folder / "a.csv")
+        self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
+        truth = rows_of(self.folder / "two/positions.csv")
+        found = sum(any(row["frame"] == one["frame"] and abs(float(row["x"]) - float(one["x"])) < 1 and abs(float(row["y"]) - float(one["y"])) < 1.5
+                        for row in rows) for one in truth)
+        self.assertGreater(found, 0.6 * len(truth))
+
+    def test_bramble_needs_pictures_and_nothing_beside(self):
+        said = self.refused(self.made / "boxes/rig.toml", "--targets", "people", "--ground", "--associate", "bramble", "-o", "match.csv")
+        self.assertIn("bramble looks at pictures", said)
+        said = self.refused(self.made / "films/rig.toml", "--targets", "people", "--ground", "--associate", "bramble", "--teams", "white,blue",
+                            "-o", "match.csv", code=2)
+        self.assertIn("--teams", said)
+
     def test_rig_and_ground_go_together(self):
         rig = self.made / "boxes" / "rig.toml"
         self.assertIn("--ground", self.refused(rig, "-o", "match.csv", code=2))
