@@ -34,6 +34,25 @@ std::vector<double> parse_zones(const std::string& text) {
   return zones;
 }
 
+Json ball_json(const analyse::BallMeasure& ball) {
+  Json teams = Json::array(), passes = Json::array(), spells = Json::array();
+  for (const analyse::TeamBall& team : ball.teams)
+    teams.push_back(
+        {{"team", team.team}, {"possession_s", team.possession_s}, {"passes", team.passes}, {"completed", team.completed}});
+  for (const analyse::BallPass& pass : ball.passes)
+    passes.push_back({{"from", pass.from},
+                      {"to", pass.to},
+                      {"team", pass.team},
+                      {"begin_s", pass.begin_s},
+                      {"end_s", pass.end_s},
+                      {"length_m", pass.length_m},
+                      {"completed", pass.completed}});
+  for (const analyse::BallSpell& spell : ball.spells)
+    spells.push_back({{"id", spell.person}, {"team", spell.team}, {"begin_s", spell.begin_s}, {"end_s", spell.end_s}});
+  return {{"seconds", ball.seconds}, {"dead_s", ball.dead_s}, {"distance_m", ball.distance_m}, {"top_mps", ball.top_mps},
+          {"teams", teams},          {"passes", passes},      {"possession", spells}};
+}
+
 void report_json(const analyse::Measurement& measured) {
   Json people = Json::array(), teams = Json::array();
   for (const analyse::PersonMeasure& person : measured.people) {
@@ -58,7 +77,9 @@ void report_json(const analyse::Measurement& measured) {
                      {"width_m", team.width_m},
                      {"hull_m2", team.hull_m2}});
   }
-  print({{"people", people}, {"teams", teams}});
+  Json all{{"people", people}, {"teams", teams}};
+  if (measured.ball) all["ball"] = ball_json(*measured.ball);
+  print(all);
 }
 
 void print_table(const analyse::Measurement& measured) {
@@ -68,6 +89,11 @@ void print_table(const analyse::Measurement& measured) {
     fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9.2f} {:>8}\n", person.id, person.label, person.team, person.distance_m,
                person.mean_mps, person.top_mps, person.sprints);
   }
+  if (!measured.ball) return;
+  for (const analyse::TeamBall& team : measured.ball->teams)
+    fmt::print("ball: {} has it {:.1f} s, passes {}, {} of them to the own team\n", team.team, team.possession_s, team.passes,
+               team.completed);
+  fmt::print("ball: known for {:.1f} s, {:.1f} s of them off the pitch\n", measured.ball->seconds, measured.ball->dead_s);
 }
 
 std::string report_file(const MeasureCommand& command) {

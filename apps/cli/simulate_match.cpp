@@ -42,6 +42,7 @@ void run(const SimulateMatch& command) {
   pipeline::MatchFilesOptions options = command.files;
   options.cameras.pitch = parse_pitch_size(command.pitch);
   options.cameras.ground = parse_crown(command.crown);
+  if (options.film.ball && !options.films) throw WrongUsage("{}", "--ball is drawn into films; add --render");
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
   if (command.filmed) options.film.look = simulate::people::CameraLook::filmed();
   make_folder(command.folder);
@@ -83,6 +84,7 @@ void add_cameras(Command& match, SimulateMatch& options) {
 void add_films(Command& match, SimulateMatch& options) {
   pipeline::MatchFilesOptions& files = options.files;
   match.flag("--render", files.films, "film the match with every camera; rig.toml names the films instead of the boxes");
+  match.flag("--ball", files.film.ball, "films: play with a ball; ball.csv and CAMERA_ball.csv are its truth");
   match.flag("--no-shadows", files.film.shadows, "films: no person casts a shadow", false);
   match.flag("--filmed", options.filmed, "films as a broadcast chain shows them: blur, halo, colour that runs, blocks of a codec");
   match.number("--contact", files.film.contact, "share", closed(0, 1), "films: of the light, that shoes keep from the ground");

@@ -80,6 +80,9 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
     throw WrongUsage("--margin is counted from the edge of a pitch or an area, and {} tells of none; give its --size or --area",
                      command.rig);
   options.margin = flags.margin.value_or(options.margin);
+  if (flags.ball && command.live)
+    throw WrongUsage("{}", "--ball looks at the whole recording before it tells where the ball was; leave out --live or --ball");
+  if (flags.ball) options.ball.emplace();
   return options;
 }
 
@@ -113,6 +116,7 @@ void add_ground_options(Command& command, GroundFlags& flags) {
             "cameras agree); or bramble, which looks at pictures by particles, without detections")
       .needs(ground)
       .check(track::ground::ground_association_named);
+  command.flag("--ball", flags.ball, "follow the ball too: a track named \"ball\", with its height").needs(ground);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);
   command.output_file("--pitch-view", flags.pitch_view, "a film of the ground from above, with everybody's trail: FILE.mp4")
       .needs(ground)

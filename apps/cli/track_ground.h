@@ -18,6 +18,7 @@ struct GroundFlags {
   std::string associate;
   std::string camera;
   std::string pitch_view;
+  bool ball = false;
 };
 
 /// What it shares with tracking in one picture.

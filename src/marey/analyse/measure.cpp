@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/stop.h"
 
 namespace marey::analyse {
@@ -147,6 +148,7 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
   Measurement result;
   for (const TrackColumns& track : recording.tracks()) {
     stop_point();
+    if (is_ball(track.name)) continue;
     PersonMeasure person;
     person.id = number(track.id()), person.label = track.name.label, person.team = track.name.team;
     person.zone_s.assign(options.zones.size() + 1, 0);
@@ -164,6 +166,9 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
     result.people.push_back(std::move(person));
   }
   result.teams = measure_teams(recording, result.people);
+  PossessionOptions possession;
+  possession.pitch = options.pitch;
+  result.ball = measure_ball(recording, possession);
   return result;
 }
 

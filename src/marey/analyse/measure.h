@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "marey/analyse/possession.h"
 #include "marey/analyse/smooth_path.h"
 #include "marey/core/geometry.h"
 #include "marey/core/recording.h"
@@ -62,6 +63,7 @@ struct TeamMeasure {
 struct Measurement {
   std::vector<PersonMeasure> people;  ///< by id; those without two places are left out
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
+  std::optional<BallMeasure> ball;    ///< where the recording has one, which is none of the people
 };
 
 /// Distances, speeds, efforts and places of everyone, from `paths_of`: smoothed by the options, or as recorded where the recording

@@ -6,7 +6,7 @@ namespace marey {
 namespace {
 
 TrackColumns changed(const TrackColumns& track, const GroundChange& change) {
-  TrackColumns result(track.name, 2);
+  TrackColumns result(track.name, track.dimensions());
   result.reserve(track.size());
   for (std::size_t row = 0; row < track.size(); ++row) {
     Sample sample = track.sample(row);
@@ -15,6 +15,9 @@ TrackColumns changed(const TrackColumns& track, const GroundChange& change) {
     if (sample.covariance) {
       const Matrix<2> covariance = sample.covariance->topLeftCorner<2, 2>();
       sample.covariance->topLeftCorner<2, 2>() = change.linear * covariance * change.linear.transpose();
+      const Vector<2> with_height = change.linear * Vector<2>(sample.covariance->topRightCorner<2, 1>());
+      sample.covariance->topRightCorner<2, 1>() = with_height;
+      sample.covariance->bottomLeftCorner<1, 2>() = with_height.transpose();
     }
     result.add(track.at()[row], sample);
   }

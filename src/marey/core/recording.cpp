@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 
 namespace marey {
@@ -278,7 +279,9 @@ void Recording::add(const Instant& instant) {
 }
 
 void Recording::set_name(const TrackName& name) {
-  track_of(name.id).name = name;
+  TrackColumns& track = track_of(name.id);
+  if (track.empty() && track.dimensions() == 2 && header.frame.metric() && is_ball(name)) track = TrackColumns(name, 3);
+  track.name = name;
 }
 
 void Recording::put(TrackColumns track) {

@@ -10,6 +10,7 @@
 #include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
+#include "marey/track/ball/ball_motion.h"
 
 namespace marey::pipeline {
 namespace {
@@ -56,6 +57,33 @@ cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea&
                        cv::Point(down(all->right()) + step, down(all->bottom()) + step));
   const cv::Rect part = found & whole;
   return part.area() > 0 ? part : whole;
+}
+
+/// The radius in px of a ball on the ground that is seen at a pixel; behind the area that of one at its far end, for whatever is seen
+/// there flies before it.
+detect::ball::BallSize ball_sizes(const GroundView& view, const reconstruct::GroundArea& area) {
+  const auto radius_at = [view](const Vector<2>& pixel) -> std::optional<double> {
+    const auto place = view.place(pixel);
+    if (!place) return std::nullopt;
+    const auto seen = view.camera()->project_with_jacobian(
+        {place->ground.x(), place->ground.y(), view.surface().height(place->ground) + track::ball::kBallRadius});
+    if (!seen) return std::nullopt;
+    return track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+  };
+  double least = 1e9;
+  constexpr int kGrid = 16;
+  for (int y = 0; y < view.size().height; y += kGrid) {
+    for (int x = 0; x < view.size().width; x += kGrid) {
+      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
+      if (!place || !area.holds(place->ground)) continue;
+      least = std::min(least, radius_at({static_cast<double>(x), static_cast<double>(y)}).value_or(least));
+    }
+  }
+  return [radius_at, least](const Vector<2>& pixel) -> std::optional<double> {
+    const auto radius = radius_at(pixel);
+    if (!radius) return std::nullopt;
+    return std::max(*radius, least);
+  };
 }
 
 Box moved(const Box& box, const cv::Point& by) {
@@ -144,8 +172,10 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   }
   const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
   if (!sizes_known) learned_.emplace();
+  if (options.ball && whole != nullptr && !turning_ && feed.has_pictures()) ball_.emplace(ball_sizes(view, area), *options.ball);
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
+  if (ball_) ball_->prime(samples);
   for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
   detector_->prime(samples);
 }
@@ -176,6 +206,7 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
   }
   if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_at(frame.time).size());
   place(frame, found);
+  if (ball_) look_for_ball(given.frame, found.detections);
   return {id_, given.frame.time, seen_, moved(found.evidence, corner())};
 }
 
@@ -217,6 +248,15 @@ void GroundCamera::place(const Frame& frame, detect::Detections& found) {
   }
   outside_ += std::ssize(found.detections) - std::ssize(seen_);
   detections_ += std::ssize(seen_);
+}
+
+void GroundCamera::look_for_ball(const Frame& frame, const std::vector<Detection>& people) {
+  track::ball::BallView& view = ball_view_.emplace();
+  view.camera = id_;
+  view.time = frame.time;
+  for (const Detection& person : people) view.people.push_back(person.box);
+  for (const detect::ball::BallCandidate& candidate : ball_->detect(frame, view.people))
+    view.seen.push_back({candidate.centre, candidate.sigma, candidate.score});
 }
 
 void GroundCamera::report(Summary& summary) const {

@@ -9,11 +9,13 @@
 
 #include "marey/core/ground_views.h"
 #include "marey/core/turning_camera.h"
+#include "marey/detect/ball/ball_detector.h"
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
 #include "marey/pipeline/run.h"
 #include "marey/reconstruct/ground_area.h"
+#include "marey/track/ball/ball_moment.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline {
@@ -22,6 +24,7 @@ struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
   std::shared_ptr<const TurningCamera> turning = {};  ///< how it turns; nothing where it stands
+  std::optional<detect::ball::BallDetectorOptions> ball = {};  ///< the ball is looked for, where the camera has pictures and stands
 };
 
 /// How a camera sees the ground at the beginning. Throws Error, with the camera's name, where that is not known.
@@ -42,6 +45,9 @@ class GroundCamera {
   /// Finds people where `expected` are (m, world), or takes what another program found, and places them. Valid until the next call.
   track::ground::CameraObservations observe(const CameraFrame& given, std::span<const Track<2>> expected);
 
+  /// What of the last frame may be the ball; nothing where it is not looked for.
+  const std::optional<track::ball::BallView>& ball() const { return ball_view_; }
+
   /// The box of a person at `ground` (m, world) in the camera's picture, px; nothing where that is not known.
   std::optional<Box> box_at(const Vector<2>& ground, Timestamp time) const;
 
@@ -55,6 +61,7 @@ class GroundCamera {
   detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected);
   void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
   void place(const Frame& frame, detect::Detections& found);
+  void look_for_ball(const Frame& frame, const std::vector<Detection>& people);
 
   RigCamera camera_;
   CameraId id_;
@@ -64,6 +71,8 @@ class GroundCamera {
   std::optional<cv::Rect> part_;                            // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::Detector> detector_;              // none where another program's detections come
   std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are
+  std::optional<detect::ball::BallDetector> ball_;
+  std::optional<track::ball::BallView> ball_view_;
   std::vector<Expected> expected_;
   std::vector<Observation<2>> seen_;
   std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;

@@ -87,6 +87,24 @@ std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMat
   return periods;
 }
 
+void add_ball_tables(const analyse::BallMeasure& ball, draw::MatchReport& report) {
+  draw::PageTable& teams = report.tables.emplace_back();
+  teams.title = "The ball";
+  teams.head = {"team", "possession, s", "passes", "to the own team"};
+  teams.bars_from = 1;
+  for (const analyse::TeamBall& team : ball.teams)
+    teams.rows.push_back(
+        {team.team, fmt::format("{:.1f}", team.possession_s), std::to_string(team.passes), std::to_string(team.completed)});
+  if (ball.passes.empty()) return;
+  draw::PageTable& passes = report.tables.emplace_back();
+  passes.title = "Passes";
+  passes.head = {"at, s", "team", "from", "to", "length, m", "took, s"};
+  passes.bars_from = 4;
+  for (const analyse::BallPass& pass : ball.passes)
+    passes.rows.push_back({fmt::format("{:.1f}", pass.begin_s), pass.team, std::to_string(pass.from), std::to_string(pass.to),
+                           fmt::format("{:.1f}", pass.length_m), fmt::format("{:.1f}", pass.end_s - pass.begin_s)});
+}
+
 void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options,
                   const format::match::GroundMatch& match, const std::string& title, const std::string& folder) {
   std::error_code error;
@@ -112,6 +130,7 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
                             fmt::format("{:.1f}", team.average_place.y())});
     }
   }
+  if (measured.ball) add_ball_tables(*measured.ball, report);
   WholeFile file((std::filesystem::path(folder) / "report.html").string());
   file.write(draw::to_html(report));
   file.finish();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
@@ -95,6 +97,7 @@ class GroundStage final : public PeopleOnGround {
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
     moments_.push_back({frames.index, frames.time - first_offset()});
+    if (options_.ball) note_ball(frames);
     if (!options_.live) {
       run_->step(static_cast<std::int32_t>(frames.index), frames.time, seen);
       return {};
@@ -105,10 +108,11 @@ class GroundStage final : public PeopleOnGround {
     return {&live_, 1};
   }
 
-  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+  std::unique_ptr<InstantSource> finish(const Hooks& hooks) override {
     if (options_.live) return nullptr;
     const auto begin = std::chrono::steady_clock::now();
     join();
+    if (options_.ball) ball_ = follow_ball(std::move(ball_moments_), views_, area_, *options_.ball, hooks, recording_);
     joining_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::make_unique<Joined>(*this);
   }
@@ -116,6 +120,7 @@ class GroundStage final : public PeopleOnGround {
   void report(Summary& summary) const override {
     if (!options_.live) summary.left_out["off_pitch"] = off_pitch_;
     if (!options_.live) summary.figures["joining_s"] = joining_s_;
+    if (options_.ball) report_ball(summary);
     if (!options_.live) summary.figures["joins"] = static_cast<double>(joins_);
     if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
@@ -142,12 +147,20 @@ class GroundStage final : public PeopleOnGround {
       instant.index = moment.index;
       instant.time = moment.time;
       for (TrackName& name : instant.named) name.colour = stage_.colour_of(name.id);
+      name_ball(instant);
       name_unnamed(instant);
       if (stage_.wants_boxes_) stage_.add_boxes(instant);
       return instant;
     }
 
    private:
+    /// At once, so that whoever writes knows that there is one.
+    void name_ball(Instant& instant) {
+      std::erase_if(instant.named, [this](const TrackName& name) { return name.id == stage_.ball_; });
+      if (next_ == 1 && stage_.ball_)
+        instant.named.push_back({*stage_.ball_, std::string(kBallLabel), {}, std::array<std::uint8_t, 3>{255, 255, 255}});
+    }
+
     /// Who has neither label nor team still has a colour.
     void name_unnamed(Instant& instant) {
       for (const TrackName& name : instant.named) named_.insert(name.id);
@@ -180,7 +193,10 @@ class GroundStage final : public PeopleOnGround {
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) {
       const GroundCameraOptions how{
-          .detector = options_.detector, .prime = !options_.live, .turning = turning_of(options_.turning, feeds[i].id())};
+          .detector = options_.detector,
+          .prime = !options_.live,
+          .turning = turning_of(options_.turning, feeds[i].id()),
+          .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};
       opened[i].emplace(feeds[i], views_, area_, how);
     });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
@@ -198,6 +214,27 @@ class GroundStage final : public PeopleOnGround {
       if (frames.cameras[i]) seen_.push_back(observations_[i]);
     }
     return seen_;
+  }
+
+  void report_ball(Summary& summary) const {
+    const TrackColumns* ball = ball_ ? recording_.find(*ball_) : nullptr;
+    summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
+    const bool looked = std::any_of(cameras_.begin(), cameras_.end(), [](const GroundCamera& camera) { return camera.ball().has_value(); });
+    if (!looked)
+      summary.warnings.push_back(
+          "the ball was not looked for: that needs pictures of a camera that stands and is calibrated as a whole (marey calibrate "
+          "pitch)");
+    else if (ball == nullptr)
+      summary.warnings.push_back("the ball was not found");
+  }
+
+  void note_ball(const FrameSet& frames) {
+    track::ball::BallMoment& moment = ball_moments_.emplace_back();
+    moment.index = frames.index;
+    moment.time = frames.time;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if (frames.cameras[i] && cameras_[i].ball()) moment.views.push_back(*cameras_[i].ball());
+    }
   }
 
   /// What is decided of an instant.
@@ -297,6 +334,10 @@ class GroundStage final : public PeopleOnGround {
       const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
       for (const Sample& sample : instant.samples) {
         const Vector<2> place = area_.world(sample.position.head<2>());
+        if (sample.track == ball_) {
+          add_ball_box(instant, sample, CameraId{static_cast<int>(i)}, *own, view);
+          continue;
+        }
         std::optional<Box> box = logs_[i].box(instant.index, sample.track);
         if (!box) {
           const auto whole = cameras_[i].box_at(place, time);
@@ -315,6 +356,22 @@ class GroundStage final : public PeopleOnGround {
     }
   }
 
+  void add_ball_box(Instant& instant, const Sample& sample, CameraId camera, std::int64_t frame, const GroundView& view) const {
+    const Vector<2> place = area_.world(sample.position.head<2>());
+    if (view.camera() == nullptr) return;
+    const auto seen =
+        view.camera()->project_with_jacobian({place.x(), place.y(), sample.position.z() + view.surface().height(place)});
+    if (!seen || !view.camera()->in_picture(seen->pixel)) return;
+    const double radius =
+        track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+    instant.boxes.push_back({.camera = camera,
+                             .frame = frame,
+                             .track = sample.track,
+                             .box = Box::from_centre(seen->pixel, 2 * radius, 2 * radius),
+                             .foot = seen->pixel,
+                             .seen = (sample.cameras & mask_of(camera)) != 0});
+  }
+
   PeopleOnGroundOptions options_;
   Rig rig_;
   reconstruct::GroundArea area_;
@@ -330,6 +387,8 @@ class GroundStage final : public PeopleOnGround {
   std::int64_t joins_ = 0, doubtful_joins_ = 0;
   std::vector<Recording::Moment> moments_;  // by the first camera's clock; where `live`, of this step alone
   Recording recording_;
+  std::vector<track::ball::BallMoment> ball_moments_;
+  std::optional<TrackId> ball_;
   analyse::Teams teams_;
   std::int64_t off_pitch_ = 0;
   double joining_s_ = 0;

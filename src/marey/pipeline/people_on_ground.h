@@ -10,6 +10,7 @@
 #include "marey/analyse/teams.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
+#include "marey/pipeline/ball_on_ground.h"
 #include "marey/pipeline/ground_camera.h"
 #include "marey/pipeline/run.h"
 #include "marey/pipeline/turned_views.h"
@@ -30,6 +31,7 @@ struct PeopleOnGroundOptions {
   std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
   std::vector<Vector<2>> area;               ///< corners of another part of the ground, m, in place of a pitch; none: none
   TurningCameras turning;                    ///< of the rig's cameras, those that turn
+  std::optional<BallOptions> ball = {};      ///< the ball is followed too; not where `live`
   double margin = 2;                         ///< m round the pitch or the area where people still count
   /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;

@@ -191,6 +191,10 @@ class MatchCameraFiles {
     if (options.boxes) detections_.emplace((folder / (rig_camera.name + ".txt")).string());
     if (!options.films) return;
     movie_.emplace((folder / (rig_camera.name + ".mp4")).string(), *rig_camera.size, rig_camera.rate_hz);
+    if (options.film.ball) {
+      ball_.emplace((folder / (rig_camera.name + "_ball.csv")).string());
+      ball_->write("frame,x,y,radius,visible\n");
+    }
     clicks_.emplace((folder / (rig_camera.name + "_clicks.csv")).string());
     clicks_->write("x,y,u,v\n");
     for (const simulate::match::MatchClick& click : camera.clicks(options.click_noise, options.wrong_clicks))
@@ -208,17 +212,26 @@ class MatchCameraFiles {
     }
     truth_.write(text_);
     if (detections_) write_detections();
-    if (movie_) movie_->write(camera_.picture(), timestamp_from_seconds(camera_.time()));
+    if (movie_) film();
   }
 
   void finish() {
     if (movie_) movie_->finish();
+    if (ball_) ball_->finish();
     if (clicks_) clicks_->finish();
     truth_.finish();
     if (detections_) detections_->finish();
   }
 
  private:
+  void film() {
+    const simulate::match::MatchCamera::Shot shot = camera_.shoot();
+    movie_->write(shot.picture, timestamp_from_seconds(camera_.time()));
+    if (ball_ && shot.ball)
+      ball_->write(fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f}\n", camera_.frame(), shot.ball->at.x(), shot.ball->at.y(),
+                               shot.ball->radius, shot.ball->visible_share));
+  }
+
   void write_detections() {
     text_.clear();
     for (const LabelledBox& box : camera_.detect()) {
@@ -230,9 +243,33 @@ class MatchCameraFiles {
 
   simulate::match::MatchCamera& camera_;
   WholeFile truth_;
-  std::optional<WholeFile> detections_, clicks_;
+  std::optional<WholeFile> detections_, clicks_, ball_;
   std::optional<draw::MovieWriter> movie_;
   std::string text_;
+};
+
+/// Where the ball is, row by row.
+class BallTruthFile {
+ public:
+  BallTruthFile(const simulate::match::MatchScene& scene, const fs::path& folder)
+      : truth_(scene), rate_hz_(scene.options.rate_hz), file_((folder / "ball.csv").string()) {
+    file_.write("frame,time,x,y,z,vx,vy,vz,state,holder\n");
+  }
+
+  void write(std::int64_t frame) {
+    const simulate::match::BallPlace ball = truth_.next();
+    if (!ball.there) return;
+    const Vector<3>&p = ball.place, &v = ball.velocity;
+    file_.write(fmt::format("{},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", frame,
+                            static_cast<double>(frame) / rate_hz_, p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                            simulate::match::to_string(ball.state), ball.holder < 0 ? "" : std::to_string(ball.holder + 1)));
+  }
+  void finish() { file_.finish(); }
+
+ private:
+  simulate::match::BallTruth truth_;
+  double rate_hz_;
+  WholeFile file_;
 };
 
 void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs::path& folder) {
@@ -350,6 +387,8 @@ void write_match(const MatchFilesOptions& options, const std::string& folder, co
     files.push_back(std::make_unique<MatchCameraFiles>(cameras[i], options, place));
   }
   simulate::match::MatchTruth truth(scene);
+  std::optional<BallTruthFile> ball;
+  if (options.films && options.film.ball) ball.emplace(scene, place);
   format::match::GroundWriter writer((place / "truth.csv").string());
   RecordingHeader header;
   header.name = "truth.csv";
@@ -363,9 +402,11 @@ void write_match(const MatchFilesOptions& options, const std::string& folder, co
       files[i]->write();
     });
     writer.write(truth.next(cameras));
+    if (ball) ball->write(frame);
     hooks.advance({"frames", frame + 1, frames});
   }
   for (const auto& each : files) each->finish();
+  if (ball) ball->finish();
   writer.finish();
   write_match_rigs(scene.rig, options, place);
 }

@@ -1,4 +1,4 @@
-// FIFA's EPTS as Metrica writes it, see epts_reader.cpp. The ball has its channels, which are NaN.
+// FIFA's EPTS as Metrica writes it, see epts_reader.cpp. The ball has its channels, NaN where it is not known.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -173,6 +173,7 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
   const std::vector<TrackColumns>& tracks = match.recording.tracks();
   std::vector<std::optional<std::size_t>> row_of(tracks.size());
   InstantRows rows(match.recording);
+  const std::vector<std::optional<BallAt>> balls = ball_by_instant(match, plan.line_ups);
   for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
     std::fill(row_of.begin(), row_of.end(), std::nullopt);
     for (const auto& [index, row] : rows.at(instant)) row_of[index] = row;
@@ -190,7 +191,11 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
       const auto velocity = track.velocity(*row);
       if (plan.speed) fmt::format_to(std::back_inserter(text), ",{:.3f}", velocity ? kPerHour * velocity->head<2>().norm() : 0);
     }
-    text += ":NaN,NaN\n";
+    if (balls[instant])
+      fmt::format_to(std::back_inserter(text), ":{:.5f},{:.5f}\n", balls[instant]->place.x() / match.pitch.length,
+                     1 - balls[instant]->place.y() / match.pitch.width);
+    else
+      text += ":NaN,NaN\n";
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();
@@ -198,7 +203,7 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
   file.write(text);
   write_metadata(match, plan, with_ending(path, ".xml"));
   file.finish();
-  const auto left_out = tracks.size() - plan.people.size();
+  const auto left_out = tracks.size() - plan.people.size() - (plan.line_ups.ball ? 1 : 0);
   if (left_out > 0)
     plan.line_ups.warnings.push_back(
         fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));

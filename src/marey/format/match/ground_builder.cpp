@@ -15,8 +15,8 @@ namespace {
 
 Sample sample_of(const GroundBuilder::Row& row) {
   Sample sample;
-  sample.position.head<2>() = row.place;
-  if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), 0);
+  sample.position = {row.place.x(), row.place.y(), row.height};
+  if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), row.climb);
   sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
   sample.cameras = row.cameras;
   sample.box = row.box;
@@ -65,7 +65,7 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
     require_short(team, name_);
     if (people_.size() == Limits::in_force().tracks)
       throw Error("{}: names more than {} people (the limit tracks)", name_, Limits::in_force().tracks);
-    people_.push_back({TrackColumns({TrackId{id}, {}, {}}, 2), {}});
+    people_.push_back({TrackColumns({TrackId{id}, {}, {}}, label == kBallLabel && team.empty() ? 3 : 2), {}});
   }
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].rows.name;
   if (name.label.empty()) name.label = plain_text(label);
@@ -104,7 +104,7 @@ void GroundBuilder::put_in_order(Person& person) const {
   for (const Row& row : person.late) rows.emplace_back(row.frame, sample_of(row));
   person.late.clear();
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  TrackColumns ordered(person.rows.name, 2);
+  TrackColumns ordered(person.rows.name, person.rows.dimensions());
   ordered.reserve(rows.size());
   for (const auto& [frame, sample] : rows) {
     if (ordered.empty() || ordered.at().back() < frame) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/recording.h"
 
 namespace marey::format::match {
@@ -29,6 +30,7 @@ class GroundBuilder {
     CameraMask cameras = 0;
     std::optional<Box> box = {};  ///< px, of one in a picture
     std::optional<double> score = {};
+    double height = 0, climb = 0;  ///< m and m/s upwards, of the ball
   };
 
   explicit GroundBuilder(const std::string& name) : name_(name) {}
@@ -38,6 +40,9 @@ class GroundBuilder {
   std::int32_t person(const std::string& key, int wanted, const std::string& label, const std::string& team);
   /// The index of the one with this id, which is positive; a label and a team that are still empty are filled in.
   std::int32_t person(int id, const std::string& label, const std::string& team);
+
+  /// The index of the ball.
+  std::int32_t ball() { return person(std::string(kBallLabel), 0, std::string(kBallLabel), {}); }
 
   /// x and y in m. Throws Error, which says `where`, for what is no place on the ground near a pitch.
   void add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where);

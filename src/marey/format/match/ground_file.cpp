@@ -22,10 +22,10 @@
 namespace marey::format::match {
 namespace {
 
-enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kLeft, kTop, kWidth, kHeight, kColumns };
+enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kLeft, kTop, kWidth, kHeight, kZ, kVz, kColumns };
 constexpr std::array<std::string_view, kColumns> kAllNames = {"frame", "time",  "id",      "label", "team", "x",     "y",     "vx",
-                                                              "vy",    "state", "cameras", "left",  "top",  "width", "height"};
-constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture
+                                                              "vy",    "state", "cameras", "left",  "top",  "width", "height", "z", "vz"};
+constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture, and of the ball
 constexpr std::array kNeeded = {kId, kX, kY};
 constexpr double kFarthest = 1e5;   // m
 constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz
@@ -125,6 +125,8 @@ class GroundFileReader {
     if (field(kVx) && field(kVy))
       row.velocity =
           Vector<2>(number(kVx, -kFarthestOnGround, kFarthestOnGround), number(kVy, -kFarthestOnGround, kFarthestOnGround));
+    if (field(kZ)) row.height = number(kZ, -kFarthestOnGround, kFarthestOnGround);
+    if (field(kVz)) row.climb = number(kVz, -kFarthestOnGround, kFarthestOnGround);
     moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
     const std::string how = text(kState);
     if (!how.empty() && how != "observed" && how != "predicted")
@@ -221,7 +223,7 @@ bool is_ground_csv(const Beginning& file, bool with_boxes) {
   split_fields(file.first_line(), ',', head);
   const auto has = [&](std::string_view name) { return std::find(head.begin(), head.end(), name) != head.end(); };
   const bool boxes = has("left") && has("top") && has("width") && has("height");
-  return (has("frame") || has("time")) && has("id") && has("x") && has("y") && !has("z") && boxes == with_boxes;
+  return (has("frame") || has("time")) && has("id") && has("x") && has("y") && (!has("z") || has("team")) && boxes == with_boxes;
 }
 
 Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
@@ -229,12 +231,14 @@ Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
   if (header.rig) {
     for (const RigCamera& camera : header.rig->cameras) cameras_.push_back(camera.name);
   }
-  text_ = fmt::format("{}\n", fmt::join(kNames, ","));
   return {};
 }
 
 void GroundWriter::write(const Instant& instant) {
-  for (const TrackName& name : instant.named) fields_[name.id] = {quoted_field(name.label), quoted_field(name.team)};
+  for (const TrackName& name : instant.named) {
+    fields_[name.id] = {quoted_field(name.label), quoted_field(name.team), is_ball(name)};
+    if (is_ball(name)) add_heights();
+  }
   const double time = seconds(instant.time);
   for (const Sample& sample : instant.samples) {
     seen_by_.clear();
@@ -245,19 +249,34 @@ void GroundWriter::write(const Instant& instant) {
     }
     const Fields& fields = fields_[sample.track];
     const Vector<3> velocity = sample.velocity.value_or(Vector<3>::Zero());
-    fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", instant.index, time,
+    fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}", instant.index, time,
                    number(sample.track), fields.label, fields.team, sample.position.x(), sample.position.y(), velocity.x(),
                    velocity.y(), sample.measured() ? "observed" : "predicted", quoted_field(seen_by_));
+    if (has_heights_ && fields.ball)
+      fmt::format_to(std::back_inserter(text_), ",{:.3f},{:.3f}\n", sample.position.z(), velocity.z());
+    else
+      text_ += has_heights_ ? ",,\n" : "\n";
   }
-  if (text_.size() > (std::size_t{1} << 20)) {
-    file_.write(text_);
-    text_.clear();
-  }
+  if (text_.size() > (std::size_t{1} << 20)) flush();
+}
+
+/// From now on each row has a height, and those that wait get an empty one; too late where some are written.
+void GroundWriter::add_heights() {
+  if (has_heights_ || head_written_) return;
+  has_heights_ = true;
+  std::string longer;
+  for (const char c : text_) longer.append(c == '\n' ? ",," : "").push_back(c);
+  text_ = std::move(longer);
+}
+
+void GroundWriter::flush() {
+  if (!std::exchange(head_written_, true)) file_.write(fmt::format("{}{}\n", fmt::join(kNames, ","), has_heights_ ? ",z,vz" : ""));
+  file_.write(text_);
+  text_.clear();
 }
 
 void GroundWriter::finish() {
-  file_.write(text_);
-  text_.clear();
+  flush();
   file_.finish();
 }
 

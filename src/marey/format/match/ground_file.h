@@ -14,7 +14,8 @@ namespace marey::format::match {
 
 /// People on the ground as CSV: frame,time,id,label,team,x,y,vx,vy,state,cameras. Frames count from 0; s, m, m/s; one row a person
 /// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
-/// between. Where no velocity is known all are written as 0.
+/// between. Where no velocity is known all are written as 0. With a ball, whose label is "ball", two columns more, z,vz, have its
+/// height in m and how fast it rises; a writer must be told of it within the first megabyte.
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
@@ -47,10 +48,16 @@ class GroundWriter : public Sink {
  private:
   struct Fields {
     std::string label, team;  // quoted where they must be
+    bool ball = false;
   };
+
+  void add_heights();
+  void flush();
 
   std::string path_;
   WholeFile file_;
+  bool has_heights_ = false;  // a ball is there
+  bool head_written_ = false;
   std::vector<std::string> cameras_;
   std::map<TrackId, Fields> fields_;
   std::string text_, seen_by_;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/format/text_rows.h"
 
@@ -118,6 +119,11 @@ LineUps line_ups_of(const GroundMatch& match) {
   for (const std::size_t i : line_ups.listed) {
     const TrackName& person = match.recording.tracks()[i].name;
     LineUps::Member& member = line_ups.members[i];
+    if (is_ball(person)) {
+      member.side = Side::ball;
+      line_ups.ball = i;
+      continue;
+    }
     if (is_referee(person)) {
       member.side = Side::referee;
     } else if (no_teams || (!person.team.empty() && person.team == pair[0])) {
@@ -130,6 +136,15 @@ LineUps line_ups_of(const GroundMatch& match) {
   }
   line_ups.teams = {pair[0].empty() ? "Home" : pair[0], pair[1].empty() ? "Away" : pair[1]};
   return line_ups;
+}
+
+std::vector<std::optional<BallAt>> ball_by_instant(const GroundMatch& match, const LineUps& line_ups) {
+  std::vector<std::optional<BallAt>> places(match.recording.instants().size());
+  if (!line_ups.ball) return places;
+  const TrackColumns& ball = match.recording.tracks()[*line_ups.ball];
+  for (std::size_t row = 0; row < ball.size(); ++row)
+    places[static_cast<std::size_t>(ball.at()[row])] = BallAt{ball.position(row), ball.velocity(row)};
+  return places;
 }
 
 std::vector<GroundPeriod> periods_of(const GroundMatch& match) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,13 @@
 namespace marey::format::match {
 
 /// Where someone belongs in the formats of matches, which know two teams.
-enum class Side { home, away, referee, other };
+enum class Side { home, away, referee, other, ball };
+
+/// Where a ball is at one instant.
+struct BallAt {
+  Vector<3> place;                      ///< m
+  std::optional<Vector<3>> velocity;    ///< m/s
+};
 
 /// Who is who in a file of a match.
 struct LineUps {
@@ -23,6 +30,7 @@ struct LineUps {
   std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" where there are none
   std::vector<Member> members;        ///< one a track, in the recording's order
   std::vector<std::size_t> listed;    ///< indices of the tracks in the match's order
+  std::optional<std::size_t> ball;    ///< index of its track, where there is one
   std::vector<std::string> warnings;  ///< one sentence each
 
   std::vector<std::size_t> of(Side side) const;  ///< indices of its tracks, in the match's order
@@ -34,6 +42,9 @@ std::vector<std::size_t> listed_tracks(const GroundMatch& match);
 /// Home and away are those that `match` names, else the two teams with the most places, in the order of their first people. Without
 /// any team everyone is at home. Throws Error where a named team has nobody.
 LineUps line_ups_of(const GroundMatch& match);
+
+/// Where the ball is at each instant; nothing where it is not known.
+std::vector<std::optional<BallAt>> ball_by_instant(const GroundMatch& match, const LineUps& line_ups);
 
 /// The match's periods; one from the first frame to the last where it has none.
 std::vector<GroundPeriod> periods_of(const GroundMatch& match);

@@ -66,6 +66,7 @@ class MetricaReader {
       if (fields_.size() != width)
         throw Error("{}: has {} columns, the head {}; the file may be cut off", where(), fields_.size(), width);
       read_row(columns);
+      if (otherwise == std::string_view("Home")) read_ball(width - kBall);
     }
   }
 
@@ -107,6 +108,16 @@ class MetricaReader {
                    match_.pitch.length * number(column.at, -kMostPitches, kMostPitches),
                    match_.pitch.width * (1 - number(column.at + 1, -kMostPitches, kMostPitches)), where());
     }
+  }
+
+  /// Both files have it; the home team's is taken.
+  void read_ball(std::size_t column) {
+    const std::string_view x = fields_[column], y = fields_[column + 1];
+    if (x.empty() || y.empty() || x == "NaN" || y == "NaN") return;
+    const auto frame = static_cast<std::int32_t>(number(1, 1, kMostFrame)) - 1;
+    builder_.add(frame, frame / match_.recording.header.rate_hz, builder_.ball(),
+                 match_.pitch.length * number(column, -kMostPitches, kMostPitches),
+                 match_.pitch.width * (1 - number(column + 1, -kMostPitches, kMostPitches)), where());
   }
 
   /// The head does not tell the rate; frames and times of the rows do, the beginning at 0 among them. Rows that cannot be read are
@@ -169,6 +180,7 @@ void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, co
   const std::vector<std::size_t> people = line_ups.of(side);
   std::string text = heads(line_ups, side, people);
   const Recording& recording = match.recording;
+  const std::vector<std::optional<BallAt>> balls = ball_by_instant(match, line_ups);
   std::vector<std::optional<Vector<2>>> places(recording.tracks().size());
   InstantRows rows(recording);
   for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
@@ -190,7 +202,11 @@ void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, co
         text += ",NaN,NaN";
       }
     }
-    text += ",NaN,NaN\n";
+    if (const auto& ball = balls[instant])
+      fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}\n", ball->place.x() / match.pitch.length,
+                     1 - ball->place.y() / match.pitch.width);
+    else
+      text += ",NaN,NaN\n";
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();

@@ -114,6 +114,7 @@ std::string attributes_of(const LineUps::Member& member, const TrackName& person
   const char* role = plays && is_keeper(person)     ? "goalkeeper"
                      : plays                        ? "player"
                      : member.side == Side::referee ? "referee"
+                     : member.side == Side::ball    ? "ball"
                                                     : "other";
   const bool shirt = plays && whole_number_of(person.label) && member.number <= 99;
   return fmt::format(R"({{"role":"{}","jersey":{},"team":{}}})", role, shirt ? fmt::format("\"{}\"", member.number) : "null",
@@ -123,7 +124,7 @@ std::string attributes_of(const LineUps::Member& member, const TrackName& person
 }
 
 int category_of(Side side, const TrackName& person) {
-  return side == Side::referee ? 3 : side == Side::other ? 7 : is_keeper(person) ? 2 : 1;
+  return side == Side::ball ? 4 : side == Side::referee ? 3 : side == Side::other ? 7 : is_keeper(person) ? 2 : 1;
 }
 
 std::string images_of(const Recording& recording) {
@@ -175,6 +176,7 @@ std::vector<std::string> write_soccernet(const GroundMatch& match, const std::st
                   "\"seq_length\":{}}},\n\"categories\":[{{\"id\":1,\"name\":\"player\",\"supercategory\":\"object\"}},"
                   "{{\"id\":2,\"name\":\"goalkeeper\",\"supercategory\":\"object\"}},"
                   "{{\"id\":3,\"name\":\"referee\",\"supercategory\":\"object\"}},"
+                  "{{\"id\":4,\"name\":\"ball\",\"supercategory\":\"object\"}},"
                   "{{\"id\":7,\"name\":\"other\",\"supercategory\":\"object\"}}],\n\"images\":[",
                   match.recording.header.rate_hz, last + 1));
   file.write(images_of(recording));

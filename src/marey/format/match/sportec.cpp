@@ -91,20 +91,22 @@ class SportecReader {
 
   void read_set(const pugi::xml_node& set) {
     const std::string team = set.attribute("TeamId").as_string(), id = set.attribute("PersonId").as_string();
-    if (team == "BALL") return;
     const std::string_view section = set.attribute("GameSection").as_string();
     const auto known = std::find(kSections.begin(), kSections.end(), section);
     if (known == kSections.end())
       throw Error("{}: a <FrameSet> has the section {}; firstHalf, secondHalf, ... are known", name_, shown(section));
     const int period = static_cast<int>(known - kSections.begin()) + 1;
     const auto who = people_.find(id);
-    const std::int32_t person = who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
+    const bool is_ball = team == "BALL";
+    const std::int32_t person = is_ball ? builder_.ball() : who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
                                                      : builder_.person(id, 0, who->second.label, who->second.team);
     for (const pugi::xml_node node : set.children("Frame")) {
       const auto frame = static_cast<std::int32_t>(number(node, "N", 0, 1e9));
       extend(period, frame);
-      builder_.add(frame, frame / match_.recording.header.rate_hz, person, match_.pitch.length / 2 + number(node, "X", -1e5, 1e5),
-                   match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5), name_);
+      GroundBuilder::Row row{.frame = frame, .time = frame / match_.recording.header.rate_hz};
+      row.place = {match_.pitch.length / 2 + number(node, "X", -1e5, 1e5), match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5)};
+      if (is_ball && node.attribute("Z")) row.height = number(node, "Z", -1e5, 1e5);
+      builder_.add(person, row);
     }
   }
 

@@ -2,7 +2,8 @@
 // spot, y upwards, m/s. Team 1 is at home, 0 is the guest, 3 a referee, -1 is not known and 4 is a target that is not used. The
 // metadata's XML comes with attributes of <match> or flat, lengths then in cm.
 //
-// The ball that we do not have is written dead on the centre spot, for readers insist on one.
+// A ball that is not known is written dead on the centre spot, for readers insist on one. Readers insist on who has it too: the team
+// of whoever was last within two metres of it, to begin with the home team.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -107,6 +108,20 @@ class TracabReader {
     for (const std::string_view target : targets_) {
       if (!target.empty()) read_target(target, static_cast<std::int32_t>(*frame));
     }
+    read_ball(line.substr(end + 1), static_cast<std::int32_t>(*frame));
+  }
+
+  /// x,y,z,speed,team,state. A ball dead on the centre spot is one that nobody knows of.
+  void read_ball(std::string_view text, std::int32_t frame) {
+    split_fields(text.substr(0, text.find_first_of(";:")), ',', fields_);
+    if (fields_.size() < 6) return;
+    const auto x = number_of(fields_[0]), y = number_of(fields_[1]), z = number_of(fields_[2]);
+    if (!x || !y || !z || !(std::abs(*x) < 1e6 && std::abs(*y) < 1e6 && std::abs(*z) < 1e6)) return;
+    if (*x == 0 && *y == 0 && *z == 0 && fields_[5] == "Dead") return;
+    GroundBuilder::Row row{.frame = frame, .time = frame / match_.recording.header.rate_hz};
+    row.place = {*x / kMetre + match_.pitch.length / 2, *y / kMetre + match_.pitch.width / 2};
+    row.height = *z / kMetre;
+    builder_.add(builder_.ball(), row);
   }
 
   void read_target(std::string_view target, std::int32_t frame) {
@@ -230,24 +245,44 @@ const TwoFiles& tracab_files() {
   return files;
 }
 
+/// The ball's part of a line: x,y,z,speed,team,state. `owner` is who had it, and has it now.
+std::string ball_text(const std::optional<BallAt>& ball, const GroundMatch& match, char owner) {
+  if (!ball) return fmt::format("0,0,0,0.00,{},Dead", owner);
+  const Vector<3>& at = ball->place;
+  const bool in_play = at.x() >= 0 && at.y() >= 0 && at.x() <= match.pitch.length && at.y() <= match.pitch.width;
+  return fmt::format("{},{},{},{:.2f},{},{}", std::lround(kMetre * (at.x() - match.pitch.length / 2)),
+                     std::lround(kMetre * (at.y() - match.pitch.width / 2)), std::lround(kMetre * at.z()),
+                     ball->velocity ? ball->velocity->norm() : 0, owner, in_play ? "Alive" : "Dead");
+}
+
 std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {
   if (match.recording.samples() == 0) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
   const LineUps line_ups = line_ups_of(match);
   WholeFile file(path);
   std::string text;
   InstantRows rows(match.recording);
+  const std::vector<std::optional<BallAt>> balls = ball_by_instant(match, line_ups);
+  constexpr double kReach = 2;  // m
+  char owner = 'H';
   for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
     fmt::format_to(std::back_inserter(text), "{}:", match.recording.instants()[instant].index);
+    double nearest = kReach;
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = match.recording.tracks()[index];
       const LineUps::Member& member = line_ups.members[index];
+      if (member.side == Side::ball) continue;
+      const double away = balls[instant] ? (track.place(row) - balls[instant]->place.head<2>()).norm() : kReach;
+      if (away < nearest && (member.side == Side::home || member.side == Side::away)) {
+        nearest = away;
+        owner = member.side == Side::home ? 'H' : 'A';
+      }
       const auto velocity = track.velocity(row);
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.2f};", code_of(member.side), number(track.id()),
                      member.side == Side::other ? -1 : member.number,
                      std::lround(kMetre * (track.x()[row] - match.pitch.length / 2)),
                      std::lround(kMetre * (track.y()[row] - match.pitch.width / 2)), velocity ? velocity->head<2>().norm() : 0);
     }
-    text += ":0,0,0,0.00,H,Dead;:\n";
+    fmt::format_to(std::back_inserter(text), ":{};:\n", ball_text(balls[instant], match, owner));
     if (text.size() < (std::size_t{1} << 20)) continue;
     file.write(text);
     text.clear();

@@ -20,7 +20,7 @@ void ChunkJoiner::add(std::int64_t id, const Chunk& chunk) {
       2 * chunk.bytes > kLargestChunk || 2 * length(chunk.moments.front(), chunk.moments.back()) > kLongestChunk;
   if (group_.ids.empty() && long_enough) return;
   group_.ids.push_back(id);
-  whole.append(chunk, dimensions_);
+  whole.append(chunk);
 }
 
 void ChunkJoiner::seal() {

@@ -20,8 +20,6 @@ constexpr Duration kLongestChunk = std::chrono::seconds(60);
 /// the largest chunk, and of those that wait for `join`.
 class ChunkJoiner {
  public:
-  explicit ChunkJoiner(int dimensions) : dimensions_(dimensions) {}
-
   /// A chunk that was written under this id.
   void add(std::int64_t id, const Chunk& chunk);
   /// No chunk comes any more that would be joined with the last ones.
@@ -39,7 +37,6 @@ class ChunkJoiner {
     Chunk chunk;
   };
 
-  int dimensions_;
   Group group_;
   std::vector<Group> sealed_;
 };

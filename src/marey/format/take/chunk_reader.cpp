@@ -108,7 +108,8 @@ void ChunkReader::read(const Row& row, bool with_seen, Chunk& chunk) {
   while (samples_.step()) {
     const std::int64_t track = samples_.integer(sample_id) & 0xffffffff;
     if (track > std::numeric_limits<int>::max()) throw Error("{}: is damaged (a track's id is {})", database_->path(), track);
-    decode_samples(samples_, row, offset, chunk.track(TrackId{static_cast<int>(track)}, dimensions_));
+    const int dimensions = samples_.blob(sample_z).empty() ? dimensions_ : 3;  // the ball on the ground has heights
+    decode_samples(samples_, row, offset, chunk.track(TrackId{static_cast<int>(track)}, dimensions));
   }
   samples_.reset();
   if (poses_) read_poses(row, offset, chunk.bodies);
@@ -203,7 +204,8 @@ void ChunkReader::decode_samples(const Statement& row, const Row& chunk, std::in
   decoder.numbers(row.blob(sample_y), y_);
   decode_places(row, sample_at, chunk, offset, decoder);
   z_.clear();
-  if (dimensions_ == 3) decoder.numbers(row.blob(sample_z), z_);
+  if (track.dimensions() == 3 && (dimensions_ == 3 || !row.blob(sample_z).empty())) decoder.numbers(row.blob(sample_z), z_);
+  if (track.dimensions() == 3 && z_.empty()) z_.assign(decoder.rows(), 0);  // a ball on the ground without heights
   if (row.is_number(sample_provenance)) {
     integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(sample_provenance)));
   } else {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/take/body_definition.h"
@@ -117,7 +118,7 @@ class CursorOfSchema2 : public TakeCursor {
 
   TrackColumns read_track(const TrackName& name) override {
     const ReadTransaction transaction(*database_);
-    TrackColumns track(name, header_.frame.dimensions());
+    TrackColumns track(name, header_.frame.metric() && is_ball(name) ? 3 : header_.frame.dimensions());
     std::int64_t offset = 0;
     for (const ChunkReader::Row& row : chunks_.rows()) {
       chunks_.read_track(row, offset, track);

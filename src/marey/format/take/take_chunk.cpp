@@ -118,12 +118,12 @@ TrackColumns& Chunk::track(TrackId id, int dimensions) {
   return tracks.try_emplace(id, TrackName{.id = id, .label = {}, .team = {}}, dimensions).first->second;
 }
 
-void Chunk::add(const Instant& instant, int dimensions) {
+void Chunk::add(const Instant& instant, int dimensions, std::optional<TrackId> ball) {
   const auto at = static_cast<std::int32_t>(moments.size());
   moments.push_back({instant.index, instant.time});
   auto column = tracks.begin();
   for (const Sample& sample : instant.samples) {
-    const auto make = [&] { return TrackColumns({.id = sample.track, .label = {}, .team = {}}, dimensions); };
+    const auto make = [&] { return TrackColumns({.id = sample.track, .label = {}, .team = {}}, sample.track == ball ? 3 : dimensions); };
     entry_of(tracks, column, sample.track, make).add(at, sample);
     bytes += 28 + (sample.velocity ? 12 : 0) + (sample.covariance ? 24 : 0) + (sample.box ? 32 : 0);
     if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();
@@ -138,13 +138,13 @@ void Chunk::add(const Instant& instant, int dimensions) {
   bytes += 16 + 32 * instant.seen.size() + 190 * instant.bodies.size();
 }
 
-void Chunk::append(const Chunk& other, int dimensions) {
+void Chunk::append(const Chunk& other) {
   const auto offset = static_cast<std::int32_t>(moments.size());
   moments.insert(moments.end(), other.moments.begin(), other.moments.end());
   bytes += other.bytes;
   for (const auto& [id, columns] : other.tracks) {
     if (columns.empty()) continue;
-    TrackColumns& to = track(id, dimensions);
+    TrackColumns& to = track(id, columns.dimensions());
     const std::size_t first = to.size();
     const std::vector<std::int32_t> at = moved_by(offset, columns.at());
     to.add_rows({at, columns.x(), columns.y(), columns.z(), columns.provenance(), columns.cameras()});

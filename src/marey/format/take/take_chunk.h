@@ -38,9 +38,10 @@ struct Chunk {
   std::size_t bytes = 0;  ///< about what it takes in the file
 
   bool empty() const { return moments.empty(); }
-  void add(const Instant& instant, int dimensions);
+  /// `ball` has heights whatever the others have.
+  void add(const Instant& instant, int dimensions, std::optional<TrackId> ball = {});
   /// What another one holds, whose instants are later.
-  void append(const Chunk& other, int dimensions);
+  void append(const Chunk& other);
   TrackColumns& track(TrackId id, int dimensions);
   void clear();
 };

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/format/rig/rig_file.h"
@@ -51,11 +52,11 @@ class TakeWriter::Recorder {
         database_((remove_old_take(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
         dimensions_(header.frame.dimensions()),
+        metric_ground_(header.frame.metric() && dimensions_ == 2),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
         set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         add_edit_(database_, "INSERT INTO edit VALUES (?, ?, ?, ?)"),
-        chunks_(database_),
-        joiner_(dimensions_) {
+        chunks_(database_) {
     open_ = true;
     began_ = Clock::now();
     set("name", header.name.empty() ? std::filesystem::path(path).stem().string() : header.name);
@@ -75,6 +76,7 @@ class TakeWriter::Recorder {
     if (number(name.id) <= 0) throw Error("{}: track {} cannot be; ids are positive", path_, number(name.id));
     Counts& counts = tracks_[name.id];
     counts.count.name = name;
+    if (metric_ground_ && is_ball(name)) ball_ = name.id;
     counts.changed = true;
     gathered();
   }
@@ -83,7 +85,7 @@ class TakeWriter::Recorder {
     check(instant);
     for (const TrackName& name : instant.named) set_name(name);
     if (!chunk_.empty() && !fits(instant)) cut();
-    chunk_.add(instant, dimensions_);
+    chunk_.add(instant, dimensions_, ball_);
     last_index_ = instant.index;
     if (!first_index_) first_index_ = instant.index;
     gathered();
@@ -320,6 +322,8 @@ class TakeWriter::Recorder {
   Database database_;
   int schema_;
   int dimensions_;
+  bool metric_ground_;
+  std::optional<TrackId> ball_;  // whose positions have heights where the others' have none
   Statement set_key_, set_track_, add_edit_;
   ChunkWriter chunks_;
   bool open_ = false;     // within a transaction

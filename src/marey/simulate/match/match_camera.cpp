@@ -1,6 +1,7 @@
 #include "marey/simulate/match/match_camera.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace marey::simulate::match {
 
@@ -28,7 +29,10 @@ MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const Match
       motion_(scene.seed, scene.options.pitch),
       detector_(detector),
       random_((scene.seed * 64 + index) * 2654435761u + 41) {
-  if (film) film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
+  if (!film) return;
+  film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
+  has_ball_ = film->ball;
+  exposure_s_ = film->exposure_s;
 }
 
 double MatchCamera::time() const {
@@ -50,6 +54,24 @@ std::vector<LabelledBox> MatchCamera::detect() {
 
 Picture MatchCamera::picture() const {
   return film_ ? film_->render(scene_.figures, stances_, match_time_, frame_) : Picture();
+}
+
+MatchCamera::Shot MatchCamera::shoot() const {
+  if (!film_) return {};
+  std::vector<people::PosedBall> balls;
+  const BallPlace ball = motion_.ball_place();
+  if (has_ball_ && ball.there) {
+    const auto in_world = [&](const Vector<3>& at) -> Vector<3> {
+      const Vector<3> ground = scene_.world_from_pitch * Vector<3>(at.x(), at.y(), 1);
+      return {ground.x(), ground.y(), at.z()};
+    };
+    const Vector<3> half = 0.5 * exposure_s_ * ball.velocity;
+    balls.push_back({in_world(ball.place - half), in_world(ball.place + half), kBallRadius});
+  }
+  people::RenderedFrame frame = film_->render_with(scene_.figures, stances_, balls, match_time_, frame_);
+  Shot shot{std::move(frame.picture), {}};
+  if (!frame.balls.empty()) shot.ball = frame.balls.front();
+  return shot;
 }
 
 std::vector<MatchClick> MatchCamera::clicks(double noise, int wrong) const {
@@ -88,6 +110,11 @@ Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
   }
   ++frame_;
   return instant;
+}
+
+BallPlace BallTruth::next() {
+  motion_.advance(scene_.match_time(static_cast<double>(frame_++) / scene_.options.rate_hz));
+  return motion_.ball_place();
 }
 
 }  // namespace marey::simulate::match

@@ -54,6 +54,13 @@ class MatchCamera {
   /// What a detector says of this frame; errs anew at each call.
   std::vector<LabelledBox> detect();
   Picture picture() const;
+  /// A ball in the match as this camera sees it, halfway through the exposure.
+  struct Shot {
+    Picture picture;
+    std::optional<people::TrueBall> ball;  ///< nothing where there is none, or it lies behind the camera
+  };
+  /// The picture with the ball, where the film has one.
+  Shot shoot() const;
 
   const RigCamera& rig_camera() const { return rig_camera_; }
   /// What a user would click in its picture: see match_clicks.
@@ -70,6 +77,8 @@ class MatchCamera {
   MatchDetectorOptions detector_;
   Random random_;
   std::optional<MatchFilm> film_;
+  double exposure_s_ = 0;
+  bool has_ball_ = false;
   std::int64_t frame_ = -1;  // before the first
   double match_time_ = 0;
   MatchScene::Stances stances_;
@@ -92,6 +101,20 @@ class MatchTruth {
   MatchMotion motion_;
   std::vector<GroundView> views_;
   std::vector<TrackName> people_;
+  std::int64_t frame_ = 0;
+};
+
+/// Where the ball truly is at the first camera's frames, in the pitch's own frame of reference.
+class BallTruth {
+ public:
+  /// The scene must outlive it.
+  explicit BallTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {}
+  /// At the next frame.
+  BallPlace next();
+
+ private:
+  const MatchScene& scene_;
+  MatchMotion motion_;
   std::int64_t frame_ = 0;
 };
 

@@ -60,6 +60,12 @@ MatchFilm::MatchFilm(const GroundView& view, const Matrix<3>& world_from_pitch, 
 
 Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
                           std::span<const people::Stance, kMatchPeople> stances, double time, std::int64_t index) const {
+  return render_with(figures, stances, {}, time, index).picture;
+}
+
+people::RenderedFrame MatchFilm::render_with(std::span<const people::Figure, kMatchPeople> figures,
+                                             std::span<const people::Stance, kMatchPeople> stances,
+                                             std::span<const people::PosedBall> balls, double time, std::int64_t index) const {
   std::vector<people::PosedFigure> people;
   for (std::size_t i = 0; i < figures.size(); ++i) people.push_back({static_cast<int>(i) + 1, &figures[i], stances[i]});
   const double begin = static_cast<double>(seed_ % 97);
@@ -68,7 +74,7 @@ Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
   people::FrameConditions conditions;
   conditions.light = 1 + options_.light_change * (swing - 1) / 2;
   conditions.seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(index);
-  return renderer_.render(people, conditions).picture;
+  return renderer_.render(people, conditions, balls);
 }
 
 std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,

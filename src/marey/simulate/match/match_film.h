@@ -19,6 +19,8 @@ struct MatchFilmOptions {
   double noise = 1.2;            ///< standard deviation of luma, grey levels
   double light_change = 0.08;    ///< the light swings by this share of itself, over half a minute and more
   double contact = 0;            ///< share of the light that shoes keep from the ground right under them
+  bool ball = false;             ///< there is one
+  double exposure_s = 1.0 / 150; ///< s, for which the shutter is open: what moves faster is smeared; only the ball is
   people::CameraLook look = {};  ///< what lens, sharpening and codec make of the picture
 };
 
@@ -31,6 +33,10 @@ class MatchFilm {
   /// The frame `index` at `time`, s since the kick-off. Safe to call from several threads.
   Picture render(std::span<const people::Figure, kMatchPeople> figures, std::span<const people::Stance, kMatchPeople> stances,
                  double time, std::int64_t index) const;
+  /// The same with the ball, in the world's frame, and what of it is seen.
+  people::RenderedFrame render_with(std::span<const people::Figure, kMatchPeople> figures,
+                                    std::span<const people::Stance, kMatchPeople> stances,
+                                    std::span<const people::PosedBall> balls, double time, std::int64_t index) const;
 
  private:
   MatchFilmOptions options_;

@@ -44,7 +44,8 @@ std::string_view match_team(int index) {
   return index < kMatchSide ? "white" : "blue";
 }
 
-MatchMotion::MatchMotion(std::uint64_t seed, const geometry::PitchSize& pitch) : play_(seed * 2654435761u + 11, pitch) {
+MatchMotion::MatchMotion(std::uint64_t seed, const geometry::PitchSize& pitch)
+    : play_(seed * 2654435761u + 11, pitch), ball_(seed * 2654435761u + 13, pitch, play_.ball()) {
   Random random(seed * 2654435761u + 12);
   const auto places = play_.beginning();
   for (std::size_t i = 0; i < kMatchPeople; ++i) {
@@ -141,6 +142,7 @@ void MatchMotion::step() {
   std::array<MatchPlace, kMatchPeople> places;
   for (std::size_t i = 0; i < kMatchPeople; ++i) places[i] = {begin_[i].place, begin_[i].velocity};
   const auto& intents = play_.decide(kStep, places);
+  ball_.step(kStep, play_, places);
   Velocities next;
   for (std::size_t i = 0; i < kMatchPeople; ++i) {
     exert(i, wanted_velocity(i, intents[i]));
@@ -172,7 +174,9 @@ void MatchMotion::advance(double time) {
     ++steps_;
     step();
   }
-  after(time - static_cast<double>(steps_) * kStep);
+  const double rest = time - static_cast<double>(steps_) * kStep;
+  share_ = rest / kStep;
+  after(rest);
 }
 
 }  // namespace marey::simulate::match

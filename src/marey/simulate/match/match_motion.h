@@ -8,6 +8,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/pitch.h"
+#include "marey/simulate/match/match_ball.h"
 #include "marey/simulate/match/match_play.h"
 
 namespace marey::simulate::match {
@@ -40,6 +41,8 @@ class MatchMotion {
 
   std::span<const MatchPerson, kMatchPeople> people() const { return now_; }
   Vector<2> ball() const { return play_.ball(); }  ///< to a step
+  /// The ball itself, which rolls, flies and bounces to where the play has it.
+  BallPlace ball_place() const { return ball_.at(share_); }
 
  private:
   struct Body {
@@ -58,6 +61,8 @@ class MatchMotion {
   void turn(std::size_t i);
 
   MatchPlay play_;
+  MatchBall ball_;
+  double share_ = 0;  // of the step that is gone
   std::int64_t steps_ = 0;
   std::array<Body, kMatchPeople> bodies_{};
   std::array<MatchPerson, kMatchPeople> begin_{};  // at the beginning of the step

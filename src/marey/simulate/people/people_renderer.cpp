@@ -1,7 +1,7 @@
 // Every thing that stands is drawn once, alone, onto a lattice of points finer than the pixels: its silhouette, exact to a lattice
 // step, whose points also say which part and shade they show. From the farthest to the nearest, each is laid over the ground with
 // the share of a pixel's points that it covers; what is visible of it is its silhouette less those of whatever stands nearer.
-// Balls are seen as discs, which holds to the square of their angular size. Shadows lie on the ground only, and two do not
+// Balls, those of limbs and those that are played with, are seen as discs, which holds to the square of their angular size. Shadows lie on the ground only, and two do not
 // darken more than one. Everything is done in the planes that video is made of. Cost: a copy of the ground, the noise, and the
 // lattice points of the figures.
 #include "marey/simulate/people/people_renderer.h"
@@ -197,6 +197,87 @@ void PeopleRenderer::Sprite::lay(Planes& planes) const {
   }
 }
 
+/// A ball that is played with: a disc, smeared along its way while the shutter is open.
+struct PeopleRenderer::BallSprite {
+  double depth = 0;
+  Vector<2> from, to;  // px
+  double radius = 0;   // px
+  Ycc colour{};
+
+  Vector<2> middle() const { return (from + to) / 2; }
+  void lay(Planes& planes) const;
+};
+
+/// What a pixel keeps of the scene is the share of time and area that the disc does not cover; light comes from above.
+void PeopleRenderer::BallSprite::lay(Planes& planes) const {
+  constexpr int kMoments = 9, kPoints = 3;
+  const Box box = bounds(RoundCone2{from, to, radius, radius});
+  const cv::Rect shown = blank_silhouette(box, 1).pixels() & cv::Rect({0, 0}, planes.luma.size());
+  if (shown.empty()) return;
+  const cv::Rect blocks = half_of(shown) & cv::Rect({0, 0}, planes.cb.size());
+  cv::Mat chroma = cv::Mat::zeros(blocks.size(), CV_32FC1);
+  for (int y = shown.y; y < shown.br().y; ++y) {
+    for (int x = shown.x; x < shown.br().x; ++x) {
+      float share = 0, shade = 0;
+      for (int sample = 0; sample < kMoments * kPoints * kPoints; ++sample) {
+        const int point = sample / kMoments;
+        const Vector<2> centre = from + (sample % kMoments + 0.5) / kMoments * (to - from);
+        const Vector<2> off = Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
+        if (off.squaredNorm() > radius * radius) continue;
+        share += 1;
+        shade += static_cast<float>(0.86 - 0.14 * off.y() / radius);
+      }
+      if (share == 0) continue;
+      constexpr float kUnit = 1.0F / (kMoments * kPoints * kPoints);
+      auto& level = planes.luma.at<std::uint8_t>(y, x);
+      level = clamp_level((1 - kUnit * share) * level + kUnit * (16 * share + shade * (colour[0] - 16)));
+      if (x / 2 < blocks.br().x && y / 2 < blocks.br().y) chroma.at<float>(y / 2 - blocks.y, x / 2 - blocks.x) += kUnit * share / 4;
+    }
+  }
+  for (int y = 0; y < blocks.height; ++y) {
+    for (int x = 0; x < blocks.width; ++x) {
+      const float share = chroma.at<float>(y, x);
+      auto& cb = planes.cb.at<std::uint8_t>(y + blocks.y, x + blocks.x);
+      auto& cr = planes.cr.at<std::uint8_t>(y + blocks.y, x + blocks.x);
+      cb = clamp_level((1 - share) * cb + share * colour[1]);
+      cr = clamp_level((1 - share) * cr + share * colour[2]);
+    }
+  }
+}
+
+std::optional<PeopleRenderer::BallSprite> PeopleRenderer::sprite_of(const PosedBall& ball, const Vector<2>& shift) const {
+  const auto from = projection_(ball.from), to = projection_(ball.to);
+  if (!from || !to) return std::nullopt;
+  BallSprite sprite;
+  sprite.depth = (from->depth + to->depth) / 2;
+  sprite.from = from->at + shift, sprite.to = to->at + shift;
+  sprite.radius = ball.radius * (from->scale + to->scale) / 2;
+  sprite.colour = to_ycc(ball.colour, 1);
+  return sprite;
+}
+
+/// Of points all over a ball's disc, the share within the picture that nothing nearer covers.
+double PeopleRenderer::share_seen(const BallSprite& ball, std::span<const Sprite> sprites) const {
+  constexpr int kSide = 7;
+  int all = 0, seen = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const Vector<2> off(2.0 * (i % kSide + 0.5) / kSide - 1, 2.0 * (i / kSide + 0.5) / kSide - 1);
+    if (off.squaredNorm() > 1) continue;
+    ++all;
+    const Vector<2> at = ball.middle() + ball.radius * off;
+    if (at.x() < -0.5 || at.y() < -0.5 || at.x() >= luma_.cols - 0.5 || at.y() >= luma_.rows - 0.5) continue;
+    const auto covers = [&](const Sprite& sprite) {
+      if (sprite.depth >= ball.depth) return false;
+      const cv::Point point(static_cast<int>(std::floor((at.x() + 0.5) * sprite.shape.samples)),
+                            static_cast<int>(std::floor((at.y() + 0.5) * sprite.shape.samples)));
+      return sprite.shape.lattice.contains(point) &&
+             sprite.shape.mask.at<std::uint8_t>(point.y - sprite.shape.lattice.y, point.x - sprite.shape.lattice.x) != 0;
+    };
+    if (std::none_of(sprites.begin(), sprites.end(), covers)) ++seen;
+  }
+  return static_cast<double>(seen) / all;
+}
+
 PeopleRenderer::PeopleRenderer(const Picture& ground, Projection projection, std::vector<Post> posts, const RenderOptions& options)
     : projection_(std::move(projection)), posts_(std::move(posts)), options_(options) {
   const Picture scene = ground.is_colour() && ground.range() == Picture::Range::limited ? ground : Picture::from_bgr(ground.bgr());
@@ -347,7 +428,8 @@ void PeopleRenderer::see_past(std::span<const Sprite> sprites, const Sprite& own
   truth.visible_share = truth.visible.area() / truth.whole.area();
 }
 
-RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const FrameConditions& conditions) const {
+RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const FrameConditions& conditions,
+                                     std::span<const PosedBall> balls) const {
   Planes planes = ground(conditions);
   std::vector<Silhouette> shadows;
   std::vector<Sprite> sprites;
@@ -373,6 +455,16 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     if (auto sprite = sprite_of(post, conditions.shift)) sprites.push_back(std::move(*sprite));
   }
   for (std::size_t i = 0; i < frame.people.size(); ++i) see_past(sprites, sprites[sprite_of_person[i]], frame.people[i]);
+  std::vector<BallSprite> ball_sprites;
+  for (const PosedBall& ball : balls) {
+    auto sprite = sprite_of(ball, conditions.shift);
+    if (!sprite) continue;
+    const Vector<3> middle = (ball.from + ball.to) / 2;
+    const std::array<Limb, 1> round{{{middle, middle, ball.radius, ball.radius, FigurePart::skin}}};
+    if (options_.shadows) keep_shadow(shadow_of(round, conditions.shift));
+    frame.balls.push_back({sprite->middle(), sprite->radius, share_seen(*sprite, sprites)});
+    ball_sprites.push_back(*sprite);
+  }
   darken(planes, shadows);
   for (const PosedFigure& person : people) {
     if (options_.contact > 0)
@@ -380,7 +472,14 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
                      planes.cr);
   }
   std::stable_sort(sprites.begin(), sprites.end(), [](const Sprite& a, const Sprite& b) { return a.depth > b.depth; });
-  for (const Sprite& sprite : sprites) sprite.lay(planes);
+  const auto behind = [](const auto& a, const auto& b) { return a.depth > b.depth; };
+  std::stable_sort(ball_sprites.begin(), ball_sprites.end(), behind);
+  auto ball = ball_sprites.begin();
+  for (const Sprite& sprite : sprites) {
+    for (; ball != ball_sprites.end() && ball->depth > sprite.depth; ++ball) ball->lay(planes);
+    sprite.lay(planes);
+  }
+  for (; ball != ball_sprites.end(); ++ball) ball->lay(planes);
   if (conditions.light != 1) {
     scale_levels(planes.luma, conditions.light, 16);
     scale_levels(planes.cb, conditions.light, 128);

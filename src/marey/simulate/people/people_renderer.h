@@ -31,6 +31,13 @@ struct PosedFigure {
   Stance stance;
 };
 
+/// A ball in one frame, which moves while the shutter is open.
+struct PosedBall {
+  Vector<3> from = Vector<3>::Zero(), to = Vector<3>::Zero();  ///< m: its centre as the shutter opens and closes
+  double radius = 0.11;                                        ///< m
+  Rgb colour{236, 236, 232};
+};
+
 /// Something upright and flat that hides what is behind it: a post, a board, a wall.
 struct Post {
   Vector<2> from = Vector<2>::Zero(), to = Vector<2>::Zero();  ///< m on the ground
@@ -66,9 +73,17 @@ struct TrueFigure {
   double visible_share = 0;              ///< of the area of `whole`
 };
 
+/// Where a ball truly is in one frame.
+struct TrueBall {
+  Vector<2> at = Vector<2>::Zero();  ///< px: its centre halfway through the exposure
+  double radius = 0;                 ///< px
+  double visible_share = 0;          ///< of its disc: within the picture and behind nobody
+};
+
 struct RenderedFrame {
   Picture picture;                 ///< colour, limited range
   std::vector<TrueFigure> people;  ///< in the order given, those of whom a part of `whole` lies within the picture
+  std::vector<TrueBall> balls;     ///< those given that lie before the camera
 };
 
 /// Draws people, their shadows and posts over a picture of the ground.
@@ -79,19 +94,23 @@ class PeopleRenderer {
   PeopleRenderer(const Picture& ground, Projection projection, std::vector<Post> posts = {}, const RenderOptions& options = {});
 
   /// The same for the same arguments. Safe to call from several threads.
-  RenderedFrame render(std::span<const PosedFigure> people, const FrameConditions& conditions = {}) const;
+  RenderedFrame render(std::span<const PosedFigure> people, const FrameConditions& conditions = {},
+                       std::span<const PosedBall> balls = {}) const;
 
   cv::Size size() const { return luma_.size(); }
 
  private:
   struct Sprite;
   struct Planes;
+  struct BallSprite;
 
+  std::optional<BallSprite> sprite_of(const PosedBall& ball, const Vector<2>& shift) const;
   std::optional<Sprite> sprite_of(const PosedFigure& person, const Vector<2>& shift) const;
   std::optional<Sprite> sprite_of(const Post& post, const Vector<2>& shift) const;
   std::optional<Silhouette> shadow_of(std::span<const Limb> limbs, const Vector<2>& shift) const;
   std::optional<Silhouette> shadow_of(const Post& post, const Vector<2>& shift) const;
   Planes ground(const FrameConditions& conditions) const;
+  double share_seen(const BallSprite& ball, std::span<const Sprite> sprites) const;
   void see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const;
   void darken(Planes& planes, std::span<const Silhouette> shadows) const;
   void add_noise(Planes& planes, std::uint64_t seed) const;

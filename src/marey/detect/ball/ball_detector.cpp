@@ -1,0 +1,117 @@
+// The scene is a picture of its own here, of grey levels, which follows by a level now and then: the background models for people
+// leave out what is as small as a ball far away. What is brighter than it falls into regions; a region is judged by its light, the
+// sum of what it adds, which motion smears but does not change: a ball's is that of a white disc of the radius that it has there. The
+// score is the logarithm of the ratio of two densities of the radius, a ball's (a normal one of the logarithm) and that of anything
+// else (even in the logarithm), less for what is ragged and for what lies in a person's box, where shirts and socks are.
+// Cost: some passes over the picture.
+#include "marey/detect/ball/ball_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <opencv2/imgproc.hpp>
+
+namespace marey::detect::ball {
+
+void BallDetector::prime(std::span<const Frame> samples) {
+  std::vector<cv::Mat> pictures;
+  for (const Frame& frame : samples) {
+    if (!frame.picture.empty() && frame.picture.luma().type() == CV_8UC1) pictures.push_back(frame.picture.luma());
+  }
+  if (pictures.size() < 3) return;
+  scene_.create(pictures.front().size(), CV_8UC1);
+  std::vector<std::uint8_t> levels(pictures.size());
+  const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
+  for (int y = 0; y < scene_.rows; ++y) {
+    for (int x = 0; x < scene_.cols; ++x) {
+      for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
+      std::nth_element(levels.begin(), middle, levels.end());
+      scene_.at<std::uint8_t>(y, x) = *middle;
+    }
+  }
+}
+
+/// One level nearer to the frame, so often a second as the options say.
+void BallDetector::follow(const cv::Mat& luma, Timestamp time) {
+  if (!followed_) followed_ = time;
+  if (seconds(time - *followed_) * options_.follow_hz < 1) return;
+  followed_ = time;
+  cv::Mat up, down;
+  cv::compare(luma, scene_, up, cv::CMP_GT);
+  cv::compare(luma, scene_, down, cv::CMP_LT);
+  cv::add(scene_, cv::Scalar(1), scene_, up);
+  cv::subtract(scene_, cv::Scalar(1), scene_, down);
+}
+
+std::vector<BallCandidate> BallDetector::detect(const Frame& frame, std::span<const Box> people) {
+  cv::Mat luma = frame.picture.luma();
+  if (luma.type() == CV_16UC1) luma.convertTo(luma, CV_8U, 1 / 257.0);
+  if (scene_.size() != luma.size()) scene_ = luma.clone();
+  cv::subtract(luma, scene_, added_);
+  follow(luma, frame.time);
+  cv::Mat bright, blobs, figures, centres;
+  cv::threshold(added_, bright, options_.contrast, 255, cv::THRESH_BINARY);
+  const int count = cv::connectedComponentsWithStats(bright, blobs, figures, centres, 8, CV_32S);
+  std::vector<BallCandidate> found;
+  for (int blob = 1; blob < count; ++blob) {
+    const int* figure = figures.ptr<int>(blob);
+    const cv::Rect box(figure[cv::CC_STAT_LEFT], figure[cv::CC_STAT_TOP], figure[cv::CC_STAT_WIDTH], figure[cv::CC_STAT_HEIGHT]);
+    if (figure[cv::CC_STAT_AREA] < 2 || box.width > 80 || box.height > 80) continue;
+    if (const auto candidate = judge(blobs, blob, box, people)) found.push_back(*candidate);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  if (std::ssize(found) > options_.most) found.resize(static_cast<std::size_t>(options_.most));
+  return found;
+}
+
+std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob, const cv::Rect& box,
+                                                 std::span<const Box> people) const {
+  double light = 0, scene = 0, xx = 0, yy = 0, xy = 0;
+  int area = 0;
+  Vector<2> sum = Vector<2>::Zero();
+  const cv::Point from(std::max(0, box.x - 1), std::max(0, box.y - 1));  // its faint rim too
+  const cv::Point to(std::min(blobs.cols, box.br().x + 1), std::min(blobs.rows, box.br().y + 1));
+  for (int y = from.y; y < to.y; ++y) {
+    for (int x = from.x; x < to.x; ++x) {
+      const int label = blobs.at<int>(y, x);
+      if (label != blob && label != 0) continue;
+      const double more = added_.at<std::uint8_t>(y, x);
+      light += more;
+      sum += more * Vector<2>(x, y);
+      xx += more * x * x, yy += more * y * y, xy += more * x * y;
+      scene += scene_.at<std::uint8_t>(y, x);
+      ++area;
+    }
+  }
+  BallCandidate candidate;
+  candidate.centre = sum / light;
+  const auto expected = size_(candidate.centre);
+  if (!expected) return std::nullopt;
+  const double contrast = std::max(20.0, options_.white - scene / area);
+  const double disc = std::numbers::pi * *expected * *expected * contrast;
+  if (light < options_.least_light * disc || light > options_.most_light * disc) return std::nullopt;
+  candidate.radius = std::sqrt(light / (std::numbers::pi * contrast));
+  // The narrower side of the light's spread: motion draws out one side alone.
+  const double vx = xx / light - candidate.centre.x() * candidate.centre.x(), vy = yy / light - candidate.centre.y() * candidate.centre.y();
+  const double cross = xy / light - candidate.centre.x() * candidate.centre.y();
+  const double root = std::sqrt((vx - vy) * (vx - vy) / 4 + cross * cross);
+  const double narrow = std::sqrt(std::max(0.0, (vx + vy) / 2 - root)), wide = std::sqrt((vx + vy) / 2 + root);
+  const double off = std::log(candidate.radius / *expected) - options_.flown;
+  const double spread = options_.size_spread;
+  constexpr double kRange = 3;  // of the logarithm of radii that anything else has
+  candidate.score = -off * off / (2 * spread * spread) + std::log(kRange / (std::sqrt(2 * std::numbers::pi) * spread));
+  const double round = std::hypot(0.5 * candidate.radius, 0.6);  // what a disc spreads, blurred by the lens
+  candidate.score -= 0.5 * std::pow(std::max(0.0, narrow / round - 1.2) / 0.25, 2);
+  candidate.score -= 0.5 * std::pow(std::max(0.0, wide / round - 2) / 0.8, 2);
+  const auto holds = [&](const Box& person) {
+    return candidate.centre.x() > person.left && candidate.centre.x() < person.right() && candidate.centre.y() > person.top &&
+           candidate.centre.y() < person.bottom();
+  };
+  if (std::any_of(people.begin(), people.end(), holds)) candidate.score -= options_.on_person;
+  candidate.sigma = 0.4 + 0.1 * wide;
+  if (candidate.score < -8) return std::nullopt;
+  return candidate;
+}
+
+}  // namespace marey::detect::ball

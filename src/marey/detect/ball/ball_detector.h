@@ -1,0 +1,60 @@
+// What in a picture may be the ball: small, round and brighter than the scene behind it, of the size that a ball has there.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/frame.h"
+#include "marey/core/geometry.h"
+
+namespace marey::detect::ball {
+
+/// The radius of a ball that lies on the ground and is seen at a pixel, px; nothing where no ground is seen.
+using BallSize = std::function<std::optional<double>(const Vector<2>& pixel)>;
+
+/// Chosen by a sweep over simulated matches, seeds 1–6 (bench/ball.py).
+struct BallDetectorOptions {
+  double contrast = 14;      ///< grey levels that it is brighter than the scene, at least
+  double white = 185;        ///< grey level of a ball
+  double least_light = 0.15; ///< of the light that a ball on the ground adds to the picture: less is noise,
+  double most_light = 8;     ///< more is no ball, however near it flies
+  double size_spread = 0.5;  ///< deviation of the logarithm of the radius, of balls
+  double flown = 0.2;        ///< by which balls are larger than on the ground, for they fly nearer: of that logarithm
+  double on_person = 2.5;    ///< by which the score is less within a person's box
+  double follow_hz = 4;      ///< grey levels a second by which the scene is followed
+  int most = 40;             ///< candidates in a frame, the best
+};
+
+struct BallCandidate {
+  Vector<2> centre = Vector<2>::Zero();  ///< px: of its light
+  double sigma = 0.5;                    ///< px, of each coordinate
+  double radius = 0;                     ///< px: of a white disc of as much light
+  double score = 0;                      ///< logarithm of how much likelier a ball looks so than anything else that is found
+};
+
+class BallDetector {
+ public:
+  BallDetector(BallSize size, const BallDetectorOptions& options = {}) : size_(std::move(size)), options_(options) {}
+
+  /// Learns the empty scene: the median of these. Without it the first frame is the scene.
+  void prime(std::span<const Frame> samples);
+
+  /// Frames in order; `people` are boxes, px.
+  std::vector<BallCandidate> detect(const Frame& frame, std::span<const Box> people);
+
+ private:
+  void follow(const cv::Mat& luma, Timestamp time);
+  std::optional<BallCandidate> judge(const cv::Mat& blobs, int blob, const cv::Rect& box, std::span<const Box> people) const;
+
+  BallSize size_;
+  BallDetectorOptions options_;
+  cv::Mat scene_;  // CV_8UC1
+  cv::Mat added_;  // CV_8UC1: by how much the frame is brighter
+  std::optional<Timestamp> followed_;
+};
+
+}  // namespace marey::detect::ball

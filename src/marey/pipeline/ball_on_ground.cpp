@@ -1,0 +1,109 @@
+#include "marey/pipeline/ball_on_ground.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "marey/core/ball_track.h"
+#include "marey/track/ball/ball_smooth.h"
+
+namespace marey::pipeline {
+namespace {
+
+using track::ball::BallMode;
+using track::ball::BallMoment;
+using track::ball::BallState;
+
+constexpr double kBeyondLines = 12;   // m; farther out nothing is the ball
+constexpr double kUnseen = 1.5;       // s without anybody having seen it, after which nobody knows where it is
+
+/// Who is where, at each moment.
+void add_people(const Recording& recording, const reconstruct::GroundArea& area, std::vector<BallMoment>& moments) {
+  InstantRows rows(recording);
+  auto moment = moments.begin();
+  for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
+    const std::int64_t index = recording.instants()[instant].index;
+    while (moment != moments.end() && moment->index < index) ++moment;
+    if (moment == moments.end() || moment->index != index) continue;
+    for (const auto& [track, row] : rows.at(instant)) {
+      const TrackColumns& person = recording.tracks()[track];
+      const Vector<2> place = person.place(row);
+      const auto velocity = person.velocity(row);
+      const Vector<2> here = area.world(place);
+      const Vector<2> later = velocity ? area.world(place + velocity->head<2>()) : here;
+      moment->people.push_back({person.id(), here, later - here});
+    }
+  }
+}
+
+/// Rows that count: from one sighting to the next where they are near each other, on the pitch or near it.
+std::vector<bool> rows_known(const std::vector<BallMoment>& moments, const std::vector<BallState>& states,
+                             const reconstruct::GroundArea& area) {
+  std::vector<bool> known(states.size(), false);
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].mode == BallMode::lost) {
+      last.reset();
+      continue;
+    }
+    if (states[i].cameras == 0) continue;
+    const bool near = last && seconds(moments[i].time - moments[*last].time) <= kUnseen;
+    for (std::size_t k = near ? *last + 1 : i; k <= i; ++k) known[k] = area.holds(states[k].belief.place().head<2>(), kBeyondLines);
+    last = i;
+  }
+  return known;
+}
+
+Sample sample_of(TrackId id, const BallState& state, const reconstruct::GroundArea& area) {
+  Sample sample;
+  sample.track = id;
+  const Vector<3> place = state.belief.place(), velocity = state.belief.velocity();
+  const Vector<2> ground = area.ground(place.head<2>()), along = area.ground_velocity(velocity.head<2>());
+  sample.position = {ground.x(), ground.y(), std::max(place.z(), 0.0)};
+  sample.velocity = Vector<3>(along.x(), along.y(), velocity.z());
+  Matrix<3> turn = Matrix<3>::Identity();
+  turn.col(0).head<2>() = area.ground_velocity({1, 0});
+  turn.col(1).head<2>() = area.ground_velocity({0, 1});
+  sample.covariance = turn * state.belief.covariance.topLeftCorner<3, 3>() * turn.transpose();
+  sample.cameras = state.cameras;
+  sample.provenance = state.cameras != 0 ? Provenance::measured : Provenance::filled;
+  return sample;
+}
+
+}  // namespace
+
+std::optional<TrackId> follow_ball(std::vector<BallMoment> moments, const std::shared_ptr<const GroundViews>& views,
+                                   const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
+                                   Recording& recording) {
+  add_people(recording, area, moments);
+  track::ball::BallSearch search(views, options.search);
+  std::vector<track::ball::BallStep> steps;
+  for (const BallMoment& moment : moments) {
+    if (hooks.stop.stop_requested()) break;
+    search.add(moment);
+    auto decided = search.take_decided();
+    std::move(decided.begin(), decided.end(), std::back_inserter(steps));
+  }
+  search.finish();
+  auto decided = search.take_decided();
+  std::move(decided.begin(), decided.end(), std::back_inserter(steps));
+  moments.resize(steps.size());
+  const std::vector<BallState> states = track::ball::smooth_ball(moments, steps, *views, options.search.motion);
+  const std::vector<bool> known = rows_known(moments, states, area);
+  const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
+  TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}}, 3);
+  std::size_t instant = 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!known[i]) continue;
+    while (instant < recording.instants().size() && recording.instants()[instant].index < moments[i].index) ++instant;
+    if (instant == recording.instants().size()) break;
+    if (recording.instants()[instant].index == moments[i].index)
+      track.add(static_cast<std::int32_t>(instant), sample_of(track.id(), states[i], area));
+  }
+  if (track.empty()) return std::nullopt;
+  const TrackId id = track.id();
+  recording.put(std::move(track));
+  return id;
+}
+
+}  // namespace marey::pipeline

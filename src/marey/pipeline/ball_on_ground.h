@@ -1,0 +1,29 @@
+// The ball's way over a whole recording, after everybody's is known.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "marey/core/ground_views.h"
+#include "marey/core/recording.h"
+#include "marey/detect/ball/ball_detector.h"
+#include "marey/pipeline/run.h"
+#include "marey/reconstruct/ground_area.h"
+#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_search.h"
+
+namespace marey::pipeline {
+
+struct BallOptions {
+  detect::ball::BallDetectorOptions detector;
+  track::ball::BallSearchOptions search;
+};
+
+/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts it
+/// into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing where it was never found.
+std::optional<TrackId> follow_ball(std::vector<track::ball::BallMoment> moments, const std::shared_ptr<const GroundViews>& views,
+                                   const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
+                                   Recording& recording);
+
+}  // namespace marey::pipeline

@@ -1,0 +1,58 @@
+#include "marey/simulate/match/match_ball.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "marey/simulate/match/match_motion.h"
+
+namespace marey::simulate::match {
+namespace {
+
+TEST(MatchBall, RollsFliesIsHeldAndGoesOutAsBallsDo) {
+  MatchMotion motion(7);
+  std::array<int, 4> states{};
+  double highest = 0, fastest = 0;
+  for (int i = 1; i < 25 * 180; ++i) {
+    const BallPlace before = motion.ball_place();
+    motion.advance(i / 25.0);
+    const BallPlace ball = motion.ball_place();
+    ++states[static_cast<std::size_t>(ball.state)];
+    ASSERT_GE(ball.place.z(), kBallRadius - 1e-9);
+    highest = std::max(highest, ball.place.z());
+    fastest = std::max(fastest, ball.velocity.norm());
+    if (!before.there || !ball.there || ball.state == BallState::dead) continue;
+    ASSERT_LT((ball.place - before.place).norm(), 45 / 25.0) << "it jumps at " << i / 25.0 << " s";
+    if (ball.state == BallState::held && before.state == BallState::held && before.holder == ball.holder) {
+      const Vector<2> holder = motion.people()[static_cast<std::size_t>(ball.holder)].place;
+      EXPECT_LT((ball.place.head<2>() - holder).norm(), 12) << i / 25.0;
+    }
+  }
+  for (const int count : states) EXPECT_GT(count, 25);
+  EXPECT_GT(highest, 2.5);
+  EXPECT_LT(highest, 20);
+  EXPECT_LT(fastest, 45);
+}
+
+TEST(MatchBall, FliesUnderGravityAndSlowsInTheAir) {
+  MatchMotion motion(3);
+  int checked = 0;
+  for (int i = 1; i < 50 * 120; ++i) {
+    motion.advance(i / 50.0);
+    const BallPlace a = motion.ball_place();
+    motion.advance((i + 0.9) / 50.0);
+    if (a.state != BallState::flying || a.place.z() < 1 || std::abs(a.velocity.z()) > 8) continue;
+    MatchMotion later = motion;
+    later.advance((i + 2) / 50.0);
+    const BallPlace b = later.ball_place();
+    if (b.state != BallState::flying || b.place.z() < 1) continue;
+    EXPECT_NEAR(b.velocity.z() - a.velocity.z(), -9.81 * 0.04, 0.2);
+    EXPECT_LT(b.velocity.norm() - a.velocity.norm(), 0.5);
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+}  // namespace
+}  // namespace marey::simulate::match

@@ -1,0 +1,278 @@
+// The score is a likelihood ratio against all being false: what is seen and taken for the ball counts by its density where the ball is
+// expected, over that of false things all over the picture, and by its look; a ball that is expected and not seen costs. Nothing may
+// be one's ball for nothing: a ball that is lost has ratio 1. Hypotheses that came to the same (mode, holder, what was seen last, nearly
+// the same place and velocity) are one: the better one. That is Viterbi's step; the beam is what it leaves out.
+// Reid 1979, "An algorithm for tracking multiple targets"; here with one target, whose motion switches.
+// Cost: beam × 6 × views × things seen a moment.
+#include "marey/track/ball/ball_search.h"
+
+#include <algorithm>
+#include <iterator>
+#include <cmath>
+#include <utility>
+
+namespace marey::track::ball {
+namespace {
+
+/// What one hypothesis becomes before anything is seen.
+struct Continuation {
+  BallMode mode;
+  BallEvent event;
+  int holder;
+  double log_prior;
+};
+
+const BallPerson* person_at(const BallMoment& moment, int index) {
+  return index < 0 ? nullptr : &moment.people[static_cast<std::size_t>(index)];
+}
+
+/// People whose feet reach a place, nearest first.
+std::vector<int> people_near(const BallMoment& moment, const Vector<2>& place, double reach) {
+  std::vector<std::pair<double, int>> near;
+  for (std::size_t i = 0; i < moment.people.size(); ++i) {
+    const double away = (moment.people[i].place - place).norm();
+    if (away < reach) near.emplace_back(away, static_cast<int>(i));
+  }
+  std::sort(near.begin(), near.end());
+  std::vector<int> people;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i) people.push_back(near[i].second);
+  return people;
+}
+
+/// The same person at this moment; −1 where it is not there.
+int index_of(TrackId id, const BallMoment& moment) {
+  for (std::size_t i = 0; i < moment.people.size(); ++i) {
+    if (moment.people[i].id == id) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+constexpr double kOverhead = 2.6;  // m; higher, nobody plays it
+
+std::vector<Continuation> continuations(const BallNode& before, const BallMoment& moment, const BallSearchOptions& options) {
+  const int holder = before.step.holder ? index_of(*before.step.holder, moment) : -1;
+  const BallBelief& belief = before.step.belief;
+  const double spread = std::sqrt(belief.covariance(0, 0) + belief.covariance(1, 1));
+  const auto near = people_near(moment, belief.place().head<2>(), options.reach + std::min(1.5, spread));
+  const bool reached = !near.empty() && belief.place().z() - std::sqrt(belief.covariance(2, 2)) < kOverhead;
+  const double kick = std::log(reached || before.step.mode == BallMode::held ? options.p_kick : options.p_kick_alone);
+  std::vector<Continuation> all{{BallMode::lost, BallEvent::none, -1, std::log(options.p_lose)},
+                                {BallMode::flying, BallEvent::kick, -1, kick},
+                                {BallMode::rolling, BallEvent::kick, -1, kick}};
+  if (reached) {
+    for (const int person : near) {
+      if (person != holder) all.push_back({BallMode::held, BallEvent::take, person, std::log(options.p_take)});
+    }
+  }
+  const double sigma_z = std::sqrt(belief.covariance(2, 2));
+  switch (before.step.mode) {
+    case BallMode::rolling: all.push_back({BallMode::rolling, BallEvent::none, -1, 0}); break;
+    case BallMode::flying:
+      all.push_back({BallMode::flying, BallEvent::none, -1, 0});
+      if (belief.velocity().z() < 0 && belief.place().z() - 3 * sigma_z < 1) {
+        all.push_back({BallMode::flying, BallEvent::bounce, -1, std::log(0.1)});
+        all.push_back({BallMode::rolling, BallEvent::land, -1, std::log(0.05)});
+      }
+      break;
+    case BallMode::held:
+      if (holder >= 0) all.push_back({BallMode::held, BallEvent::none, holder, 0});
+      break;
+    case BallMode::lost: break;
+  }
+  return all;
+}
+
+double clutter(const BallView& view, const GroundView& ground, const BallSearchOptions& options) {
+  const double area = static_cast<double>(ground.size().width) * ground.size().height;
+  return std::log(std::max(options.false_seen, static_cast<double>(view.seen.size())) / area);
+}
+
+double share_found(BallMode mode, const BallView& view, const Vector<2>& pixel, const BallSearchOptions& options) {
+  if (mode == BallMode::held) return options.found_held;
+  const auto holds = [&](const Box& box) {
+    return pixel.x() > box.left && pixel.x() < box.right() && pixel.y() > box.top && pixel.y() < box.bottom();
+  };
+  return std::any_of(view.people.begin(), view.people.end(), holds) ? options.found_hidden : options.found;
+}
+
+/// What is within the gate, the nearest first.
+std::vector<int> gated(const BallView& view, const BallProjection& at, const BallSearchOptions& options) {
+  std::vector<std::pair<double, int>> within;
+  for (std::size_t i = 0; i < view.seen.size(); ++i) {
+    const BallSighting& sighting = view.seen[i];
+    const Vector<2> off = sighting.pixel - at.pixel;
+    const Matrix<2> spread = at.spread + sighting.sigma * sighting.sigma * Matrix<2>::Identity();
+    const double determinant = spread.determinant();
+    const double squared =
+        (spread(1, 1) * off.x() * off.x() - 2 * spread(0, 1) * off.x() * off.y() + spread(0, 0) * off.y() * off.y()) / determinant;
+    if (squared < options.gate * options.gate) within.emplace_back(squared - 2 * sighting.score, static_cast<int>(i));
+  }
+  std::sort(within.begin(), within.end());
+  std::vector<int> indices;
+  for (std::size_t i = 0; i < std::min(within.size(), static_cast<std::size_t>(options.branches)); ++i)
+    indices.push_back(within[i].second);
+  return indices;
+}
+
+/// Each way in which one more camera may have seen it.
+void look(const std::vector<BallNode>& all, const BallView& view, const GroundView& ground, const BallSearchOptions& options,
+          std::vector<BallNode>& out) {
+  const double density = clutter(view, ground, options);
+  for (const BallNode& node : all) {
+    BallNode missed = node;
+    missed.step.used.push_back(-1);
+    const auto at = project(node.step.belief, ground);
+    if (!at || !ground.camera()->in_picture(at->pixel)) {
+      out.push_back(std::move(missed));
+      continue;
+    }
+    const double found = share_found(node.step.mode, view, at->pixel, options);
+    for (const int i : gated(view, *at, options)) {
+      const BallSighting& sighting = view.seen[static_cast<std::size_t>(i)];
+      BallNode seen = node;
+      seen.step.used.push_back(i);
+      seen.score += std::log(found) + sighting.score - density + correct(seen.step.belief, *at, sighting);
+      out.push_back(std::move(seen));
+    }
+    missed.score += std::log(1 - found);
+    out.push_back(std::move(missed));
+  }
+}
+
+/// A ball that nothing was known of, on the ground or in the air, where a camera sees something.
+void be_born(const std::shared_ptr<BallNode>& before, const BallMoment& moment, const GroundViews& views,
+             const BallSearchOptions& options, std::vector<BallNode>& out) {
+  for (std::size_t v = 0; v < moment.views.size(); ++v) {
+    const BallView& view = moment.views[v];
+    const GroundView& ground = views.view_at(view.camera, view.time);
+    const double area = static_cast<double>(ground.size().width) * ground.size().height;
+    for (std::size_t i = 0; i < view.seen.size(); ++i) {
+      const BallSighting& sighting = view.seen[i];
+      const auto place = ground.place(sighting.pixel);
+      if (!place) continue;
+      const Vector<3> centre = ground.camera()->centre(), foot(place->ground.x(), place->ground.y(), 0);
+      for (const double height : {kBallRadius, 2.0, 5.0}) {
+        const bool flies = height > 1;
+        BallNode born;
+        born.parent = before;
+        born.step = {flies ? BallMode::flying : BallMode::rolling, BallEvent::kick, {}, std::vector<int>(moment.views.size(), -1), true, {}};
+        const double share = height / centre.z();
+        if (!(share < 0.9) || centre.z() <= 0) continue;
+        BallBelief& belief = born.step.belief;
+        belief.mean.head<3>() = foot + share * (centre - foot);
+        const double v_sigma = options.motion.kick_speed;
+        belief.covariance.setZero();
+        const double pixel_m = std::max(0.05, sighting.sigma * place->by_pixel.norm());
+        belief.covariance.topLeftCorner<3, 3>().diagonal().setConstant(flies ? 0.05 : pixel_m * pixel_m);
+        belief.covariance.topLeftCorner<3, 3>() += (flies ? 1.0 : 1e-3) * (centre - foot) * (centre - foot).transpose() /
+                                                   (centre.z() * centre.z());
+        belief.covariance.bottomRightCorner<3, 3>() =
+            Vector<3>(v_sigma, v_sigma, flies ? options.motion.kick_up : 0.3).cwiseAbs2().asDiagonal();
+        born.step.used[v] = static_cast<int>(i);
+        born.score = before->score + std::log(options.p_born * options.found / area * (flies ? 0.1 : 0.8)) + sighting.score -
+                     clutter(view, ground, options);
+        out.push_back(std::move(born));
+      }
+    }
+  }
+}
+
+bool same(const BallNode& a, const BallNode& b) {
+  if (a.step.mode != b.step.mode || a.step.holder != b.step.holder) return false;
+  if (a.step.mode == BallMode::lost) return true;
+  constexpr double kSamePlace = 0.15, kSameVelocity = 0.7;  // m, m/s
+  return a.step.used == b.step.used && (a.step.belief.place() - b.step.belief.place()).norm() < kSamePlace &&
+         (a.step.belief.velocity() - b.step.belief.velocity()).norm() < kSameVelocity;
+}
+
+}  // namespace
+
+std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const BallMoment& moment, double seconds,
+                                 const GroundViews& views, const BallSearchOptions& options) {
+  std::vector<BallNode> done;
+  if (before->step.mode == BallMode::lost) {
+    BallNode lost{before->step, before->score, before};
+    lost.step = {BallMode::lost, BallEvent::none, {}, std::vector<int>(moment.views.size(), -1), false, {}};
+    done.push_back(std::move(lost));
+    be_born(before, moment, views, options, done);
+    return done;
+  }
+  for (const Continuation& next : continuations(*before, moment, options)) {
+    BallNode node;
+    node.parent = before;
+    const BallPerson* holder = person_at(moment, next.holder);
+    node.step = {next.mode, next.event, {}, {}, false, {}};
+    if (holder != nullptr) node.step.holder = holder->id;
+    node.score = before->score + next.log_prior;
+    if (next.mode == BallMode::lost) {
+      node.step.used.assign(moment.views.size(), -1);
+      done.push_back(std::move(node));
+      continue;
+    }
+    node.step.belief = predict(before->step.belief, next.mode, next.event, seconds, holder, options.motion).belief;
+    const double settled = settle(node.step.belief, next.mode, holder, options.motion);
+    if (settled < -0.5 * options.gate * options.gate || node.step.belief.place().z() < -0.5) continue;
+    node.score += next.event == BallEvent::none ? 0 : settled;
+    std::vector<BallNode> all{std::move(node)}, looked;
+    for (const BallView& view : moment.views) {
+      looked.clear();
+      look(all, view, views.view_at(view.camera, view.time), options, looked);
+      std::swap(all, looked);
+    }
+    std::move(all.begin(), all.end(), std::back_inserter(done));
+  }
+  return done;
+}
+
+BallSearch::BallSearch(std::shared_ptr<const GroundViews> views, const BallSearchOptions& options)
+    : views_(std::move(views)), options_(options), leaves_{std::make_shared<BallNode>()} {}
+
+void BallSearch::add(const BallMoment& moment) {
+  const double step = last_ ? seconds(moment.time - *last_) : 0;
+  last_ = moment.time;
+  open_.push_back(moment.time);
+  std::vector<BallNode> all;
+  for (const auto& leaf : leaves_) {
+    std::vector<BallNode> next = successors(leaf, moment, step, *views_, options_);
+    std::move(next.begin(), next.end(), std::back_inserter(all));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const BallNode& a, const BallNode& b) { return a.score > b.score; });
+  leaves_.clear();
+  for (BallNode& node : all) {
+    if (std::ssize(leaves_) == options_.beam) break;
+    const bool known = std::any_of(leaves_.begin(), leaves_.end(), [&](const auto& leaf) { return same(*leaf, node); });
+    if (!known) leaves_.push_back(std::make_shared<BallNode>(std::move(node)));
+  }
+  std::size_t old = 0;
+  while (old < open_.size() && seconds(moment.time - open_[old]) > options_.decide_after) ++old;
+  decide(old);
+}
+
+/// The first `moments` that are open are as the best leaf has them; others' leaves fall.
+void BallSearch::decide(std::size_t moments) {
+  if (moments == 0) return;
+  const auto ancestor = [&](const std::shared_ptr<BallNode>& leaf, std::size_t back) {
+    std::shared_ptr<BallNode> node = leaf;
+    for (std::size_t i = 0; i < back; ++i) node = node->parent;
+    return node;
+  };
+  const std::size_t back = open_.size() - moments;
+  const auto root = ancestor(leaves_.front(), back);
+  std::erase_if(leaves_, [&](const auto& leaf) { return ancestor(leaf, back) != root; });
+  std::vector<BallStep> steps;
+  std::shared_ptr<BallNode> node = root;
+  for (std::size_t i = 0; i < moments; ++i, node = node->parent) steps.push_back(node->step);
+  std::move(steps.rbegin(), steps.rend(), std::back_inserter(decided_));
+  open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(moments));
+  root->parent.reset();
+}
+
+void BallSearch::finish() {
+  decide(open_.size());
+}
+
+std::vector<BallStep> BallSearch::take_decided() {
+  return std::exchange(decided_, {});
+}
+
+}  // namespace marey::track::ball
