@@ -46,12 +46,36 @@ def made_up(path, seed):
                     continue
                 x, y = round(dice.uniform(-2, LENGTH + 2), 3), round(dice.uniform(-2, WIDTH + 2), 3)
                 places[frame, team, shirt] = x, y
-                rows.append([frame, f"{frame / 25:.4f}", person, shirt if shirt else "", team, x, y, 3.0, 4.0, "observed", "left"])
+                rows.append([frame, f"{frame / 25:.4f}", person, shirt if shirt else "", team, x, y, 3.0, 4.0, "observed", "left", "", ""])
+            if ball_at(frame):
+                x, y, z = ball_at(frame)
+                rows.append([frame, f"{frame / 25:.4f}", 99, "ball", "", x, y, 0, 0, "observed", "left", z, 0])
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow("frame time id label team x y vx vy state cameras".split())
+        writer.writerow("frame time id label team x y vx vy state cameras z vz".split())
         writer.writerows(rows)
     return places
+
+
+def ball_at(frame):
+    """Where the ball is in the made up match, m; nowhere in every third frame."""
+    return None if frame % 3 == 0 else (10 + 0.5 * frame, 50 - 0.3 * frame, 0.11 + 0.02 * frame)
+
+
+def expect_ball(name, data, place, shift=0):
+    """kloppy has the ball where it was, and nowhere else."""
+    found = 0
+    for record in data.records:
+        wanted, ball = ball_at(record.frame_id + shift), record.ball_coordinates
+        if wanted is None:
+            continue
+        at = place(ball)
+        assert abs(at[0] - wanted[0]) <= 0.01 and abs(at[1] - wanted[1]) <= 0.01, (name, record.frame_id, at, wanted)
+        if len(at) > 2:
+            assert abs(at[2] - wanted[2]) <= 0.01, (name, record.frame_id, at, wanted)
+        found += 1
+    assert found > 50, (name, found)
+    print(f"{name}: the ball at {found} instants")
 
 
 def convert(program, *arguments):
@@ -95,6 +119,7 @@ def check_written(program, folder, seed):
     tracab = kloppy.tracab.load(meta_data=str(folder / "match.xml"), raw_data=str(folder / "match.dat"), coordinates="tracab", only_alive=False)
     expect_same("TRACAB, kloppy", by_kloppy(tracab, lambda p: (p.x / 100 + LENGTH / 2, p.y / 100 + WIDTH / 2)), players)
     expect_halves("TRACAB", tracab)
+    expect_ball("TRACAB, kloppy", tracab, lambda p: (p.x / 100 + LENGTH / 2, p.y / 100 + WIDTH / 2, p.z / 100))
     assert tracab.metadata.frame_rate == 25
     assert abs(tracab.records[0].players_data[tracab.metadata.teams[0].players[0]].speed - 5.0) < 1e-9, "3, 4 m/s are 5 m/s"
     xy, _, _, sheets, pitch = read_position_data_dat(str(folder / "match.dat"), str(folder / "match.xml"))
@@ -112,17 +137,24 @@ def check_written(program, folder, seed):
     metrica = kloppy.metrica.load_tracking_csv(home_data=str(folder / "match_home.csv"), away_data=str(folder / "match_away.csv"))
     expect_same("Metrica, kloppy", by_kloppy(metrica, lambda p: (p.x * LENGTH, p.y * WIDTH), -1), players)
     expect_halves("Metrica", metrica, -1)
+    expect_ball("Metrica, kloppy", metrica, lambda p: (p.x * LENGTH, p.y * WIDTH), -1)
 
     (folder / "epts").mkdir()
     convert(program, source, folder / "epts/match.xml", *halves)
     epts = kloppy.metrica.load_tracking_epts(meta_data=str(folder / "epts/match.xml"), raw_data=str(folder / "epts/match.txt"))
     expect_same("EPTS, kloppy", by_kloppy(epts, lambda p: (p.x * LENGTH, (1 - p.y) * WIDTH)), players)
     expect_halves("EPTS", epts)
+    expect_ball("EPTS, kloppy", epts, lambda p: (p.x * LENGTH, (1 - p.y) * WIDTH))
     assert (epts.metadata.pitch_dimensions.pitch_length, epts.metadata.pitch_dimensions.pitch_width) == (LENGTH, WIDTH)
     convert(program, source, folder / "match.json")
     game = json.loads((folder / "match.json").read_text())
     found = {}
+    balls = [one for one in game["predictions"] if one["category_id"] == 4]
+    assert len(balls) == sum(ball_at(frame) is not None for first, last in HALVES for frame in range(first, last + 1))
+    assert all(one["attributes"]["role"] == "ball" for one in balls)
     for one in game["predictions"]:
+        if one["category_id"] == 4:
+            continue
         team = {"left": "white", "right": "blue", None: "referee"}[one["attributes"]["team"]]
         place = one["bbox_pitch"]
         found[int(one["image_id"][-6:]) - 1, team, int(one["attributes"]["jersey"] or 0)] = (
@@ -143,7 +175,8 @@ def check_written(program, folder, seed):
 def by_marey(program, folder, path):
     convert(program, path, folder / "read.csv")
     with open(folder / "read.csv") as file:
-        return [(int(row["frame"]), row["team"], row["label"], float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
+        return [(int(row["frame"]), row["team"], row["label"], float(row["x"]), float(row["y"])) for row in csv.DictReader(file)
+                if row["label"] != "ball"]
 
 
 def compare_places(name, ours, theirs):

@@ -1,5 +1,6 @@
 #include "marey/format/match/ground_match.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/recording_file.h"
@@ -201,6 +203,41 @@ TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
   EXPECT_THROW(write_whole(folder / "m.dat", of_ground("tracab"), match), Error);
 }
 
+TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
+  const TemporaryFolder folder;
+  GroundMatch match = made_up(3);
+  TrackColumns ball({TrackId{99}, std::string(kBallLabel), {}}, 3);
+  for (std::size_t i = 0; i < match.recording.instants().size(); i += 2) {
+    Sample sample;
+    sample.track = ball.id();
+    const auto step = static_cast<double>(i);
+    sample.position = {10 + 0.1 * step, 50 - 0.1 * step, 0.11 + 0.01 * step};
+    ball.add(static_cast<std::int32_t>(i), sample);
+  }
+  match.recording.put(ball);
+  struct Holds {
+    const char* format;
+    const char* name;
+    double height;  // m, to which it is read back; a pitch where it is not
+    bool read;
+  };
+  for (const Holds& one : {Holds{"ground", "m.csv", 0.001, true}, Holds{"tracab", "m.dat", 0.006, true},
+                           Holds{"metrica", "m_home.csv", 100, true}, Holds{"epts", "m.xml", 100, false}}) {
+    for (const std::string& warning : write_whole(folder / one.name, of_ground(one.format), match))
+      EXPECT_EQ(warning.find("2 people"), std::string::npos) << "the ball is nobody: " << warning;
+    const GroundMatch back = read_match(folder / one.name, {{}, match.pitch, 25});
+    const auto& tracks = back.recording.tracks();
+    const auto found = std::find_if(tracks.begin(), tracks.end(), [](const TrackColumns& track) { return is_ball(track.name); });
+    ASSERT_EQ(found != tracks.end(), one.read) << one.format;
+    if (!one.read) continue;
+    ASSERT_EQ(found->size(), ball.size()) << one.format;
+    for (std::size_t row = 0; row < ball.size(); ++row) {
+      EXPECT_LT((found->place(row) - ball.place(row)).norm(), 0.01) << one.format;
+      EXPECT_NEAR(found->position(row).z(), ball.position(row).z(), one.height) << one.format;
+    }
+  }
+}
+
 TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(1);
@@ -363,7 +400,8 @@ TEST(GroundExchange, FilesOfVendors) {
                               Expected{"sportec_positional.xml", "sportec", 288, 3, 2, {0, 0}},
                               Expected{"statsperform_tracking_ma25.txt", "statsperform", 2025, 0, 2, {52.803, 68 - 23.617}}}) {
     ASSERT_EQ(format_of_content(folder + one.name)->name, one.format) << one.name;
-    const GroundMatch match = read_match(folder + one.name);
+    GroundMatch match = read_match(folder + one.name);
+    match.recording.erase_tracks_if([](const TrackColumns& track) { return is_ball(track.name); });
     EXPECT_EQ(match.recording.samples(), one.samples) << one.name;
     if (one.people > 0) {
       EXPECT_EQ(match.recording.tracks().size(), one.people) << one.name;
