@@ -1,5 +1,6 @@
-// Possession goes to the nearest within reach and stays, with hysteresis, until the ball is well away or another has it: the rule of
-// Link and Hoernig (2017, "Individual ball possession in soccer") without its model of touches. A pass is a change of who has it.
+// Possession goes to the nearest within reach and stays, with hysteresis, until the ball is well away or another has it: the rule
+// of Link and Hoernig (2017, "Individual ball possession in soccer") without its model of touches. A pass is a change of who has
+// it.
 #include "marey/analyse/possession.h"
 
 #include <algorithm>
@@ -95,7 +96,8 @@ std::vector<TeamBall> by_team(const BallMeasure& ball) {
   for (std::size_t i = 0; i < ball.spells.size(); ++i) {
     const BallSpell& spell = ball.spells[i];
     TeamBall& team = teams[spell.team];
-    const bool passed = std::any_of(ball.passes.begin(), ball.passes.end(), [&](const BallPass& pass) { return pass.begin_s == spell.end_s; });
+    const bool passed =
+        std::any_of(ball.passes.begin(), ball.passes.end(), [&](const BallPass& pass) { return pass.begin_s == spell.end_s; });
     const double end = passed && i + 1 < ball.spells.size() ? ball.spells[i + 1].begin_s : spell.end_s;
     team.possession_s += end - spell.begin_s;
   }
@@ -125,9 +127,9 @@ std::optional<BallMeasure> measure_ball(const Recording& recording, const Posses
   std::optional<BallNow> last;
   for (std::size_t row = 0; row < track.size(); ++row) {
     const auto instant = static_cast<std::size_t>(track.at()[row]);
-    const BallNow now{track.position(row), recording.seconds_at(instant),
-                      track.x()[row] < 0 || track.y()[row] < 0 || track.x()[row] > options.pitch.length ||
-                          track.y()[row] > options.pitch.width};
+    const BallNow now{
+        track.position(row), recording.seconds_at(instant),
+        track.x()[row] < 0 || track.y()[row] < 0 || track.x()[row] > options.pitch.length || track.y()[row] > options.pitch.width};
     constexpr double kGap = 0.5;  // s; across a longer one nothing is counted
     const double step = last ? now.time - last->time : 0;
     if (step > 0 && step < kGap) {

@@ -43,17 +43,17 @@ struct TeamBall {
 };
 
 struct BallMeasure {
-  double seconds = 0;       ///< the ball is known
-  double dead_s = 0;        ///< of these it is off the pitch
-  double distance_m = 0;    ///
-  double top_mps = 0;       ///
+  double seconds = 0;             ///< the ball is known
+  double dead_s = 0;              ///< of these it is off the pitch
+  double distance_m = 0;          ///
+  double top_mps = 0;             ///
   std::vector<BallSpell> spells;  ///< in order
   std::vector<BallPass> passes;   ///< in order
   std::vector<TeamBall> teams;    ///< by name
 };
 
-/// Nothing where the recording has no ball. People without a team, and referees, never have it. Throws Error for a recording that is
-/// not of the ground in m.
+/// Nothing where the recording has no ball. People without a team, and referees, never have it. Throws Error for a recording that
+/// is not of the ground in m.
 std::optional<BallMeasure> measure_ball(const Recording& recording, const PossessionOptions& options = {});
 
 }  // namespace marey::analyse

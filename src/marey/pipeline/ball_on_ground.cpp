@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include "marey/core/ball_track.h"
@@ -14,8 +15,8 @@ using track::ball::BallMode;
 using track::ball::BallMoment;
 using track::ball::BallState;
 
-constexpr double kBeyondLines = 12;   // m; farther out nothing is the ball
-constexpr double kUnseen = 1.5;       // s without anybody having seen it, after which nobody knows where it is
+constexpr double kBeyondLines = 12;  // m; farther out nothing is the ball
+constexpr double kUnseen = 1.5;      // s without anybody having seen it, after which nobody knows where it is
 
 /// Who is where, at each moment.
 void add_people(const Recording& recording, const reconstruct::GroundArea& area, std::vector<BallMoment>& moments) {

@@ -20,8 +20,8 @@ struct BallOptions {
   track::ball::BallSearchOptions search;
 };
 
-/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts it
-/// into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing where it was never found.
+/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts
+/// it into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing where it was never found.
 std::optional<TrackId> follow_ball(std::vector<track::ball::BallMoment> moments, const std::shared_ptr<const GroundViews>& views,
                                    const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
                                    Recording& recording);

@@ -59,8 +59,8 @@ cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea&
   return part.area() > 0 ? part : whole;
 }
 
-/// The radius in px of a ball on the ground that is seen at a pixel; behind the area that of one at its far end, for whatever is seen
-/// there flies before it.
+/// The radius in px of a ball on the ground that is seen at a pixel; behind the area that of one at its far end, for whatever is
+/// seen there flies before it.
 detect::ball::BallSize ball_sizes(const GroundView& view, const reconstruct::GroundArea& area) {
   const auto radius_at = [view](const Vector<2>& pixel) -> std::optional<double> {
     const auto place = view.place(pixel);

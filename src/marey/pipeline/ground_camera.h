@@ -23,7 +23,7 @@ namespace marey::pipeline {
 struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
-  std::shared_ptr<const TurningCamera> turning = {};  ///< how it turns; nothing where it stands
+  std::shared_ptr<const TurningCamera> turning = {};           ///< how it turns; nothing where it stands
   std::optional<detect::ball::BallDetectorOptions> ball = {};  ///< the ball is looked for, where the camera has pictures and stands
 };
 

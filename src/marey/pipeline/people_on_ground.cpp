@@ -192,11 +192,10 @@ class GroundStage final : public PeopleOnGround {
     }
     std::vector<std::optional<GroundCamera>> opened(feeds.size());
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) {
-      const GroundCameraOptions how{
-          .detector = options_.detector,
-          .prime = !options_.live,
-          .turning = turning_of(options_.turning, feeds[i].id()),
-          .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};
+      const GroundCameraOptions how{.detector = options_.detector,
+                                    .prime = !options_.live,
+                                    .turning = turning_of(options_.turning, feeds[i].id()),
+                                    .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};
       opened[i].emplace(feeds[i], views_, area_, how);
     });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
@@ -219,11 +218,11 @@ class GroundStage final : public PeopleOnGround {
   void report_ball(Summary& summary) const {
     const TrackColumns* ball = ball_ ? recording_.find(*ball_) : nullptr;
     summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
-    const bool looked = std::any_of(cameras_.begin(), cameras_.end(), [](const GroundCamera& camera) { return camera.ball().has_value(); });
+    const bool looked =
+        std::any_of(cameras_.begin(), cameras_.end(), [](const GroundCamera& camera) { return camera.ball().has_value(); });
     if (!looked)
       summary.warnings.push_back(
-          "the ball was not looked for: that needs pictures of a camera that stands and is calibrated as a whole (marey calibrate "
-          "pitch)");
+          "the ball was not looked for: that needs pictures of a camera that stands and is calibrated (marey calibrate pitch)");
     else if (ball == nullptr)
       summary.warnings.push_back("the ball was not found");
   }
@@ -362,8 +361,7 @@ class GroundStage final : public PeopleOnGround {
     const auto seen =
         view.camera()->project_with_jacobian({place.x(), place.y(), sample.position.z() + view.surface().height(place)});
     if (!seen || !view.camera()->in_picture(seen->pixel)) return;
-    const double radius =
-        track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+    const double radius = track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
     instant.boxes.push_back({.camera = camera,
                              .frame = frame,
                              .track = sample.track,

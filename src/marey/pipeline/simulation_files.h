@@ -70,8 +70,8 @@ struct MatchFilesOptions {
 ///   CAM.txt         with `boxes`: MOTChallenge detections for each camera; with films too, boxes.toml is the rig that names them
 ///   CAM.mp4         with `films`: what each camera films, H.264
 ///   ball.csv        with a ball in the films, where it is at the first camera's frames: frame,time,x,y,z,vx,vy,vz,state,holder;
-///                   z is that of its centre above the ground; state is held, rolling, flying or dead; holder is an id of truth.csv;
-///                   no row while somebody fetches it
+///                   z is that of its centre above the ground; state is held, rolling, flying or dead; holder is an id of
+///                   truth.csv; no row while somebody fetches it
 ///   CAM_ball.csv    with a ball in the films, what each camera sees of it: frame,x,y,radius,visible; px, and the share of its disc
 ///   CAM_clicks.csv  with `films`: x,y,u,v of places on the pitch that were clicked, with which start.toml, the rig without its
 ///                   calibration, can be calibrated

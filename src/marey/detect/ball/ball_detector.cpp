@@ -1,8 +1,8 @@
 // The scene is a picture of its own here, of grey levels, which follows by a level now and then: the background models for people
 // leave out what is as small as a ball far away. What is brighter than it falls into regions; a region is judged by its light, the
-// sum of what it adds, which motion smears but does not change: a ball's is that of a white disc of the radius that it has there. The
-// score is the logarithm of the ratio of two densities of the radius, a ball's (a normal one of the logarithm) and that of anything
-// else (even in the logarithm), less for what is ragged and for what lies in a person's box, where shirts and socks are.
+// sum of what it adds, which motion smears but does not change: a ball's is that of a white disc of the radius that it has there.
+// The score is the logarithm of the ratio of two densities of the radius, a ball's (a normal one of the logarithm) and that of
+// anything else (even in the logarithm), less for what is ragged and for what lies in a person's box, where shirts and socks are.
 // Cost: some passes over the picture.
 #include "marey/detect/ball/ball_detector.h"
 
@@ -93,7 +93,8 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   if (light < options_.least_light * disc || light > options_.most_light * disc) return std::nullopt;
   candidate.radius = std::sqrt(light / (std::numbers::pi * contrast));
   // The narrower side of the light's spread: motion draws out one side alone.
-  const double vx = xx / light - candidate.centre.x() * candidate.centre.x(), vy = yy / light - candidate.centre.y() * candidate.centre.y();
+  const double vx = xx / light - candidate.centre.x() * candidate.centre.x(),
+               vy = yy / light - candidate.centre.y() * candidate.centre.y();
   const double cross = xy / light - candidate.centre.x() * candidate.centre.y();
   const double root = std::sqrt((vx - vy) * (vx - vy) / 4 + cross * cross);
   const double narrow = std::sqrt(std::max(0.0, (vx + vy) / 2 - root)), wide = std::sqrt((vx + vy) / 2 + root);

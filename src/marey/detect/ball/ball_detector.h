@@ -16,17 +16,17 @@ namespace marey::detect::ball {
 /// The radius of a ball that lies on the ground and is seen at a pixel, px; nothing where no ground is seen.
 using BallSize = std::function<std::optional<double>(const Vector<2>& pixel)>;
 
-/// Chosen by a sweep over simulated matches, seeds 1–6 (bench/ball.py).
+/// First guesses: no sweep was made yet (bench/ball.py is for that).
 struct BallDetectorOptions {
-  double contrast = 14;      ///< grey levels that it is brighter than the scene, at least
-  double white = 185;        ///< grey level of a ball
-  double least_light = 0.15; ///< of the light that a ball on the ground adds to the picture: less is noise,
-  double most_light = 8;     ///< more is no ball, however near it flies
-  double size_spread = 0.5;  ///< deviation of the logarithm of the radius, of balls
-  double flown = 0.2;        ///< by which balls are larger than on the ground, for they fly nearer: of that logarithm
-  double on_person = 2.5;    ///< by which the score is less within a person's box
-  double follow_hz = 4;      ///< grey levels a second by which the scene is followed
-  int most = 40;             ///< candidates in a frame, the best
+  double contrast = 14;       ///< grey levels that it is brighter than the scene, at least
+  double white = 185;         ///< grey level of a ball
+  double least_light = 0.15;  ///< of the light that a ball on the ground adds to the picture: less is noise,
+  double most_light = 8;      ///< more is no ball, however near it flies
+  double size_spread = 0.5;   ///< deviation of the logarithm of the radius, of balls
+  double flown = 0.2;         ///< by which balls are larger than on the ground, for they fly nearer: of that logarithm
+  double on_person = 4.5;     ///< by which the score is less within a person's box: shirts and socks are that much denser there
+  double follow_hz = 4;       ///< grey levels a second by which the scene is followed
+  int most = 40;              ///< candidates in a frame, the best
 };
 
 struct BallCandidate {

@@ -22,10 +22,30 @@
 namespace marey::format::match {
 namespace {
 
-enum Column { kFrame, kTime, kId, kLabel, kTeam, kX, kY, kVx, kVy, kState, kCameras, kLeft, kTop, kWidth, kHeight, kZ, kVz, kColumns };
-constexpr std::array<std::string_view, kColumns> kAllNames = {"frame", "time",  "id",      "label", "team", "x",     "y",     "vx",
-                                                              "vy",    "state", "cameras", "left",  "top",  "width", "height", "z", "vz"};
-constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture, and of the ball
+enum Column {
+  kFrame,
+  kTime,
+  kId,
+  kLabel,
+  kTeam,
+  kX,
+  kY,
+  kVx,
+  kVy,
+  kState,
+  kCameras,
+  kLeft,
+  kTop,
+  kWidth,
+  kHeight,
+  kZ,
+  kVz,
+  kColumns
+};
+constexpr std::array<std::string_view, kColumns> kAllNames = {
+    "frame", "time", "id", "label", "team", "x", "y", "vx", "vy", "state", "cameras", "left", "top", "width", "height", "z", "vz"};
+constexpr std::span<const std::string_view> kNames =
+    std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture, and of the ball
 constexpr std::array kNeeded = {kId, kX, kY};
 constexpr double kFarthest = 1e5;   // m
 constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz

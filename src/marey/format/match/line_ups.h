@@ -15,8 +15,8 @@ enum class Side { home, away, referee, other, ball };
 
 /// Where a ball is at one instant.
 struct BallAt {
-  Vector<3> place;                      ///< m
-  std::optional<Vector<3>> velocity;    ///< m/s
+  Vector<3> place;                    ///< m
+  std::optional<Vector<3>> velocity;  ///< m/s
 };
 
 /// Who is who in a file of a match.

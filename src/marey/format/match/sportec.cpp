@@ -97,15 +97,16 @@ class SportecReader {
       throw Error("{}: a <FrameSet> has the section {}; firstHalf, secondHalf, ... are known", name_, shown(section));
     const int period = static_cast<int>(known - kSections.begin()) + 1;
     const auto who = people_.find(id);
-    const bool is_ball = team == "BALL";
-    const std::int32_t person = is_ball ? builder_.ball() : who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
-                                                     : builder_.person(id, 0, who->second.label, who->second.team);
+    const bool ball = team == "BALL";
+    const std::int32_t person = ball                   ? builder_.ball()
+                                : who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
+                                                       : builder_.person(id, 0, who->second.label, who->second.team);
     for (const pugi::xml_node node : set.children("Frame")) {
       const auto frame = static_cast<std::int32_t>(number(node, "N", 0, 1e9));
       extend(period, frame);
       GroundBuilder::Row row{.frame = frame, .time = frame / match_.recording.header.rate_hz};
       row.place = {match_.pitch.length / 2 + number(node, "X", -1e5, 1e5), match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5)};
-      if (is_ball && node.attribute("Z")) row.height = number(node, "Z", -1e5, 1e5);
+      if (ball && node.attribute("Z")) row.height = number(node, "Z", -1e5, 1e5);
       builder_.add(person, row);
     }
   }

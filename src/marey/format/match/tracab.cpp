@@ -2,8 +2,8 @@
 // spot, y upwards, m/s. Team 1 is at home, 0 is the guest, 3 a referee, -1 is not known and 4 is a target that is not used. The
 // metadata's XML comes with attributes of <match> or flat, lengths then in cm.
 //
-// A ball that is not known is written dead on the centre spot, for readers insist on one. Readers insist on who has it too: the team
-// of whoever was last within two metres of it, to begin with the home team.
+// A ball that is not known is written dead on the centre spot, for readers insist on one. Readers insist on who has it too: the
+// team of whoever was last within two metres of it, to begin with the home team.
 #include <algorithm>
 #include <array>
 #include <cmath>

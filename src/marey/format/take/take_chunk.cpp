@@ -123,7 +123,9 @@ void Chunk::add(const Instant& instant, int dimensions, std::optional<TrackId> b
   moments.push_back({instant.index, instant.time});
   auto column = tracks.begin();
   for (const Sample& sample : instant.samples) {
-    const auto make = [&] { return TrackColumns({.id = sample.track, .label = {}, .team = {}}, sample.track == ball ? 3 : dimensions); };
+    const auto make = [&] {
+      return TrackColumns({.id = sample.track, .label = {}, .team = {}}, sample.track == ball ? 3 : dimensions);
+    };
     entry_of(tracks, column, sample.track, make).add(at, sample);
     bytes += 28 + (sample.velocity ? 12 : 0) + (sample.covariance ? 24 : 0) + (sample.box ? 32 : 0);
     if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();

@@ -1,5 +1,5 @@
-// Drag is that of a football of 0.43 kg (k = ½ρ·c_d·A/m with c_d = 0.25), grass takes 0.8 m/s² from what rolls, a bounce keeps 0.6 of
-// the speed downwards and 0.85 of that along. A launch is found by shooting: flown, and corrected by the miss over the time.
+// Drag is that of a football of 0.43 kg (k = ½ρ·c_d·A/m with c_d = 0.25), grass takes 0.8 m/s² from what rolls, a bounce keeps 0.6
+// of the speed downwards and 0.85 of that along. A launch is found by shooting: flown, and corrected by the miss over the time.
 #include "marey/simulate/match/match_ball.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr double kRolls = 0.8;          // m/s; what would bounce slower rolls
 constexpr double kMostControl = 14;     // m/s by which a holder's touch moves the ball
 constexpr double kFetched = 6.5;        // s before the restart the ball is picked up,
 constexpr double kLaid = 5;             // and laid down
-constexpr double kBehindLines = 6;           // m behind the lines
+constexpr double kBehindLines = 6;      // m behind the lines
 constexpr double kBallStride = 0.7;     // s between touches of one who runs
 constexpr double kShootingStep = 0.02;  // s
 constexpr int kShots = 8;
@@ -57,8 +57,7 @@ std::string_view to_string(BallState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-MatchBall::MatchBall(std::uint64_t seed, const geometry::PitchSize& pitch, const Vector<2>& begin)
-    : pitch_(pitch), random_(seed) {
+MatchBall::MatchBall(std::uint64_t seed, const geometry::PitchSize& pitch, const Vector<2>& begin) : pitch_(pitch), random_(seed) {
   now_.place.head<2>() = begin;
   before_ = now_;
 }
@@ -117,7 +116,8 @@ void MatchBall::wait_outside(double step, const MatchPlay& play) {
     return;
   }
   const Vector<3>& at = now_.place;
-  const bool stopped = at.x() < -kBehindLines || at.y() < -kBehindLines || at.x() > pitch_.length + kBehindLines || at.y() > pitch_.width + kBehindLines;
+  const bool stopped = at.x() < -kBehindLines || at.y() < -kBehindLines || at.x() > pitch_.length + kBehindLines ||
+                       at.y() > pitch_.width + kBehindLines;
   if (stopped) now_.velocity.head<2>().setZero();
   advance_ball(now_, curl_, step);
 }

@@ -14,14 +14,14 @@
 namespace marey::simulate::match {
 
 struct MatchFilmOptions {
-  bool shadows = true;           ///< that people and goal posts cast
-  double shadow_level = 0.7;     ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
-  double noise = 1.2;            ///< standard deviation of luma, grey levels
-  double light_change = 0.08;    ///< the light swings by this share of itself, over half a minute and more
-  double contact = 0;            ///< share of the light that shoes keep from the ground right under them
-  bool ball = false;             ///< there is one
-  double exposure_s = 1.0 / 150; ///< s, for which the shutter is open: what moves faster is smeared; only the ball is
-  people::CameraLook look = {};  ///< what lens, sharpening and codec make of the picture
+  bool shadows = true;            ///< that people and goal posts cast
+  double shadow_level = 0.7;      ///< what a shadow leaves of the ground's brightness: the sun behind thin clouds
+  double noise = 1.2;             ///< standard deviation of luma, grey levels
+  double light_change = 0.08;     ///< the light swings by this share of itself, over half a minute and more
+  double contact = 0;             ///< share of the light that shoes keep from the ground right under them
+  bool ball = false;              ///< there is one
+  double exposure_s = 1.0 / 150;  ///< s, for which the shutter is open: what moves faster is smeared; only the ball is
+  people::CameraLook look = {};   ///< what lens, sharpening and codec make of the picture
 };
 
 /// A match as one camera films it; `view` holds the whole camera. Its empty scene is drawn once.
@@ -35,8 +35,8 @@ class MatchFilm {
                  double time, std::int64_t index) const;
   /// The same with the ball, in the world's frame, and what of it is seen.
   people::RenderedFrame render_with(std::span<const people::Figure, kMatchPeople> figures,
-                                    std::span<const people::Stance, kMatchPeople> stances,
-                                    std::span<const people::PosedBall> balls, double time, std::int64_t index) const;
+                                    std::span<const people::Stance, kMatchPeople> stances, std::span<const people::PosedBall> balls,
+                                    double time, std::int64_t index) const;
 
  private:
   MatchFilmOptions options_;

@@ -47,9 +47,9 @@ class MatchPlay {
 
   enum class Phase { held, flying, loose, stopped };
   Phase phase() const { return phase_; }
-  double phase_left() const { return phase_until_ - now_; }    ///< s, at least, but where the ball is loose
-  int holder() const { return holder_; }                       ///< who has the ball, or had it last
-  const Vector<2>& pass_target() const { return ball_to_; }    ///< m: where a ball that flies is to come down
+  double phase_left() const { return phase_until_ - now_; }  ///< s, at least, but where the ball is loose
+  int holder() const { return holder_; }                     ///< who has the ball, or had it last
+  const Vector<2>& pass_target() const { return ball_to_; }  ///< m: where a ball that flies is to come down
 
  private:
   /// A sprint into space, and the opponent who goes with it.

@@ -1,9 +1,9 @@
 // Every thing that stands is drawn once, alone, onto a lattice of points finer than the pixels: its silhouette, exact to a lattice
 // step, whose points also say which part and shade they show. From the farthest to the nearest, each is laid over the ground with
 // the share of a pixel's points that it covers; what is visible of it is its silhouette less those of whatever stands nearer.
-// Balls, those of limbs and those that are played with, are seen as discs, which holds to the square of their angular size. Shadows lie on the ground only, and two do not
-// darken more than one. Everything is done in the planes that video is made of. Cost: a copy of the ground, the noise, and the
-// lattice points of the figures.
+// Balls, those of limbs and those that are played with, are seen as discs, which holds to the square of their angular size. Shadows
+// lie on the ground only, and two do not darken more than one. Everything is done in the planes that video is made of. Cost: a copy
+// of the ground, the noise, and the lattice points of the figures.
 #include "marey/simulate/people/people_renderer.h"
 
 #include <algorithm>
@@ -222,7 +222,8 @@ void PeopleRenderer::BallSprite::lay(Planes& planes) const {
       for (int sample = 0; sample < kMoments * kPoints * kPoints; ++sample) {
         const int point = sample / kMoments;
         const Vector<2> centre = from + (sample % kMoments + 0.5) / kMoments * (to - from);
-        const Vector<2> off = Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
+        const Vector<2> off =
+            Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
         if (off.squaredNorm() > radius * radius) continue;
         share += 1;
         shade += static_cast<float>(0.86 - 0.14 * off.y() / radius);

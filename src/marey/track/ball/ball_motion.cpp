@@ -82,8 +82,8 @@ void fly(BallPrediction& to, double step, const BallMotionOptions& options) {
   add_wander(to.belief.covariance, options.flight_accel, step, 0, 2);
 }
 
-/// The height at the end of the step is the ground's, up to what the ball moves in it; then the velocity is reflected.
-void bounce(BallPrediction& to, double step, const BallMotionOptions& options) {
+/// Height and velocity are reflected at the ground, and the velocity loses its share.
+void bounce(BallPrediction& to, const BallMotionOptions& options) {
   Vector<6>& x = to.belief.mean;
   Matrix<6> F = Matrix<6>::Identity();
   F(2, 2) = -1;
@@ -94,7 +94,6 @@ void bounce(BallPrediction& to, double step, const BallMotionOptions& options) {
   x.segment<2>(3) *= options.along;
   move(to, F);
   for (const int axis : {3, 4, 5}) to.belief.covariance(axis, axis) += 0.8;
-  measure(to.belief, 2, kBallRadius, 0.05 + 0.4 * std::abs(x[5]) * step);
 }
 
 void carry(BallPrediction& to, double step, const BallPerson& holder, const BallMotionOptions& options) {
@@ -121,17 +120,27 @@ BallPrediction predict(const BallBelief& before, BallMode mode, BallEvent event,
     to.belief.covariance.topLeftCorner<2, 2>().diagonal().array() += 0.02;
   }
   switch (mode) {
-    case BallMode::rolling: roll(to, step, options); break;
-    case BallMode::flying: fly(to, step, options); break;
-    case BallMode::held: carry(to, step, *holder, options); break;
-    case BallMode::lost: break;
+    case BallMode::rolling:
+      roll(to, step, options);
+      break;
+    case BallMode::flying:
+      fly(to, step, options);
+      break;
+    case BallMode::held:
+      carry(to, step, *holder, options);
+      break;
+    case BallMode::lost:
+      break;
   }
-  if (event == BallEvent::bounce) bounce(to, step, options);
+  if (event == BallEvent::bounce) bounce(to, options);
   return to;
 }
 
-double settle(BallBelief& belief, BallMode mode, const BallPerson* holder, const BallMotionOptions& options) {
+double settle(BallBelief& belief, BallMode mode, BallEvent event, double step, const BallPerson* holder,
+              const BallMotionOptions& options) {
   double squared = 0;
+  if (event == BallEvent::bounce)  // the height is the ground's, up to what it moves in the step
+    squared += measure(belief, 2, kBallRadius, 0.05 + 0.4 * std::abs(belief.mean[5]) * step);
   if (mode == BallMode::rolling) {
     squared += measure(belief, 2, kBallRadius, 0.04);
     squared += measure(belief, 5, 0, 0.5);

@@ -1,6 +1,6 @@
 // How a ball moves, as Gaussian beliefs of place and velocity: it rolls over the ground, flies, or is at somebody's feet. Heights
-// count from the ground below. What is known besides (a ball that rolls is 0.11 m up, one at somebody's feet is near that person) is
-// a measurement like those of cameras, so that a second pass carries it back: where an arc ends tells how far away it was.
+// count from the ground below. What is known besides (a ball that rolls is 0.11 m up, one at somebody's feet is near that person)
+// is a measurement like those of cameras, so that a second pass carries it back: where an arc ends tells how far away it was.
 #pragma once
 
 #include <cstdint>
@@ -25,17 +25,17 @@ enum class BallEvent : std::uint8_t {
   take,    ///< it is at somebody's feet from here on
 };
 
-/// Each constant is the best of a sweep over simulated matches, seeds 1–6 (bench/ball.py); the figures of docs/ball.md are of others.
+/// From the physics of a football; what has none is a first guess, of which no sweep was made yet (bench/ball.py is for that).
 struct BallMotionOptions {
-  double roll_accel = 3;                        ///< m/s², what rolling ball's velocity wanders by in a second
-  double flight_accel = 2;                      ///< m/s², the same in the air: curl, wind
-  double grass = 0.8;                           ///< m/s² that grass takes from a rolling ball
-  double drag = 0.0133;                         ///< 1/m, of the air
-  double restitution = 0.6, along = 0.85;       ///< of the speed downwards and along, what a bounce leaves
-  double kick_speed = 12;                       ///< m/s, deviation of a kicked ball's horizontal velocity in each axis
-  double kick_up = 5;                           ///< m/s, the same upwards, about as much on average
-  double hold_radius = 0.6;                     ///< m, deviation of a ball from the person who has it
-  double hold_wander = 0.2;                     ///< m, by which it moves at that person's feet from frame to frame (of 1/25 s)
+  double roll_accel = 3;                   ///< m/s², what rolling ball's velocity wanders by in a second
+  double flight_accel = 2;                 ///< m/s², the same in the air: curl, wind
+  double grass = 0.8;                      ///< m/s² that grass takes from a rolling ball
+  double drag = 0.0133;                    ///< 1/m, of the air
+  double restitution = 0.6, along = 0.85;  ///< of the speed downwards and along, what a bounce leaves
+  double kick_speed = 12;                  ///< m/s, deviation of a kicked ball's horizontal velocity in each axis
+  double kick_up = 5;                      ///< m/s, the same upwards, about as much on average
+  double hold_radius = 0.6;                ///< m, deviation of a ball from the person who has it
+  double hold_wander = 0.2;                ///< m, by which it moves at that person's feet from frame to frame (of 1/25 s)
 };
 
 /// Place (m, world, z above the ground) and velocity (m/s).
@@ -54,12 +54,14 @@ struct BallPrediction {
 };
 
 /// `step` s later: `mode` is how it moves in between, after `event` at their beginning (for `bounce`: at their end). `holder` where
-/// it is held.
+/// it is held. Nothing is measured: the covariance is F P Fᵀ and noise.
 BallPrediction predict(const BallBelief& before, BallMode mode, BallEvent event, double step, const BallPerson* holder,
                        const BallMotionOptions& options);
 
-/// What the mode says of the place by itself. Returns minus half the squared distance (Mahalanobis) of the belief from that.
-double settle(BallBelief& belief, BallMode mode, const BallPerson* holder, const BallMotionOptions& options);
+/// What the mode and the event of a step say of the place by themselves. Returns minus half the squared distance (Mahalanobis) of
+/// the belief from that.
+double settle(BallBelief& belief, BallMode mode, BallEvent event, double step, const BallPerson* holder,
+              const BallMotionOptions& options);
 
 /// Where a belief is seen, and how exactly that is known.
 struct BallProjection {

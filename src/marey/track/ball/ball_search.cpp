@@ -1,14 +1,14 @@
-// The score is a likelihood ratio against all being false: what is seen and taken for the ball counts by its density where the ball is
-// expected, over that of false things all over the picture, and by its look; a ball that is expected and not seen costs. Nothing may
-// be one's ball for nothing: a ball that is lost has ratio 1. Hypotheses that came to the same (mode, holder, what was seen last, nearly
-// the same place and velocity) are one: the better one. That is Viterbi's step; the beam is what it leaves out.
-// Reid 1979, "An algorithm for tracking multiple targets"; here with one target, whose motion switches.
-// Cost: beam × 6 × views × things seen a moment.
+// The score is a likelihood ratio against all being false: what is seen and taken for the ball counts by its density where the ball
+// is expected, over that of false things all over the picture, and by its look; a ball that is expected and not seen costs. Nothing
+// may be one's ball for nothing: a ball that is lost has ratio 1. Hypotheses that came to the same (mode, holder, what was seen
+// last, nearly the same place and velocity) are one: the better one. That is Viterbi's step; the beam is what it leaves out. Reid
+// 1979, "An algorithm for tracking multiple targets"; here with one target, whose motion switches. Cost: beam × 6 × views × things
+// seen a moment.
 #include "marey/track/ball/ball_search.h"
 
 #include <algorithm>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace marey::track::ball {
@@ -66,7 +66,9 @@ std::vector<Continuation> continuations(const BallNode& before, const BallMoment
   }
   const double sigma_z = std::sqrt(belief.covariance(2, 2));
   switch (before.step.mode) {
-    case BallMode::rolling: all.push_back({BallMode::rolling, BallEvent::none, -1, 0}); break;
+    case BallMode::rolling:
+      all.push_back({BallMode::rolling, BallEvent::none, -1, 0});
+      break;
     case BallMode::flying:
       all.push_back({BallMode::flying, BallEvent::none, -1, 0});
       if (belief.velocity().z() < 0 && belief.place().z() - 3 * sigma_z < 1) {
@@ -77,7 +79,8 @@ std::vector<Continuation> continuations(const BallNode& before, const BallMoment
     case BallMode::held:
       if (holder >= 0) all.push_back({BallMode::held, BallEvent::none, holder, 0});
       break;
-    case BallMode::lost: break;
+    case BallMode::lost:
+      break;
   }
   return all;
 }
@@ -155,7 +158,8 @@ void be_born(const std::shared_ptr<BallNode>& before, const BallMoment& moment, 
         const bool flies = height > 1;
         BallNode born;
         born.parent = before;
-        born.step = {flies ? BallMode::flying : BallMode::rolling, BallEvent::kick, {}, std::vector<int>(moment.views.size(), -1), true, {}};
+        born.step = {
+            flies ? BallMode::flying : BallMode::rolling, BallEvent::kick, {}, std::vector<int>(moment.views.size(), -1), true, {}};
         const double share = height / centre.z();
         if (!(share < 0.9) || centre.z() <= 0) continue;
         BallBelief& belief = born.step.belief;
@@ -164,8 +168,8 @@ void be_born(const std::shared_ptr<BallNode>& before, const BallMoment& moment, 
         belief.covariance.setZero();
         const double pixel_m = std::max(0.05, sighting.sigma * place->by_pixel.norm());
         belief.covariance.topLeftCorner<3, 3>().diagonal().setConstant(flies ? 0.05 : pixel_m * pixel_m);
-        belief.covariance.topLeftCorner<3, 3>() += (flies ? 1.0 : 1e-3) * (centre - foot) * (centre - foot).transpose() /
-                                                   (centre.z() * centre.z());
+        belief.covariance.topLeftCorner<3, 3>() +=
+            (flies ? 1.0 : 1e-3) * (centre - foot) * (centre - foot).transpose() / (centre.z() * centre.z());
         belief.covariance.bottomRightCorner<3, 3>() =
             Vector<3>(v_sigma, v_sigma, flies ? options.motion.kick_up : 0.3).cwiseAbs2().asDiagonal();
         born.step.used[v] = static_cast<int>(i);
@@ -210,7 +214,7 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
       continue;
     }
     node.step.belief = predict(before->step.belief, next.mode, next.event, seconds, holder, options.motion).belief;
-    const double settled = settle(node.step.belief, next.mode, holder, options.motion);
+    const double settled = settle(node.step.belief, next.mode, next.event, seconds, holder, options.motion);
     if (settled < -0.5 * options.gate * options.gate || node.step.belief.place().z() < -0.5) continue;
     node.score += next.event == BallEvent::none ? 0 : settled;
     std::vector<BallNode> all{std::move(node)}, looked;

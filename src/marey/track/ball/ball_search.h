@@ -1,5 +1,5 @@
-// Which of all that looks like a ball is the ball, from frame to frame: hypotheses over how it moved (rolled, flew, was held, was not
-// to be found) and what each camera saw of it, the best of which are kept (a beam), and the best one is told some seconds late.
+// Which of all that looks like a ball is the ball, from frame to frame: hypotheses over how it moved (rolled, flew, was held, was
+// not to be found) and what each camera saw of it, the best of which are kept (a beam), and the best one is told some seconds late.
 #pragma once
 
 #include <deque>
@@ -12,15 +12,15 @@
 
 namespace marey::track::ball {
 
-/// Chosen as those of BallMotionOptions were.
+/// First guesses, as those of BallMotionOptions: no sweep was made yet.
 struct BallSearchOptions {
   BallMotionOptions motion;
-  int beam = 60;           ///< hypotheses that are kept from a moment to the next
-  double decide_after = 3; ///< s after which the best hypothesis decides
-  double gate = 3.5;       ///< standard deviations within which something seen may be the ball
-  int branches = 4;        ///< of things within the gate, how many are tried
-  double found = 0.9;      ///< share of frames in which a ball in plain view is found
-  double found_held = 0.5; ///< the same of one at somebody's feet
+  int beam = 60;               ///< hypotheses that are kept from a moment to the next
+  double decide_after = 3;     ///< s after which the best hypothesis decides
+  double gate = 3.5;           ///< standard deviations within which something seen may be the ball
+  int branches = 4;            ///< of things within the gate, how many are tried
+  double found = 0.9;          ///< share of frames in which a ball in plain view is found
+  double found_held = 0.5;     ///< the same of one at somebody's feet
   double found_hidden = 0.3;   ///< the same where a person's box is
   double reach = 1.6;          ///< m from a person within which that person may play the ball
   double p_kick = 0.02;        ///< of frames near a person: the ball is kicked
@@ -36,9 +36,9 @@ struct BallStep {
   BallMode mode = BallMode::lost;
   BallEvent event = BallEvent::none;
   std::optional<TrackId> holder;  ///< who has it, where it is held
-  std::vector<int> used;  ///< of each view, the index of what was the ball; −1 where it was not seen
-  bool born = false;      ///< nothing was known of it before
-  BallBelief belief;      ///< after this moment, by what came until then
+  std::vector<int> used;          ///< of each view, the index of what was the ball; −1 where it was not seen
+  bool born = false;              ///< nothing was known of it before
+  BallBelief belief;              ///< after this moment, by what came until then
 };
 
 /// One hypothesis at one moment.
@@ -48,8 +48,8 @@ struct BallNode {
   std::shared_ptr<BallNode> parent;
 };
 
-/// All that may come of a hypothesis at the next moment, `seconds` later: what follows by each mode and event, with each of the things
-/// seen that may be the ball or none. Exhaustive but for `branches`.
+/// All that may come of a hypothesis at the next moment, `seconds` later: what follows by each mode and event, with each of the
+/// things seen that may be the ball or none. Exhaustive but for `branches`.
 std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const BallMoment& moment, double seconds,
                                  const GroundViews& views, const BallSearchOptions& options);
 
@@ -71,7 +71,7 @@ class BallSearch {
 
   std::shared_ptr<const GroundViews> views_;
   BallSearchOptions options_;
-  Leaves leaves_;  // the best first
+  Leaves leaves_;               // the best first
   std::deque<Timestamp> open_;  // moments that are not decided
   std::optional<Timestamp> last_;
   std::vector<BallStep> decided_;

@@ -19,7 +19,8 @@ GroundView looking_across(double x) {
   turn.row(0) = Vector<3>(1, 0, 0);
   turn.row(1) = Vector<3>(0, -std::sin(tilt), -std::cos(tilt));
   turn.row(2) = Vector<3>(0, std::cos(tilt), -std::sin(tilt));
-  return GroundView(Camera(geometry::BrownLens{{1400, 1400}, {959.5, 539.5}, {}}, {turn, -turn * Vector<3>(x, -15, 10)}, {1920, 1080}));
+  return GroundView(
+      Camera(geometry::BrownLens{{1400, 1400}, {959.5, 539.5}, {}}, {turn, -turn * Vector<3>(x, -15, 10)}, {1920, 1080}));
 }
 
 /// A ball that is kicked from the grass at once and comes down: 26 m far, 4 m high.
@@ -59,7 +60,8 @@ Scene seen(const std::vector<Vector<3>>& ball, const std::vector<double>& camera
       BallView& view = moment.views.emplace_back();
       view.camera = CameraId{static_cast<int>(c)};
       view.time = moment.time;
-      if (even(random) >= missed) view.seen.push_back({*views[c].camera()->project(ball[i]) + Vector<2>(noise(random), noise(random)), 0.6, 1});
+      if (even(random) >= missed)
+        view.seen.push_back({*views[c].camera()->project(ball[i]) + Vector<2>(noise(random), noise(random)), 0.6, 1});
       for (int k = 0; k < clutter; ++k) view.seen.push_back({{1920 * even(random), 200 + 880 * even(random)}, 0.6, 0});
     }
   }

@@ -71,9 +71,10 @@ std::vector<BallState> smooth_ball(std::span<const BallMoment> moments, std::spa
     }
     const BallPerson* holder = holder_of(step, moments[i]);
     Pass pass;
-    pass.predicted = predict(passes.back().filtered, step.mode, step.event, seconds(moments[i].time - moments[i - 1].time), holder, options);
+    const double later = seconds(moments[i].time - moments[i - 1].time);
+    pass.predicted = predict(passes.back().filtered, step.mode, step.event, later, holder, options);
     pass.filtered = pass.predicted.belief;
-    settle(pass.filtered, step.mode, holder, options);
+    settle(pass.filtered, step.mode, step.event, later, holder, options);
     pass.filtered = seen(pass.filtered, step, moments[i], views);
     passes.push_back(pass);
   }
