@@ -195,7 +195,7 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
                                  const GroundViews& views, const BallSearchOptions& options) {
   std::vector<BallNode> done;
   if (before->step.mode == BallMode::lost) {
-    BallNode lost{before->step, before->score, before};
+    BallNode lost{before->step, before->score, before, 0};
     lost.step = {BallMode::lost, BallEvent::none, {}, std::vector<int>(moment.views.size(), -1), false, {}};
     done.push_back(std::move(lost));
     be_born(before, moment, views, options, done);
@@ -208,6 +208,7 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
     node.step = {next.mode, next.event, {}, {}, false, {}};
     if (holder != nullptr) node.step.holder = holder->id;
     node.score = before->score + next.log_prior;
+    node.age = before->age + 1;
     if (next.mode == BallMode::lost) {
       node.step.used.assign(moment.views.size(), -1);
       done.push_back(std::move(node));
@@ -240,16 +241,28 @@ void BallSearch::add(const BallMoment& moment) {
     std::vector<BallNode> next = successors(leaf, moment, step, *views_, options_);
     std::move(next.begin(), next.end(), std::back_inserter(all));
   }
-  std::stable_sort(all.begin(), all.end(), [](const BallNode& a, const BallNode& b) { return a.score > b.score; });
-  leaves_.clear();
-  for (BallNode& node : all) {
-    if (std::ssize(leaves_) == options_.beam) break;
-    const bool known = std::any_of(leaves_.begin(), leaves_.end(), [&](const auto& leaf) { return same(*leaf, node); });
-    if (!known) leaves_.push_back(std::make_shared<BallNode>(std::move(node)));
-  }
+  keep_best(std::move(all));
   std::size_t old = 0;
   while (old < open_.size() && seconds(moment.time - open_[old]) > options_.decide_after) ++old;
   decide(old);
+}
+
+/// Half of the beam is for those that were born lately: what was followed long, rightly or not, is ahead of them by all that it
+/// saw. So is the best one that is lost, of which others may be born.
+void BallSearch::keep_best(std::vector<BallNode> all) {
+  constexpr int kYoung = 10;  // moments
+  std::stable_sort(all.begin(), all.end(), [](const BallNode& a, const BallNode& b) { return a.score > b.score; });
+  leaves_.clear();
+  int young = 0, old = 0;
+  for (BallNode& node : all) {
+    const bool lost = node.step.mode == BallMode::lost;
+    int& count = node.age < kYoung ? young : old;
+    if (!lost && 2 * count >= options_.beam) continue;
+    const bool known = std::any_of(leaves_.begin(), leaves_.end(), [&](const auto& leaf) { return same(*leaf, node); });
+    if (known) continue;
+    if (!lost) ++count;
+    leaves_.push_back(std::make_shared<BallNode>(std::move(node)));
+  }
 }
 
 /// The first `moments` that are open are as the best leaf has them; others' leaves fall.

@@ -46,6 +46,7 @@ struct BallNode {
   BallStep step;
   double score = 0;  ///< logarithm of how much likelier all is than without any ball
   std::shared_ptr<BallNode> parent;
+  int age = 0;  ///< moments since it was born
 };
 
 /// All that may come of a hypothesis at the next moment, `seconds` later: what follows by each mode and event, with each of the
@@ -67,6 +68,7 @@ class BallSearch {
 
  private:
   using Leaves = std::vector<std::shared_ptr<BallNode>>;
+  void keep_best(std::vector<BallNode> all);
   void decide(std::size_t moments);
 
   std::shared_ptr<const GroundViews> views_;
