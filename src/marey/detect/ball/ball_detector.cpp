@@ -98,10 +98,11 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   const double cross = xy / light - candidate.centre.x() * candidate.centre.y();
   const double root = std::sqrt((vx - vy) * (vx - vy) / 4 + cross * cross);
   const double narrow = std::sqrt(std::max(0.0, (vx + vy) / 2 - root)), wide = std::sqrt((vx + vy) / 2 + root);
-  const double off = std::log(candidate.radius / *expected) - options_.flown;
-  const double spread = options_.size_spread;
+  const double off = std::log(candidate.radius / *expected);
+  const double spread = off < 0 ? options_.size_spread : options_.flown_spread;
   constexpr double kRange = 3;  // of the logarithm of radii that anything else has
-  candidate.score = -off * off / (2 * spread * spread) + std::log(kRange / (std::sqrt(2 * std::numbers::pi) * spread));
+  candidate.score = -off * off / (2 * spread * spread) +
+                    std::log(2 * kRange / (std::sqrt(2 * std::numbers::pi) * (options_.size_spread + options_.flown_spread)));
   const double round = std::hypot(0.5 * candidate.radius, 0.6);  // what a disc spreads, blurred by the lens
   candidate.score -= 0.5 * std::pow(std::max(0.0, narrow / round - 1.2) / 0.25, 2);
   candidate.score -= 0.5 * std::pow(std::max(0.0, wide / round - 2) / 0.8, 2);

@@ -21,9 +21,9 @@ struct BallDetectorOptions {
   double contrast = 14;       ///< grey levels that it is brighter than the scene, at least
   double white = 185;         ///< grey level of a ball
   double least_light = 0.15;  ///< of the light that a ball on the ground adds to the picture: less is noise,
-  double most_light = 8;      ///< more is no ball, however near it flies
-  double size_spread = 0.5;   ///< deviation of the logarithm of the radius, of balls
-  double flown = 0.2;         ///< by which balls are larger than on the ground, for they fly nearer: of that logarithm
+  double most_light = 16;     ///< more is no ball, however near it flies
+  double size_spread = 0.35;  ///< deviation of the logarithm of the radius, of balls that are smaller than on the ground there,
+  double flown_spread = 0.9;  ///< and of those that are larger, for they fly nearer: from a low stand twice as near and more
   double on_person = 4.5;     ///< by which the score is less within a person's box: shirts and socks are that much denser there
   double follow_hz = 4;       ///< grey levels a second by which the scene is followed
   int most = 40;              ///< candidates in a frame, the best
