@@ -112,7 +112,7 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   };
   if (std::any_of(people.begin(), people.end(), holds)) candidate.score -= options_.on_person;
   candidate.sigma = 0.4 + 0.1 * wide;
-  if (candidate.score < -8) return std::nullopt;
+  if (candidate.score < -12) return std::nullopt;
   return candidate;
 }
 

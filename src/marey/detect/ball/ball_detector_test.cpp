@@ -1,5 +1,6 @@
 #include "marey/detect/ball/ball_detector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -12,6 +12,7 @@ namespace marey::track::ball {
 namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
+constexpr double kSteady = 0.2;    // what curl does upwards, of what it does sideways: depth is read off the fall
 
 /// Constant acceleration's noise over a step.
 void add_wander(Matrix<6>& covariance, double accel, double step, int first, int last) {
@@ -79,7 +80,8 @@ void fly(BallPrediction& to, double step, const BallMotionOptions& options) {
   x.head<3>() += step * v + 0.5 * step * step * pull;
   x.tail<3>() += step * pull;
   move(to, F);
-  add_wander(to.belief.covariance, options.flight_accel, step, 0, 2);
+  add_wander(to.belief.covariance, options.flight_accel, step, 0, 1);
+  add_wander(to.belief.covariance, kSteady * options.flight_accel, step, 2, 2);
 }
 
 /// Height and velocity are reflected at the ground, and the velocity loses its share.

@@ -28,7 +28,7 @@ enum class BallEvent : std::uint8_t {
 /// From the physics of a football; what has none is a first guess, of which no sweep was made yet (bench/ball.py is for that).
 struct BallMotionOptions {
   double roll_accel = 3;                   ///< m/s², what rolling ball's velocity wanders by in a second
-  double flight_accel = 2;                 ///< m/s², the same in the air: curl, wind
+  double flight_accel = 2;                 ///< m/s², the same in the air, sideways: curl, wind; a fifth of it upwards
   double grass = 0.8;                      ///< m/s² that grass takes from a rolling ball
   double drag = 0.0133;                    ///< 1/m, of the air
   double restitution = 0.6, along = 0.85;  ///< of the speed downwards and along, what a bounce leaves
