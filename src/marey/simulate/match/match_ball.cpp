@@ -137,7 +137,7 @@ void MatchBall::step(double step, const MatchPlay& play, std::span<const MatchPl
     case MatchPlay::Phase::flying:
       if (is_new) {
         const double far = (play.pass_target() - now_.place.head<2>()).norm();
-        kick(play.pass_target(), std::max(0.2, play.phase_left()), far > 18 ? 0.6 : 0.25);
+        kick(play.pass_target(), std::max({0.2, play.phase_left(), far / 24}), far > 18 ? 0.6 : 0.25);
       }
       [[fallthrough]];
     case MatchPlay::Phase::loose:
