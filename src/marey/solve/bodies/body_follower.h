@@ -34,8 +34,8 @@ struct FollowOptions {
   double acceleration = 30;           ///< m/s², standard deviation of a body's
   double angular_acceleration = 150;  ///< rad/s²
   double predict_s = 0.5;             ///< so long a body is told without three of its markers
-  double by_chance = 1e-3;            ///< as many like it to be expected by chance among the points: no body is found then
-  double fastest = 15;                ///< m/s: a body is not found again farther away than that allows
+  double by_chance = 1e-4;  ///< so many like it to be expected by chance among the points: no body is found (docs/bodies.md)
+  double fastest = 15;      ///< m/s: a body is not found again farther away than that allows
 };
 
 struct FollowedPoint {

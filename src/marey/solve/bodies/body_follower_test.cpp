@@ -79,7 +79,7 @@ TEST(BodyFollower, FindsAndFollowsBodiesWithoutNames) {
 
 /// Points drift through a room as markers of people do; the bodies that are looked for are not there.
 TEST(BodyFollower, FindsNoBodyThatIsNotThere) {
-  for (const auto& [count, half] : {std::pair{60, 1.0}, {100, 1.5}, {300, 2.0}}) {
+  for (const auto& [count, half] : {std::pair{60, 0.4}, {100, 0.5}, {300, 0.8}}) {
     int found = 0, looks = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       moving::Random random(seed);
