@@ -171,6 +171,7 @@ class Stretch:
 def hear_until(page, word, holds=lambda rest: True, patience_s=20):
     """What is behind that word, once it holds."""
     end = time.monotonic() + patience_s
+    page.wire.settimeout(max(5, patience_s))  # while a rig is computed nothing is said
     while time.monotonic() < end:
         line = page.hear()
         if isinstance(line, str) and line.split(" ")[0] == word:

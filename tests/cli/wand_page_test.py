@@ -48,7 +48,7 @@ class Wand(unittest.TestCase):
             self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are told from others")
             later = hear_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
             self.assertEqual(later["phase"], "waving")
-            done = hear_until(page, "wand", lambda w: w["phase"] == "done", 120)
+            done = hear_until(page, "wand", lambda w: w["phase"] == "done", 180)
             self.assertEqual(done["rig"], "waved.toml")
             self.assertTrue((self.folder / "waved.toml").exists())
             self.assertIn("centre", shown.scene()["cameras"][0], "the page knows where the cameras stand")
