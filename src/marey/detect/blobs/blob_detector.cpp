@@ -9,8 +9,8 @@
 namespace marey::detect::blobs {
 namespace {
 
-constexpr int kUsualStep = 5;       // px, as the paper's grid is remembered
-constexpr float kForeground = 4;    // standard deviations from all that was learned of a point
+constexpr int kUsualStep = 5;             // px, as the paper's grid is remembered
+constexpr float kForeground = 4;          // standard deviations from all that was learned of a point
 constexpr std::size_t kFewestFrames = 3;  // frames that a median can be taken of
 
 }  // namespace

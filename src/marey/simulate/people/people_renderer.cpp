@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/simulate/people/contact_shadow.h"
+#include "marey/simulate/people/sprites.h"
 
 namespace marey::simulate::people {
 namespace {
@@ -22,16 +23,6 @@ namespace {
 constexpr int kShades = 16;
 constexpr int kShadowSamples = 2;
 constexpr int kRimPoints = 10;  // of the polygon that stands for a ball's shadow
-
-/// Y, Cb, Cr as BT.601 codes them in limited range, not rounded.
-using Ycc = std::array<float, 3>;
-
-Ycc to_ycc(const Rgb& rgb, double factor) {
-  const double r = factor * rgb[0] / 255, g = factor * rgb[1] / 255, b = factor * rgb[2] / 255;
-  const double y = 0.299 * r + 0.587 * g + 0.114 * b;
-  return {static_cast<float>(16 + 219 * y), static_cast<float>(128 + 224 * (b - y) / 1.772),
-          static_cast<float>(128 + 224 * (r - y) / 1.402)};
-}
 
 /// How bright a rounded shape is across its width, light from the left or the right.
 double shading(int shade, double side) {
@@ -41,10 +32,6 @@ double shading(int shade, double side) {
 
 /// How far what has this colour lies before the limb that it is on, m: rods that share an axis have one depth. By FigurePart.
 constexpr std::array<double, kFigureParts> kCover{0, 0, 0.1, 0.08, 0.05, 0.02};
-
-std::uint8_t clamp_level(float level) {
-  return static_cast<std::uint8_t>(std::clamp(level + 0.5F, 0.0F, 255.0F));
-}
 
 /// Each level becomes zero + factor (level − zero).
 void scale_levels(cv::Mat& plane, double factor, double zero) {
@@ -80,12 +67,6 @@ std::vector<Vector<2>> hull_of(const std::vector<cv::Point2f>& points) {
 
 bool meets(const Silhouette& silhouette, cv::Size picture) {
   return !silhouette.empty() && !(silhouette.pixels() & cv::Rect({0, 0}, picture)).empty();
-}
-
-/// The blocks of 2 × 2 pixels that a rectangle touches.
-cv::Rect half_of(const cv::Rect& pixels) {
-  const cv::Point first(pixels.x / 2, pixels.y / 2);
-  return {first, cv::Point((pixels.br().x + 1) / 2, (pixels.br().y + 1) / 2)};
 }
 
 /// How many points of each pixel lie in a shadow: the most of all shadows counted.
@@ -145,108 +126,7 @@ std::optional<Silhouette> union_of(const std::vector<std::vector<Vector<2>>>& ou
 
 }  // namespace
 
-struct PeopleRenderer::Sprite {
-  double depth = 0;
-  Silhouette shape;  ///< values are indices of `palette`
-  std::array<Ycc, 256> palette{};
-
-  void lay(Planes& planes) const;
-};
-
-struct PeopleRenderer::Planes {
-  cv::Mat luma, cb, cr;
-};
-
-/// Mixes the sprite into the planes: by pixels for luma, by 2 × 2 pixels for chroma.
-void PeopleRenderer::Sprite::lay(Planes& planes) const {
-  const cv::Rect all = shape.pixels();
-  const cv::Rect shown = all & cv::Rect({0, 0}, planes.luma.size());
-  const int samples = shape.samples;
-  const float unit = 1.0F / static_cast<float>(samples * samples);
-  struct Sum {
-    float share = 0, y = 0, cb = 0, cr = 0;
-  };
-  const int chroma_left = shown.x / 2;
-  std::vector<Sum> chroma(static_cast<std::size_t>(shown.br().x / 2 - chroma_left) + 1);
-  for (int y = shown.y; y < shown.br().y; ++y) {
-    auto* luma = planes.luma.ptr<std::uint8_t>(y);
-    for (int x = shown.x; x < shown.br().x; ++x) {
-      Sum sum;
-      for (int row = 0; row < samples; ++row) {
-        const auto* point = shape.mask.ptr<std::uint8_t>((y - all.y) * samples + row) + (x - all.x) * samples;
-        for (int column = 0; column < samples; ++column) {
-          if (point[column] == 0) continue;
-          const Ycc& colour = palette[point[column]];
-          sum = {sum.share + 1, sum.y + colour[0], sum.cb + colour[1], sum.cr + colour[2]};
-        }
-      }
-      if (sum.share == 0) continue;
-      luma[x] = clamp_level((1 - unit * sum.share) * luma[x] + unit * sum.y);
-      Sum& cell = chroma[static_cast<std::size_t>(x / 2 - chroma_left)];
-      cell = {cell.share + sum.share, 0, cell.cb + sum.cb, cell.cr + sum.cr};
-    }
-    if (y % 2 == 0 && y + 1 < shown.br().y) continue;
-    auto* cb = planes.cb.ptr<std::uint8_t>(y / 2) + chroma_left;
-    auto* cr = planes.cr.ptr<std::uint8_t>(y / 2) + chroma_left;
-    for (std::size_t i = 0; i < chroma.size(); ++i) {
-      if (chroma[i].share == 0) continue;
-      cb[i] = clamp_level((1 - unit / 4 * chroma[i].share) * cb[i] + unit / 4 * chroma[i].cb);
-      cr[i] = clamp_level((1 - unit / 4 * chroma[i].share) * cr[i] + unit / 4 * chroma[i].cr);
-      chroma[i] = {};
-    }
-  }
-}
-
-/// A ball that is played with: a disc, smeared along its way while the shutter is open.
-struct PeopleRenderer::BallSprite {
-  double depth = 0;
-  Vector<2> from, to;  // px
-  double radius = 0;   // px
-  Ycc colour{};
-
-  Vector<2> middle() const { return (from + to) / 2; }
-  void lay(Planes& planes) const;
-};
-
-/// What a pixel keeps of the scene is the share of time and area that the disc does not cover; light comes from above.
-void PeopleRenderer::BallSprite::lay(Planes& planes) const {
-  constexpr int kMoments = 9, kPoints = 3;
-  const Box box = bounds(RoundCone2{from, to, radius, radius});
-  const cv::Rect shown = blank_silhouette(box, 1).pixels() & cv::Rect({0, 0}, planes.luma.size());
-  if (shown.empty()) return;
-  const cv::Rect blocks = half_of(shown) & cv::Rect({0, 0}, planes.cb.size());
-  cv::Mat chroma = cv::Mat::zeros(blocks.size(), CV_32FC1);
-  for (int y = shown.y; y < shown.br().y; ++y) {
-    for (int x = shown.x; x < shown.br().x; ++x) {
-      float share = 0, shade = 0;
-      for (int sample = 0; sample < kMoments * kPoints * kPoints; ++sample) {
-        const int point = sample / kMoments;
-        const Vector<2> centre = from + (sample % kMoments + 0.5) / kMoments * (to - from);
-        const Vector<2> off =
-            Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
-        if (off.squaredNorm() > radius * radius) continue;
-        share += 1;
-        shade += static_cast<float>(0.86 - 0.14 * off.y() / radius);
-      }
-      if (share == 0) continue;
-      constexpr float kUnit = 1.0F / (kMoments * kPoints * kPoints);
-      auto& level = planes.luma.at<std::uint8_t>(y, x);
-      level = clamp_level((1 - kUnit * share) * level + kUnit * (16 * share + shade * (colour[0] - 16)));
-      if (x / 2 < blocks.br().x && y / 2 < blocks.br().y) chroma.at<float>(y / 2 - blocks.y, x / 2 - blocks.x) += kUnit * share / 4;
-    }
-  }
-  for (int y = 0; y < blocks.height; ++y) {
-    for (int x = 0; x < blocks.width; ++x) {
-      const float share = chroma.at<float>(y, x);
-      auto& cb = planes.cb.at<std::uint8_t>(y + blocks.y, x + blocks.x);
-      auto& cr = planes.cr.at<std::uint8_t>(y + blocks.y, x + blocks.x);
-      cb = clamp_level((1 - share) * cb + share * colour[1]);
-      cr = clamp_level((1 - share) * cr + share * colour[2]);
-    }
-  }
-}
-
-std::optional<PeopleRenderer::BallSprite> PeopleRenderer::sprite_of(const PosedBall& ball, const Vector<2>& shift) const {
+std::optional<BallSprite> PeopleRenderer::sprite_of(const PosedBall& ball, const Vector<2>& shift) const {
   const auto from = projection_(ball.from), to = projection_(ball.to);
   if (!from || !to) return std::nullopt;
   BallSprite sprite;
@@ -267,13 +147,7 @@ double PeopleRenderer::share_seen(const BallSprite& ball, std::span<const Sprite
     ++all;
     const Vector<2> at = ball.middle() + ball.radius * off;
     if (at.x() < -0.5 || at.y() < -0.5 || at.x() >= luma_.cols - 0.5 || at.y() >= luma_.rows - 0.5) continue;
-    const auto covers = [&](const Sprite& sprite) {
-      if (sprite.depth >= ball.depth) return false;
-      const cv::Point point(static_cast<int>(std::floor((at.x() + 0.5) * sprite.shape.samples)),
-                            static_cast<int>(std::floor((at.y() + 0.5) * sprite.shape.samples)));
-      return sprite.shape.lattice.contains(point) &&
-             sprite.shape.mask.at<std::uint8_t>(point.y - sprite.shape.lattice.y, point.x - sprite.shape.lattice.x) != 0;
-    };
+    const auto covers = [&](const Sprite& sprite) { return sprite.depth < ball.depth && sprite.covers(at); };
     if (std::none_of(sprites.begin(), sprites.end(), covers)) ++seen;
   }
   return static_cast<double>(seen) / all;
@@ -290,7 +164,7 @@ PeopleRenderer::PeopleRenderer(const Picture& ground, Projection projection, std
   for (std::size_t i = 0; i < values && options_.noise > 0; ++i) noise_.push_back(static_cast<float>(random.gaussian()));
 }
 
-std::optional<PeopleRenderer::Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const Vector<2>& shift) const {
+std::optional<Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const Vector<2>& shift) const {
   struct Seen {
     RoundCone2 cone;
     double depth;
@@ -330,7 +204,7 @@ std::optional<PeopleRenderer::Sprite> PeopleRenderer::sprite_of(const PosedFigur
   return sprite;
 }
 
-std::optional<PeopleRenderer::Sprite> PeopleRenderer::sprite_of(const Post& post, const Vector<2>& shift) const {
+std::optional<Sprite> PeopleRenderer::sprite_of(const Post& post, const Vector<2>& shift) const {
   std::vector<cv::Point2f> corners;
   Sprite sprite;
   for (const Vector<2>& end : {post.from, post.to}) {
@@ -372,7 +246,7 @@ std::optional<Silhouette> PeopleRenderer::shadow_of(const Post& post, const Vect
   return union_of({hull_of(rim)}, size());
 }
 
-PeopleRenderer::Planes PeopleRenderer::ground(const FrameConditions& conditions) const {
+Planes PeopleRenderer::ground(const FrameConditions& conditions) const {
   Planes planes;
   const auto moved = [](const cv::Mat& plane, const Vector<2>& shift) {
     const cv::Matx23d by(1, 0, shift.x(), 0, 1, shift.y());

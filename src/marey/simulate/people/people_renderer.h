@@ -86,6 +86,10 @@ struct RenderedFrame {
   std::vector<TrueBall> balls;     ///< those given that lie before the camera
 };
 
+struct BallSprite;
+struct Planes;
+struct Sprite;
+
 /// Draws people, their shadows and posts over a picture of the ground.
 class PeopleRenderer {
  public:
@@ -100,10 +104,6 @@ class PeopleRenderer {
   cv::Size size() const { return luma_.size(); }
 
  private:
-  struct Sprite;
-  struct Planes;
-  struct BallSprite;
-
   std::optional<BallSprite> sprite_of(const PosedBall& ball, const Vector<2>& shift) const;
   std::optional<Sprite> sprite_of(const PosedFigure& person, const Vector<2>& shift) const;
   std::optional<Sprite> sprite_of(const Post& post, const Vector<2>& shift) const;
