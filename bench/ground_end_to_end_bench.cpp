@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/match_files.h"
 #include "marey/pipeline/track_ground.h"
 
 namespace {

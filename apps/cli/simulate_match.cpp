@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/match_files.h"
 
 #include "command_line.h"
 #include "commands.h"

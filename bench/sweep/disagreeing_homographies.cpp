@@ -9,7 +9,7 @@
 
 #include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/match_files.h"
 #include "marey/simulate/match/match_homographies.h"
 
 #include "ground_scene.h"

@@ -1,6 +1,7 @@
 #include "marey/pipeline/ball_on_ground.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -105,6 +106,14 @@ std::optional<TrackId> follow_ball(std::vector<BallMoment> moments, const std::s
   const TrackId id = track.id();
   recording.put(std::move(track));
   return id;
+}
+
+std::optional<Box> ball_box(const GroundView& view, const Vector<2>& place, double height) {
+  if (view.camera() == nullptr) return std::nullopt;
+  const auto seen = view.camera()->project_with_jacobian({place.x(), place.y(), height + view.surface().height(place)});
+  if (!seen || !view.camera()->in_picture(seen->pixel)) return std::nullopt;
+  const double radius = track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+  return Box::from_centre(seen->pixel, 2 * radius, 2 * radius);
 }
 
 }  // namespace marey::pipeline

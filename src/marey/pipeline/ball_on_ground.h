@@ -26,4 +26,8 @@ std::optional<TrackId> follow_ball(std::vector<track::ball::BallMoment> moments,
                                    const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
                                    Recording& recording);
 
+/// The box of a ball in a camera's picture, px: its centre is over `place` (m, world), `height` m above the ground. Nothing outside
+/// the picture, or for a camera that is not known.
+std::optional<Box> ball_box(const GroundView& view, const Vector<2>& place, double height);
+
 }  // namespace marey::pipeline

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -333,12 +332,10 @@ class GroundStage final : public PeopleOnGround {
       const Box picture{0, 0, static_cast<double>(view.size().width), static_cast<double>(view.size().height)};
       for (const Sample& sample : instant.samples) {
         const Vector<2> place = area_.world(sample.position.head<2>());
-        if (sample.track == ball_) {
-          add_ball_box(instant, sample, CameraId{static_cast<int>(i)}, *own, view);
-          continue;
-        }
-        std::optional<Box> box = logs_[i].box(instant.index, sample.track);
+        const bool is_ball = sample.track == ball_;
+        std::optional<Box> box = is_ball ? ball_box(view, place, sample.position.z()) : logs_[i].box(instant.index, sample.track);
         if (!box) {
+          if (is_ball) continue;
           const auto whole = cameras_[i].box_at(place, time);
           if (!whole) continue;
           box = geometry::intersection(*whole, picture);
@@ -349,25 +346,10 @@ class GroundStage final : public PeopleOnGround {
                                  .frame = *own,
                                  .track = sample.track,
                                  .box = *box,
-                                 .foot = view.pixel(place),
+                                 .foot = is_ball ? box->centre() : view.pixel(place),
                                  .seen = (sample.cameras & mask_of(camera)) != 0});
       }
     }
-  }
-
-  void add_ball_box(Instant& instant, const Sample& sample, CameraId camera, std::int64_t frame, const GroundView& view) const {
-    const Vector<2> place = area_.world(sample.position.head<2>());
-    if (view.camera() == nullptr) return;
-    const auto seen =
-        view.camera()->project_with_jacobian({place.x(), place.y(), sample.position.z() + view.surface().height(place)});
-    if (!seen || !view.camera()->in_picture(seen->pixel)) return;
-    const double radius = track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
-    instant.boxes.push_back({.camera = camera,
-                             .frame = frame,
-                             .track = sample.track,
-                             .box = Box::from_centre(seen->pixel, 2 * radius, 2 * radius),
-                             .foot = seen->pixel,
-                             .seen = (sample.cameras & mask_of(camera)) != 0});
   }
 
   PeopleOnGroundOptions options_;

@@ -12,7 +12,7 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/mot.h"
 #include "marey/pipeline/judge_match.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/match_files.h"
 
 #include "support/files.h"
 
