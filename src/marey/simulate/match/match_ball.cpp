@@ -62,9 +62,9 @@ MatchBall::MatchBall(std::uint64_t seed, const geometry::PitchSize& pitch, const
   before_ = now_;
 }
 
-/// To be at `to` after `seconds`, through the air by the chance `lofted`.
+/// To be at `to` after `seconds`, through the air by the chance `lofted`, and where it is in the air already.
 void MatchBall::kick(const Vector<2>& to, double seconds, double lofted) {
-  const bool flies = random_.chance(lofted);
+  const bool flies = random_.chance(lofted) || now_.place.z() > kBallRadius + 0.1;
   curl_ = random_.gaussian(0, 1.2);
   const Vector<3> goal(to.x(), to.y(), kBallRadius);
   const BallPlace from = now_;

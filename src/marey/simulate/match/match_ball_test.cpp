@@ -23,7 +23,8 @@ TEST(MatchBall, RollsFliesIsHeldAndGoesOutAsBallsDo) {
     highest = std::max(highest, ball.place.z());
     fastest = std::max(fastest, ball.velocity.norm());
     if (!before.there || !ball.there || ball.state == BallState::dead) continue;
-    ASSERT_LT((ball.place - before.place).norm(), 45 / 25.0) << "it jumps at " << i / 25.0 << " s";
+    ASSERT_LT((ball.place - before.place).norm(), 45 / 25.0)
+        << "it jumps at " << i / 25.0 << " s, " << to_string(before.state) << " to " << to_string(ball.state);
     if (ball.state == BallState::held && before.state == BallState::held && before.holder == ball.holder) {
       const Vector<2> holder = motion.people()[static_cast<std::size_t>(ball.holder)].place;
       EXPECT_LT((ball.place.head<2>() - holder).norm(), 12) << i / 25.0;

@@ -77,7 +77,7 @@ void run(int frames, int cameras, const BrambleOptions& options, const std::func
 }
 
 /// The id of who is told of within `reach` m of a place; 0: of nobody.
-int at(const Seen& told, const Vector<2>& place, double reach = 0.4) {
+int at(const Seen& told, const Vector<2>& place, double reach = 0.8) {
   for (const auto& [id, where] : told) {
     if ((where - place).norm() < reach) return id;
   }
