@@ -54,11 +54,12 @@ class BodiesAndLabels(unittest.TestCase):
         with open(self.folder / "walk" / "truth.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         # Four points beside each marker, as joints' centres and axes' ends stand in files of other systems.
+        ids = {label: id for id, label in enumerate(dict.fromkeys(row["label"] for row in rows), 1)}
         with open(self.folder / "computed.csv", "w") as file:
             file.write("frame,time,id,label,x,y,z\n")
             for row in rows:
                 for copy in range(5):
-                    file.write(f"{row['frame']},{row['time']},{int(row['id']) + 100 * copy},{row['label']}{'_' * copy},{float(row['x']) + 0.002 * copy},{row['y']},{row['z']}\n")
+                    file.write(f"{row['frame']},{row['time']},{ids[row['label']] + 100 * copy},{row['label']}{'_' * copy},{float(row['x']) + 0.002 * copy},{row['y']},{row['z']}\n")
         told = json.loads(self.marey("label", "learn", "computed.csv", "-o", "set.toml", "--json").stdout)
         self.assertIn("200 of the set's 200 points", told["warnings"][0])
         done = self.marey("label", "computed.csv", "--set", "set.toml", "-o", "named.csv", code=1)

@@ -203,7 +203,6 @@ void write_markers(const simulate::markers::MarkerScene& scene, const std::strin
 void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks) {
   const fs::path place = folder;
   const simulate::people::PeopleFilmOptions& options = film.options();
-  write_text(place / "rig.toml", format::rig::rig_text(people_rig(film)));
   draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
   PeopleTruth truth(place);
   for (int i = 0; i < film.frames(); ++i) {
@@ -215,6 +214,7 @@ void film_people(const simulate::people::PeopleFilm& film, const std::string& fo
   }
   movie.finish();
   truth.finish();
+  write_text(place / "rig.toml", format::rig::rig_text(people_rig(film)));
 }
 
 void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options,
