@@ -77,6 +77,7 @@ Rows& Tracks::rows(TrackId track) {
     const TrackColumns columns = load_(track);
     wanted.rows.emplace();
     wanted.rows->reserve(columns.size());
+    wanted.dimensions = columns.dimensions();
     for (std::size_t row = 0; row < columns.size(); ++row) wanted.rows->push_back({columns.at()[row], columns.sample(row)});
     for (const FilledGap& gap : std::exchange(wanted.due, {})) put_in(*wanted.rows, rows_in_gap(*this, gap));
   }
@@ -208,7 +209,7 @@ void Tracks::filter(const Operation& operation) {
 
 TrackColumns Tracks::columns(TrackId track, int dimensions) {
   const Rows& all = rows(track);
-  TrackColumns columns(name(track), dimensions);
+  TrackColumns columns(name(track), std::max(dimensions, entry(track).dimensions));  // a ball on the ground has a height
   columns.reserve(all.size());
   for (const Row& row : all) {
     Sample sample = row.sample;

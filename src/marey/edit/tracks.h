@@ -52,6 +52,7 @@ class Tracks {
     std::optional<Rows> rows;  // nothing until they are wanted
     bool changed = false;
     std::vector<FilledGap> due = {};  // fills that keep their places, for when the rows are wanted
+    int dimensions = 0;               // of the columns that the rows were in
   };
 
   Entry& entry(TrackId track);

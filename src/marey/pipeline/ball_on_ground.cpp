@@ -18,6 +18,10 @@ using track::ball::BallState;
 
 constexpr double kBeyondLines = 12;  // m; farther out nothing is the ball
 constexpr double kUnseen = 1.5;      // s without anybody having seen it, after which nobody knows where it is
+constexpr double kFastest = 45;      // m/s; what is elsewhere sooner is something else
+constexpr double kStill = 0.3;       // m: what stays within it
+constexpr double kStands = 1;        // for so many s stands, as a ball that lies still becomes a part of the empty scene, and
+constexpr double kLeastWay = 2;      // m; what gets no farther than that is no ball that is played with
 
 /// Who is where, at each moment.
 void add_people(const Recording& recording, const reconstruct::GroundArea& area, std::vector<BallMoment>& moments) {
@@ -56,6 +60,32 @@ std::vector<bool> rows_known(const std::vector<BallMoment>& moments, const std::
   return known;
 }
 
+/// Forgets what is no ball that is played with: what stands, and what gets nowhere between two leaps.
+void forget_what_stands(const std::vector<BallMoment>& moments, const std::vector<BallState>& states, std::vector<bool>& known) {
+  const auto place = [&](std::size_t i) { return states[i].belief.place(); };
+  const auto time = [&](std::size_t from, std::size_t to) { return seconds(moments[to].time - moments[from].time); };
+  const auto goes_on = [&](std::size_t i) {
+    return i < known.size() && known[i] && (place(i) - place(i - 1)).norm() <= kFastest * time(i - 1, i) + kStill;
+  };
+  for (std::size_t first = 0, end = 0; first < known.size(); first = end) {
+    end = first + 1;
+    if (!known[first]) continue;
+    while (goes_on(end) && (place(end) - place(first)).norm() < kStill) ++end;
+    if (time(first, end - 1) >= kStands)
+      std::fill(known.begin() + static_cast<std::ptrdiff_t>(first), known.begin() + static_cast<std::ptrdiff_t>(end), false);
+    else
+      end = first + 1;
+  }
+  for (std::size_t first = 0, end = 0; first < known.size(); first = end) {
+    end = first + 1;
+    if (!known[first]) continue;
+    double way = 0;
+    for (; goes_on(end); ++end) way = std::max(way, (place(end) - place(first)).norm());
+    if (way < kLeastWay)
+      std::fill(known.begin() + static_cast<std::ptrdiff_t>(first), known.begin() + static_cast<std::ptrdiff_t>(end), false);
+  }
+}
+
 Sample sample_of(TrackId id, const BallState& state, const reconstruct::GroundArea& area) {
   Sample sample;
   sample.track = id;
@@ -91,7 +121,8 @@ std::optional<TrackId> follow_ball(std::vector<BallMoment> moments, const std::s
   std::move(decided.begin(), decided.end(), std::back_inserter(steps));
   moments.resize(steps.size());
   const std::vector<BallState> states = track::ball::smooth_ball(moments, steps, *views, options.search.motion);
-  const std::vector<bool> known = rows_known(moments, states, area);
+  std::vector<bool> known = rows_known(moments, states, area);
+  forget_what_stands(moments, states, known);
   const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
   TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}}, 3);
   std::size_t instant = 0;

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/format/input_hash.h"
@@ -18,6 +19,7 @@ class Counter {
 
   void add(const Instant& instant) {
     for (const TrackName& name : instant.named) {
+      if (is_ball(name)) balls_.insert(name.id);
       if (name.label.empty()) {
         labelled_.erase(name.id);
       } else {
@@ -36,6 +38,7 @@ class Counter {
 
   void finish() {
     summary_.tracks = std::ssize(tracks_);
+    for (const TrackId id : balls_) summary_.tracks -= tracks_.contains(id);
     for (const TrackId id : labelled_) summary_.labelled += tracks_.contains(id);
   }
 
@@ -55,7 +58,7 @@ class Counter {
   }
 
   Summary& summary_;
-  std::set<TrackId> tracks_, labelled_;
+  std::set<TrackId> tracks_, labelled_, balls_;
 };
 
 /// The header with how it was made.

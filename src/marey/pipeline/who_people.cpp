@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/track/ground/ground_cut.h"
 
@@ -103,7 +104,7 @@ std::string those_near_by(const Recording& recording, const TrackColumns* missin
   std::vector<std::pair<double, int>> near;
   for (const TrackColumns& track : recording.tracks()) {
     const auto row = track.row_at(instant);
-    if (!row) continue;
+    if (!row || is_ball(track.name)) continue;
     double distance = number(track.id());
     if (missing != nullptr && !missing->empty()) {
       const bool later = instant > missing->at().back();
@@ -161,7 +162,9 @@ void require_on_pitch(const SquadNaming& naming, const SquadMember& member) {
 TrackedPeople tracked_people(const Recording& recording) {
   TrackedPeople people;
   for (const Recording::Moment& moment : recording.instants()) people.times.push_back(moment.time);
-  for (const TrackColumns& track : recording.tracks()) add_tracklets(track, people.times, people.tracklets);
+  for (const TrackColumns& track : recording.tracks()) {
+    if (!is_ball(track.name)) add_tracklets(track, people.times, people.tracklets);
+  }
   if (people.tracklets.empty()) throw Error("nobody was measured in the take");
   track::ground::GroundCutOptions cut;
   cut.overlap = kOverlap;
