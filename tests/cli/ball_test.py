@@ -63,8 +63,35 @@ class Ball(unittest.TestCase):
         both = truth.keys() & found.keys()
         self.assertGreater(len(both), 0.5 * len(truth))
         off = [math.dist([float(found[f][a]) for a in "xyz"], [float(truth[f][a]) for a in "xyz"]) for f in both]
-        self.assertLess(statistics.median(off), 0.5)
+        self.assertLess(statistics.median(off), 0.15)
+        self.assertLess(sum(far > 1 for far in off), 0.4 * len(off))  # docs/ball.md tells how often something else is followed
         self.assertTrue(all(row["z"] == "" for row in rows(self.text) if row["label"] != "ball"))
+
+    def test_a_match_without_one_has_none(self):
+        plain = self.folder / "without"
+        marey("simulate", "match", "-o", plain, "--stand", "football", "--seconds", 8, "--seed", 21, "--size", 1280, 720, "--render", "--quiet")
+        done = marey("track", plain / "rig.toml", "--ground", "--size", "105x68", "--ball", "-o", self.folder / "without.csv")
+        self.assertIn("the ball was not found", done.stderr)
+        self.assertNotIn("ball", {row["label"] for row in rows(self.folder / "without.csv")})
+
+    def test_it_is_nobody(self):
+        """Neither counted nor judged; an edit of it leaves the rest of it as it was, with its height."""
+        told = json.loads(marey("evaluate", "--truth", self.match / "truth.csv", "--tracks", self.text, "--distance", 1.5, "--json").stdout)
+        bare = self.folder / "bare.csv"
+        with open(bare, "w", newline="") as file:
+            writer = csv.DictWriter(file, rows(self.text)[0].keys(), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(row for row in rows(self.text) if row["label"] != "ball")
+        without = json.loads(marey("evaluate", "--truth", self.match / "truth.csv", "--tracks", bare, "--distance", 1.5, "--json").stdout)
+        self.assertEqual({key: told[key] for key in ("idf1", "matches")}, {key: without[key] for key in ("idf1", "matches")})
+        before = {row["frame"]: row["z"] for row in rows(self.text) if row["label"] == "ball"}
+        first = sorted(map(int, before))[3]
+        edited, text = self.folder / "edited.marey", self.folder / "edited.csv"
+        shutil.copy(self.tracks, edited)
+        marey("edit", edited, f"delete ball {first}:{first + 2}", "--quiet")
+        marey("convert", edited, text, "--quiet")
+        after = {row["frame"]: row["z"] for row in rows(text) if row["label"] == "ball"}
+        self.assertEqual(after, {frame: z for frame, z in before.items() if not first <= int(frame) <= first + 2})
 
     def test_other_programs_get_it(self):
         dat = self.folder / "match.dat"
