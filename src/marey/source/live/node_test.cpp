@@ -18,8 +18,11 @@ namespace marey::source::live {
 namespace {
 
 bool becomes_true(const std::function<bool()>& is) {
-  for (int i = 0; i < 2000 && !is(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  return is();
+  for (int i = 0; i < 2000; ++i) {
+    if (is()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
 }
 
 /// A node whose clock is a quarter of an hour ahead, on whatever ports are free.
