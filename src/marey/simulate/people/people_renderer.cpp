@@ -124,6 +124,25 @@ std::optional<Silhouette> union_of(const std::vector<std::vector<Vector<2>>>& ou
   return result;
 }
 
+/// Figures, posts and balls from the farthest to the nearest.
+void lay_all(std::vector<Sprite> sprites, std::vector<BallSprite> balls, Planes& planes) {
+  const auto farther = [](const auto& a, const auto& b) { return a.depth > b.depth; };
+  std::stable_sort(sprites.begin(), sprites.end(), farther);
+  std::stable_sort(balls.begin(), balls.end(), farther);
+  auto ball = balls.begin();
+  for (const Sprite& sprite : sprites) {
+    for (; ball != balls.end() && ball->depth > sprite.depth; ++ball) ball->lay(planes);
+    sprite.lay(planes);
+  }
+  for (; ball != balls.end(); ++ball) ball->lay(planes);
+}
+
+void dim(Planes& planes, double light) {
+  scale_levels(planes.luma, light, 16);
+  scale_levels(planes.cb, light, 128);
+  scale_levels(planes.cr, light, 128);
+}
+
 }  // namespace
 
 std::optional<BallSprite> PeopleRenderer::sprite_of(const PosedBall& ball, const Vector<2>& shift) const {
@@ -346,20 +365,8 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
       darken_contact(pose(*person.figure, person.stance), projection_, options_.contact, conditions.shift, planes.luma, planes.cb,
                      planes.cr);
   }
-  std::stable_sort(sprites.begin(), sprites.end(), [](const Sprite& a, const Sprite& b) { return a.depth > b.depth; });
-  const auto behind = [](const auto& a, const auto& b) { return a.depth > b.depth; };
-  std::stable_sort(ball_sprites.begin(), ball_sprites.end(), behind);
-  auto ball = ball_sprites.begin();
-  for (const Sprite& sprite : sprites) {
-    for (; ball != ball_sprites.end() && ball->depth > sprite.depth; ++ball) ball->lay(planes);
-    sprite.lay(planes);
-  }
-  for (; ball != ball_sprites.end(); ++ball) ball->lay(planes);
-  if (conditions.light != 1) {
-    scale_levels(planes.luma, conditions.light, 16);
-    scale_levels(planes.cb, conditions.light, 128);
-    scale_levels(planes.cr, conditions.light, 128);
-  }
+  lay_all(std::move(sprites), std::move(ball_sprites), planes);
+  if (conditions.light != 1) dim(planes, conditions.light);
   add_noise(planes, conditions.seed);
   apply(options_.look, planes.luma, planes.cb, planes.cr);
   frame.picture = Picture(planes.luma, planes.cb, planes.cr, Picture::Range::limited);

@@ -139,6 +139,31 @@ bool BodyBoot::fits_better_mirrored(std::span<const Vector<3>> points, const Boo
   return std::count_if(mirrored.begin(), mirrored.end(), is_there) > candidate.matched;
 }
 
+BodyBoot::Triangle BodyBoot::rarest_triangle(std::span<const Vector<3>> layout, std::span<const std::size_t> matched,
+                                             std::span<const double> lengths) const {
+  std::optional<Triangle> rarest;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vector<3>&a = layout[matched[i]], &b = layout[matched[j]];
+      const double length = (a - b).norm();
+      const auto [first, last] = pairs_near(length);
+      const auto own =
+          std::count_if(lengths.begin(), lengths.end(), [&](double each) { return std::abs(each - length) < 2 * tolerance_; });
+      Triangle triangle{.others = std::max(0.0, static_cast<double>(last - first) - static_cast<double>(own)), .height = 0};
+      const Vector<3> along = (a - b) / length;
+      for (const std::size_t c : matched) {
+        const Vector<3> to = layout[c] - b;
+        triangle.height = std::max(triangle.height, (to - along * along.dot(to)).norm());
+      }
+      const auto rarer = [](const Triangle& one, const Triangle& other) {
+        return one.others < other.others || (one.others == other.others && one.height > other.height);
+      };
+      if (!rarest || rarer(triangle, *rarest)) rarest = triangle;
+    }
+  }
+  return rarest.value_or(Triangle{});
+}
+
 /// Pairs of points as long as one edge of the candidate (those there are, without its own), times the thirds to be expected in the
 /// ring where a third marker would be, times the chance that as many others have a point where they are due; all as near as the
 /// candidate's own distances are to the body's.
@@ -159,27 +184,7 @@ double BodyBoot::expected_by_chance(std::span<const Vector<3>> points, const Boo
       lengths.push_back(seen);
     }
   }
-  // The triangle with the rarest edge, and the third that is farthest from it.
-  double fewest = 0, height = 0;
-  bool any = false;
-  for (std::size_t i = 0; i < matched.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double length = (layout[matched[i]] - layout[matched[j]]).norm();
-      const auto [first, last] = pairs_near(length);
-      const auto own =
-          std::count_if(lengths.begin(), lengths.end(), [&](double each) { return std::abs(each - length) < 2 * tolerance_; });
-      const double others = std::max(0.0, static_cast<double>(last - first) - static_cast<double>(own));
-      double farthest = 0;
-      for (const std::size_t c : matched) {
-        const Vector<3> along = (layout[matched[i]] - layout[matched[j]]) / length, to = layout[c] - layout[matched[j]];
-        farthest = std::max(farthest, (to - along * along.dot(to)).norm());
-      }
-      if (any && (others > fewest || (others == fewest && farthest <= height))) continue;
-      any = true;
-      fewest = others;
-      height = farthest;
-    }
-  }
+  const auto [others, height] = rarest_triangle(layout, matched, lengths);
   const Vector<3> centre = point_of(matched.front());
   const auto near = std::count_if(points.begin(), points.end(), [&](const Vector<3>& p) { return (p - centre).norm() < kAroundM; });
   const auto all = static_cast<double>(points.size()), own = static_cast<double>(matched.size());
@@ -187,7 +192,7 @@ double BodyBoot::expected_by_chance(std::span<const Vector<3>> points, const Boo
   const double density = std::max(0.0, static_cast<double>(near) - own) / (kBall * kAroundM * kAroundM * kAroundM) +
                          (all - own) / (kBall * kRoomM * kRoomM * kRoomM);
   const double share = std::min(1.0, off / (2 * tolerance_));
-  double expected = 2 * (fewest + 1) * share * 2 * std::numbers::pi * height * 4 * off * off * density;
+  double expected = 2 * (others + 1) * share * 2 * std::numbers::pi * height * 4 * off * off * density;
   const double here = std::min(1.0, density * kBall * off * off * off);
   const auto rest = static_cast<double>(layout.size() - 3);
   for (std::size_t more = 3; more < matched.size(); ++more)

@@ -49,6 +49,12 @@ class BodyBoot {
     std::size_t count = 0;  // pairs of points of that length
   };
 
+  /// Three markers: their edge that is rarest among the points, and how far the third is from it.
+  struct Triangle {
+    double others = 0;  // pairs of points as long as the edge, without the candidate's own
+    double height = 0;  // m
+  };
+
   void sort_pairs(std::span<const Vector<3>> points, double longest);
   std::pair<std::size_t, std::size_t> pairs_near(double length) const;
   std::vector<Edge> rarest_edges(const std::vector<Vector<3>>& layout) const;
@@ -58,6 +64,9 @@ class BodyBoot {
   /// has more.
   bool fits_better_mirrored(std::span<const Vector<3>> points, const BootCandidate& candidate) const;
 
+  /// Of the markers `matched`, whose points are `lengths` apart. Of edges that are equally rare, that with the farthest third.
+  Triangle rarest_triangle(std::span<const Vector<3>> layout, std::span<const std::size_t> matched,
+                           std::span<const double> lengths) const;
   double expected_by_chance(std::span<const Vector<3>> points, const BootCandidate& candidate) const;
 
   struct Pair {
