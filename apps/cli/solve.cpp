@@ -127,6 +127,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"worst_mm", 1000 * summary.worst_m},
           {"starts", summary.starts},
           {"overall_scale", summary.overall_scale},
+          {"sizes_not_determined", summary.undetermined},
           {"markers", markers},
           {"coordinates", coordinates},
           {"joints", joints},

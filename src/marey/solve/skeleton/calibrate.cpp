@@ -45,10 +45,11 @@ class Calibrator {
     if (options_.overall) result.overall_scale = find_overall();
     for (int round = 0; round < options_.rounds; ++round) {
       solve_poses();
-      if (!improve(result)) break;
+      if (!improve()) break;
     }
     solve_poses();
     result.rms_after_m = rms_;
+    if (options_.scale_sigma > 0) result.undetermined = undetermined();
     result.skeleton = now_;
     for (std::size_t s = 0; s < base_.segments.size(); ++s) result.scales.push_back(scale_of(s));
     for (std::size_t j = 0; j < offsets_.size(); ++j) result.marker_moved_m.push_back(offsets_[j].norm());
@@ -120,34 +121,74 @@ class Calibrator {
     by.middleCols(3 * (std::ssize(group_scale_) + static_cast<Eigen::Index>(j)), 3) = pose[own].rotation;
   }
 
-  /// One Gauss–Newton step of scales and offsets; false where it is small.
-  bool improve(Calibration& result) {
+  /// Of the scales and offsets at which the poses were solved last: J'WJ with the priors, and −½ of the cost's gradient.
+  struct NormalEquations {
+    Eigen::MatrixXd information;
+    Eigen::VectorXd gradient;
+  };
+
+  NormalEquations normal_equations() const {
     const Eigen::Index scales = 3 * std::ssize(group_scale_), unknowns = scales + 3 * std::ssize(offsets_);
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns);
+    NormalEquations all{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
     PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m});
-    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(solver, *frames_[f], poses_[f], information, gradient);
-    const Eigen::VectorXd data = information.diagonal();
-    const double of_scale = 1 / (options_.scale_sigma * options_.scale_sigma),
+    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(solver, *frames_[f], poses_[f], all.information, all.gradient);
+    const double of_scale = options_.scale_sigma > 0 ? 1 / (options_.scale_sigma * options_.scale_sigma) : 1e12,
                  of_offset = 1 / (options_.offset_sigma_m * options_.offset_sigma_m);
     for (Eigen::Index u = 0; u < unknowns; ++u) {
       const bool scale = u < scales;
       const double now = scale ? group_scale_[static_cast<std::size_t>(u / 3)][u % 3]
                                : offsets_[static_cast<std::size_t>((u - scales) / 3)][(u - scales) % 3];
-      const double weight = scale ? (options_.scale_sigma > 0 ? of_scale : 1e12) : of_offset;
-      information(u, u) += weight;
-      gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
+      const double weight = scale ? of_scale : of_offset;
+      all.information(u, u) += weight;
+      all.gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
     }
-    const Eigen::VectorXd step = geometry::solve_symmetric(information, gradient);
-    for (Eigen::Index u = 0; u < scales; ++u)
-      group_scale_[static_cast<std::size_t>(u / 3)][u % 3] =
-          std::clamp(group_scale_[static_cast<std::size_t>(u / 3)][u % 3] + step[u], 0.3, 3.0);
+    return all;
+  }
+
+  /// One Gauss–Newton step of scales and offsets; false where it is small.
+  bool improve() {
+    const NormalEquations equations = normal_equations();
+    const Eigen::VectorXd step = geometry::solve_symmetric(equations.information, equations.gradient);
+    for (std::size_t g = 0; g < group_scale_.size(); ++g)
+      group_scale_[g] = (group_scale_[g] + step.segment<3>(3 * static_cast<Eigen::Index>(g))).cwiseMax(0.3).cwiseMin(3.0);
+    const Eigen::Index scales = 3 * std::ssize(group_scale_);
     for (std::size_t j = 0; j < offsets_.size(); ++j) offsets_[j] += step.segment<3>(scales + 3 * static_cast<Eigen::Index>(j));
-    result.undetermined.clear();
-    for (std::size_t s = 0; s < base_.segments.size(); ++s) {
-      if (data.segment<3>(3 * group_of_[s]).maxCoeff() < of_scale) result.undetermined.push_back(base_.segments[s].name);
-    }
     return step.cwiseAbs().maxCoeff() > 1e-5;
+  }
+
+  /// Segments of whose size the frames say less than the prior did: the distance to one of the joints (or the end) that it bears
+  /// keeps more than half of its variance; without any, each of its three axes does.
+  std::vector<std::string> undetermined() const {
+    const NormalEquations equations = normal_equations();
+    const Eigen::MatrixXd covariance = geometry::solve_symmetric(
+        equations.information, Eigen::MatrixXd::Identity(equations.gradient.size(), equations.gradient.size()));
+    const double prior = options_.scale_sigma * options_.scale_sigma;
+    std::vector<std::string> names;
+    for (std::size_t s = 0; s < base_.segments.size(); ++s) {
+      const Matrix<3> own = covariance.block<3, 3>(3 * group_of_[s], 3 * group_of_[s]);
+      const std::vector<Vector<3>> bones = bones_of(s);
+      const bool open = bones.empty() ? own.diagonal().minCoeff() > 0.5 * prior
+                                      : std::any_of(bones.begin(), bones.end(), [&](const Vector<3>& bone) {
+                                          // A length |s ∘ v| changes with s by s v² / length: v² / |v| where s is near 1.
+                                          const Vector<3> by = bone.cwiseProduct(bone) / bone.norm();
+                                          return by.dot(own * by) > 0.5 * prior * by.squaredNorm();
+                                        });
+      if (open) names.push_back(base_.segments[s].name);
+    }
+    return names;
+  }
+
+  /// From the segment's frame to the joints of the segments that hang on it, and to its end; none that is shorter than 1 cm.
+  std::vector<Vector<3>> bones_of(std::size_t segment) const {
+    constexpr double kShortest = 0.01;
+    std::vector<Vector<3>> bones;
+    for (const Segment& other : base_.segments) {
+      if (other.parent && static_cast<std::size_t>(*other.parent) == segment)
+        bones.push_back(other.joint.parent_from_joint.translation);
+    }
+    if (base_.segments[segment].end) bones.push_back(*base_.segments[segment].end);
+    std::erase_if(bones, [](const Vector<3>& bone) { return bone.norm() < kShortest; });
+    return bones;
   }
 
   /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ. A joint that is held at its limit does not give way to a size.

@@ -1,9 +1,12 @@
 #include "marey/solve/skeleton/calibrate.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
@@ -184,6 +187,29 @@ TEST(Calibrate, HonoursLimits) {
       }
     }
   }
+}
+
+/// A thigh that is marked about the hip alone, and a shank with one marker low down: only a knee that bends shows where it is.
+std::vector<std::string> undetermined_of(bool bends) {
+  Skeleton skeleton = leg(-3);
+  skeleton.markers.clear();
+  for (const auto& [x, y, z] : {std::array{0.05, 0.05, 0.0}, {0.05, -0.05, 0.01}, {-0.05, 0.0, 0.02}, {-0.04, 0.02, -0.01}})
+    skeleton.markers.push_back({fmt::format("t{}", skeleton.markers.size()), 0, {x, y, z}, 1});
+  skeleton.markers.push_back({"ankle", 1, {0, 0, -0.6}, 1});
+  std::vector<SeenMarkers> frames;
+  for (int f = 0; f < 40; ++f) {
+    const auto pose = pose_of(skeleton, std::vector<double>{0.01 * f, 0, 1, 0.01 * f, 0, 0.02 * f, bends ? 0.04 * f : 0});
+    SeenMarkers& seen = frames.emplace_back();
+    for (const SkeletonMarker& marker : skeleton.markers)
+      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+  }
+  return calibrate(skeleton, frames, {.overall = false}).undetermined;
+}
+
+TEST(Calibrate, NamesWhatTheMotionDoesNotDetermine) {
+  const std::vector<std::string> still = undetermined_of(false), bent = undetermined_of(true);
+  EXPECT_NE(std::find(still.begin(), still.end(), "thigh"), still.end());
+  EXPECT_EQ(std::find(bent.begin(), bent.end(), "thigh"), bent.end());
 }
 
 TEST(Calibrate, RefusesNothing) {
