@@ -27,7 +27,8 @@ def read(marey, file, work):
         points = {}
         for row in csv.DictReader(rows):
             if row["label"] in MARKERS and row["state"] in ("", "measured"):
-                points.setdefault(row["label"], {})[int(row["frame"])] = (float(row["x"]), float(row["y"]), float(row["z"]))
+                points.setdefault(row["label"], {})[int(row["frame"])] = tuple(
+                    round(float(row[axis]), 6) for axis in "xyz")  # so that a point is known again in what comes back
     return points
 
 
