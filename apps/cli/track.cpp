@@ -30,6 +30,7 @@ struct TrackCommand {
   std::string format;
   std::string overlay;
   std::string plot;
+  std::string masks;
   std::string filter;
   Targets targets = Targets::people;
   PeopleFlags people;
@@ -99,6 +100,7 @@ void run_on_ground(const TrackCommand& command) {
   if (!command.input.detections.empty())
     throw WrongUsage("--ground takes a rig: name the cameras' detections there, or give CAMERA=FILE after it");
   if (!command.plot.empty()) throw WrongUsage("--plot shows ways in one picture; with --ground there is --pitch-view");
+  if (!command.masks.empty()) throw WrongUsage("{}", "--masks is for one camera; leave out --ground, and give its film");
   track_on_ground(ground_command(command), command.ground, command.people);
 }
 
@@ -122,6 +124,7 @@ void run(const TrackCommand& command) {
     throw WrongUsage("--overlay {}: is an MP4 film; end its name in .mp4", command.overlay);
   const pipeline::TrackOutput output = output_of(command);
   if (command.targets == Targets::markers) {
+    if (!command.masks.empty()) throw WrongUsage("{}", "--masks shows what the search for people sees; markers have none");
     if (command.people.outline) throw WrongUsage("--outline follows people; markers are points: leave out one of the two");
     const pipeline::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
@@ -129,6 +132,9 @@ void run(const TrackCommand& command) {
     pipeline::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
     options.delay = command.delay.value_or(0);
     options.seen_only = command.seen_only;
+    options.masks = command.masks;
+    if (!command.masks.empty() && command.people.without_background)
+      throw WrongUsage("{}", "--masks shows what the background model sees; leave out --without-background");
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
   }
 }
@@ -165,6 +171,8 @@ void add_outputs(Command& command, TrackCommand& options) {
                       "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4; with --ground a folder, which gets "
                       "CAMERA.mp4");
   command.output_file("--plot", options.plot, "a picture of the paths, in the image's coordinates: FILE.svg").ends_in({".svg"});
+  command.output_folder("--masks", options.masks,
+                        "a new folder for what the background model sees: bin000001.png of the first frame, white on black");
   command.also_writes([&options]() -> std::vector<std::string> {
     if (options.ground.ground) return ground_files(ground_command(options), options.ground);
     if (options.out.empty()) return {output_of(options).tracks};

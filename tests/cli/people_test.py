@@ -68,6 +68,38 @@ class People(unittest.TestCase):
         self.assertEqual(read[0], read[1])
         self.assertNotEqual(read[0], read[2])
 
+    def test_masks_show_the_people(self):
+        self.run_marey("simulate", "people", "-o", "film", *SMALL)
+        self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--masks", "seen", "-q")
+        names = [f"bin{frame:06}.png" for frame in range(1, 31)]
+        self.assertEqual(sorted(p.name for p in (self.folder / "seen").iterdir()), names)
+        grey = subprocess.run(["ffmpeg", "-v", "error", "-i", "seen/bin%06d.png", "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                              cwd=self.folder, capture_output=True, timeout=60, check=True).stdout
+        self.assertEqual(len(grey), 30 * 320 * 240)
+        self.assertLessEqual(set(grey), {0, 255})
+        people = [set() for _ in range(30)]
+        for line in (self.folder / "film/silhouettes.jsonl").read_text().splitlines():
+            row = json.loads(line)
+            people[row["frame"]] |= silhouette(row["size"], row["visible"])
+        hit = union = 0
+        for frame in range(30):
+            picture = grey[frame * 320 * 240:(frame + 1) * 320 * 240]
+            seen = {(i % 320, i // 320) for i, value in enumerate(picture) if value}
+            hit += len(seen & people[frame])
+            union += len(seen | people[frame])
+        print(f"masks: {hit / union:.2f} of the union with the truth")
+        self.assertGreater(hit / union, 0.5)
+
+    def test_masks_are_refused_where_there_is_nothing_to_see_or_something_to_lose(self):
+        (self.folder / "boxes.txt").write_text("1,-1,10,10,20,40,1\n2,-1,11,10,20,40,1\n")
+        said = self.run_marey("track", "--detections", "boxes.txt", "--rate", "25", "-o", "t.txt", "--masks", "seen", code=1).stderr
+        self.assertIn("detections are given", said)
+        self.run_marey("simulate", "people", "-o", "film", *SMALL)
+        self.assertIn("not empty", self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--masks", "film", code=1).stderr)
+        self.run_marey("track", "film/video.mp4", "--targets", "markers", "-o", "t.txt", "--masks", "seen", code=2)
+        self.run_marey("track", "film/rig.toml", "--ground", "-o", "t.csv", "--masks", "seen", code=2)
+        self.assertFalse((self.folder / "seen").exists() or (self.folder / "t.txt").exists())
+
     def test_what_cannot_be_is_refused(self):
         said = self.run_marey("simulate", "people", "-o", "film", "--size", "100", "100", "--height", "400", code=1).stderr
         self.assertIn("400 px tall do not fit", said)

@@ -22,8 +22,13 @@ using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 
 constexpr int kJpegQuality = 2;  // FFmpeg's scale: 2 is the best that is worth its bytes
 
+bool stays_grey(const Picture& picture) {
+  return !picture.is_colour() && picture.luma().type() == CV_8UC1;
+}
+
 /// The planes that the encoder wants, in the order of AVFrame::data.
 std::vector<cv::Mat> planes_of(const Picture& picture, bool jpeg) {
+  if (!jpeg && stays_grey(picture)) return {picture.luma()};
   const cv::Mat bgr = picture.bgr();
   cv::Mat converted;
   if (!jpeg) {
@@ -53,7 +58,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   codec->log_level_offset = AV_LOG_TRACE;  // the host program's log gets nothing of ours
   codec->width = picture.size().width;
   codec->height = picture.size().height;
-  codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_RGB24;
+  codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ420P : stays_grey(picture) ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24;
   codec->color_range = AVCOL_RANGE_JPEG;
   codec->time_base = {1, 25};
   if (jpeg) {

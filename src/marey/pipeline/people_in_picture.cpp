@@ -7,6 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
+#include "marey/draw/mask_folder.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
@@ -116,6 +117,10 @@ class PeopleInPicture final : public Stage {
       detector_ = detect::make_detector(options.detector);
       if (!options.live) detector_->prime(feed.sample_beginning());
     }
+    if (!options.masks.empty()) {
+      if (!detector_) throw Error("{}: masks are of the background model, and detections are given", options.masks);
+      masks_.emplace(options.masks);
+    }
     if (options.live) live_.emplace(options.delay);
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
@@ -128,6 +133,7 @@ class PeopleInPicture final : public Stage {
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
     const detect::Detections seen = detect(given);
+    if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
     const auto tracks = follow(given.frame, seen);
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += std::ssize(seen.detections);
@@ -144,6 +150,7 @@ class PeopleInPicture final : public Stage {
   }
 
   std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+    if (masks_) masks_->finish();
     if (live_) {
       if (live_->empty()) return nullptr;
       return std::make_unique<LiveRest>(*live_, options_.seen_only);
@@ -196,6 +203,7 @@ class PeopleInPicture final : public Stage {
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::OutlineFollower> follower_;
   std::optional<track::OutlineLog> outlines_;
+  std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
   std::optional<track::LiveTracks> live_;

@@ -26,6 +26,7 @@ struct PeopleInPictureOptions {
   bool seen_only = false;   ///< rows of those whom nobody saw at that moment are left out
   std::string beside;       ///< outlines that wait for the second pass lie in a nameless file beside this path
   bool with_lines = false;  ///< keep their measurement lines too, for an overlay
+  std::string masks = {};   ///< a folder for what the background model sees in each frame (draw/mask_folder.h); empty: none
 };
 
 /// Detections are the feed's where it brings some (another program's, or those of a detector it was given), else of background

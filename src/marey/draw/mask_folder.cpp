@@ -1,0 +1,43 @@
+#include "marey/draw/mask_folder.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/core/picture.h"
+#include "marey/draw/picture_file.h"
+
+namespace marey::draw {
+namespace {
+
+std::filesystem::path mask_path(const std::string& folder, std::int64_t index) {
+  return std::filesystem::path(folder) / fmt::format("bin{:06}.png", index + 1);
+}
+
+}  // namespace
+
+MaskFolder::MaskFolder(std::string folder) : folder_(std::move(folder)) {
+  std::error_code problem;
+  made_ = std::filesystem::create_directories(folder_, problem);
+  if (problem || !std::filesystem::is_directory(folder_)) throw Error("{}: cannot be made a folder for masks", folder_);
+  if (!std::filesystem::is_empty(folder_, problem) || problem)
+    throw Error("{}: is not empty; masks go into a folder of their own", folder_);
+}
+
+MaskFolder::~MaskFolder() {
+  if (finished_) return;
+  std::error_code ignored;
+  for (const std::int64_t index : written_) std::filesystem::remove(mask_path(folder_, index), ignored);
+  if (made_) std::filesystem::remove(folder_, ignored);  // only where it is empty
+}
+
+void MaskFolder::add(std::int64_t index, const cv::Mat& mask, cv::Size size) {
+  const Picture picture(mask.empty() ? cv::Mat(size, CV_8UC1, cv::Scalar(0)) : mask);
+  write_picture(mask_path(folder_, index).string(), picture);
+  written_.push_back(index);
+}
+
+}  // namespace marey::draw

@@ -1,0 +1,49 @@
+#include "marey/draw/mask_folder.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "marey/core/error.h"
+
+#include "support/files.h"
+
+namespace marey::draw {
+namespace {
+
+TEST(MaskFolder, ReadsBackAsGreyPicturesThatCountFromOne) {
+  const test::TemporaryFolder folder;
+  const std::string masks = folder / "deep/masks";
+  cv::Mat mask(30, 41, CV_8UC1, cv::Scalar(0));
+  mask(cv::Rect(3, 4, 10, 20)).setTo(255);
+  {
+    MaskFolder out(masks);
+    out.add(0, {}, mask.size());
+    out.add(7, mask, mask.size());
+    out.finish();
+  }
+  const cv::Mat first = cv::imread(masks + "/bin000001.png", cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(first.size(), mask.size());
+  EXPECT_EQ(cv::countNonZero(first), 0);
+  const cv::Mat eighth = cv::imread(masks + "/bin000008.png", cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(eighth.type(), CV_8UC1);
+  EXPECT_EQ(cv::norm(eighth, mask, cv::NORM_INF), 0);
+  EXPECT_THROW(MaskFolder again(masks), Error);  // what is there stays
+  EXPECT_TRUE(std::filesystem::exists(masks + "/bin000008.png"));
+}
+
+TEST(MaskFolder, LeavesNothingBehindUnfinished) {
+  const test::TemporaryFolder folder;
+  const std::string masks = folder / "masks";
+  {
+    MaskFolder(masks).add(0, {}, {8, 8});
+  }
+  EXPECT_FALSE(std::filesystem::exists(masks));
+  std::ofstream(folder / "file") << "x";
+  EXPECT_THROW(MaskFolder out(folder / "file"), Error);
+}
+
+}  // namespace
+}  // namespace marey::draw
