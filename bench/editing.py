@@ -58,14 +58,14 @@ def seconds_of(marey, take, *edits):
 
 def edits_of(markers, frames, chance, count):
     """Edits that are legal whatever came before: they name tracks by number and use none up."""
-    for i in range(count):
+    for _ in range(count):
         a, b = chance.sample(range(1, markers + 1), 2)
         first = chance.randrange(frames - 200)
         kind = chance.random()
         if kind < 0.5:
             yield f"swap #{a} #{b} {first}:{first + chance.randint(1, 150)}"
         elif kind < 0.9:
-            yield f"rename #{a} N{i}"
+            yield f"rename #{a} N{chance.getrandbits(48):x}"
         else:
             yield f"filter #{a} 6 {first}:{first + 150}"
 

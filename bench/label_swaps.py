@@ -5,10 +5,9 @@ Usage: label_swaps.py MAREY DATA [--subjects HC002D,...] [--swaps 20] [--seed 1]
 
 DATA is the folder that tests call MAREY_DATA. In each child's walk straight on, two markers within 0.4 m of each other exchange names, `swaps` times:
 both are hidden for 0.03 to 0.15 s where they are nearest within a random second, and come back under each other's name, for 0.1 to 0.5 s or to the end. A
-set learned from the child's turn (or static trial) then names the walk anew. A swap is put right where no point of the two bears the other's name any more; false is a stretch of points
-that had the right name before and has another after. Beside it nimblephysics' MarkerFixer, which wants no set, where this Python has it
-(`pip install --no-deps nimblephysics`), and a naive peer: a name belongs to the point nearest to where its
-constant velocity leads, from the first frame on, which knows no bodies.
+set learned from the child's turn (or static trial) then names the walk anew. A swap is put right where no point of the two bears the other's name any
+more; false is a stretch of points that had the right name before and has another after. Beside it a naive peer: a name belongs to the point nearest to
+where its constant velocity leads, from the first frame on, which knows no bodies.
 """
 import argparse
 import csv
@@ -19,11 +18,6 @@ import subprocess
 import tempfile
 
 from labels import key, read, write
-
-try:
-    from nimblephysics_libs._nimblephysics.biomechanics import MarkerFixer
-except ImportError:
-    MarkerFixer = None
 
 NEAR_M = 0.4
 
@@ -118,18 +112,6 @@ def by_velocity(before):
     return named
 
 
-def by_nimble(before):
-    import numpy
-    frames = {}
-    for label, places in before.items():
-        for frame, place in places.items():
-            frames.setdefault(frame, {})[label] = numpy.array(place)
-    first, last = min(frames), max(frames)
-    report = MarkerFixer.generateDataErrorsReport([frames.get(f, {}) for f in range(first, last + 1)], 0.01, rippleReduce=False)
-    return [(first + step, label, tuple(float(v) for v in place)) for step in range(report.getNumTimesteps())
-            for label, place in report.getMarkerMapOnTimestep(step).items()]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("marey")
@@ -145,12 +127,9 @@ def main():
         points, teacher = (read(options.marey, next(folder.glob(kind + "_*.c3d")), work) for kind in ("straight", options.teacher))
         before, swaps = inject(points, options.swaps, random.Random(f"{options.seed} {subject}"))
         minutes = len({f for places in points.values() for f in places}) / 100 / 60
-        all_named = [("marey label", by_marey(options.marey, teacher, before, work)), ("naive peer", by_velocity(before))]
-        if MarkerFixer is not None:
-            all_named.append(("nimblephysics", by_nimble(before)))
-        for name, named in all_named:
+        for name, named in (("marey label", by_marey(options.marey, teacher, before, work)), ("naive peer", by_velocity(before))):
             right, false, share = judge(named, points, before, swaps)
-            print(f"{subject} {name:13}  put right {right:2} of {len(swaps)}  false {false} in {60 * minutes:.1f} s  points right {100 * share:.2f} %", flush=True)
+            print(f"{subject} {name:11}  put right {right:2} of {len(swaps)}  false {false} in {60 * minutes:.1f} s  points right {100 * share:.2f} %", flush=True)
 
 
 if __name__ == "__main__":

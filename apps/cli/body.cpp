@@ -77,6 +77,10 @@ void run(DefineCommand& command) {
 
 void print_followed(const FollowCommand& command, const pipeline::FollowBodiesSummary& summary) {
   for (const auto& one : summary.bodies) {
+    if (one.counts.measured + one.counts.predicted == 0) {
+      fmt::print(stderr, "{}: not found in any of {} frames\n", one.body.label, summary.instants);
+      continue;
+    }
     fmt::print(stderr, "{}: measured in {} of {} frames, predicted in {}, lost {} times; markers {:.2f} mm from their places\n",
                one.body.label, one.counts.measured, summary.instants, one.counts.predicted, one.counts.lost, 1000 * one.error_m);
     if (one.counts.corrected > 0)

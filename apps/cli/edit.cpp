@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -84,6 +86,35 @@ void do_edits(const EditCommand& command) {
   say_head(command);
 }
 
+/// The edits that `other` has counting and `history` has not, in words.
+void say_without(const pipeline::EditHistory& history, const pipeline::EditHistory& other, std::string_view what) {
+  constexpr std::size_t kMostSaid = 12;
+  std::vector<EditLine> lines = pipeline::lines_of(other);
+  const auto& counting = history.counting;
+  std::erase_if(lines, [&](const EditLine& line) {
+    return !line.counts || std::find(counting.begin(), counting.end(), line.id) != counting.end();
+  });
+  for (std::size_t i = 0; i < std::min(kMostSaid, lines.size()); ++i)
+    fmt::print(stderr, "{}: {:4}  {}\n", what, lines[i].id, lines[i].words);
+  if (lines.size() > kMostSaid) fmt::print(stderr, "{}: {} more\n", what, lines.size() - kMostSaid);
+}
+
+/// --undo, --redo, --to.
+void move(const EditCommand& command) {
+  const pipeline::EditHistory before = pipeline::edit_history(command.take);
+  if (command.to) {
+    pipeline::set_head(command.take, *command.to);
+  } else {
+    pipeline::move_head(command.take, command.undo ? -1 : 1);
+  }
+  if (!command.json && !command.quiet) {
+    const pipeline::EditHistory now = pipeline::edit_history(command.take);
+    say_without(now, before, "undone");
+    say_without(before, now, "done again");
+  }
+  say_head(command);
+}
+
 void run(const EditCommand& command) {
   const bool moves = command.undo || command.redo || command.to;
   const bool edits = !command.edits.empty() || !command.script.empty();
@@ -91,12 +122,7 @@ void run(const EditCommand& command) {
     throw WrongUsage("--undo, --redo, --to and --list stand alone, without edits");
   if (edits) return do_edits(command);
   if (!moves) return list(command);
-  if (command.to) {
-    pipeline::set_head(command.take, *command.to);
-  } else {
-    pipeline::move_head(command.take, command.undo ? -1 : 1);
-  }
-  say_head(command);
+  move(command);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class Edit(unittest.TestCase):
 
     def test_info_says_what_the_edits_have_left_and_what_they_are(self):
         marey("edit", self.take, "rename A ankle", "delete B", "fill all", "rename C hip")
-        marey("edit", self.take, "--undo")
+        self.assertIn("undone:    4  rename C to hip\n", marey("edit", self.take, "--undo").stderr)
         said = json.loads(marey("info", self.take, "--json").stdout)
         self.assertEqual([(track["label"], track["measured"], track["filled"]) for track in said["tracks"]], [("ankle", FRAMES, 0), ("C", FRAMES - 5, 5)])
         self.assertEqual([edit["counts"] for edit in said["edits"]], [True, True, True, False])

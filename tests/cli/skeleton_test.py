@@ -194,7 +194,13 @@ class Skeleton(unittest.TestCase):
         self.assertNotIn("taken for up", self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.mot").stderr)
         self.marey("convert", "walk.c3d", "walk_y.trc", "--up", "y", "-q")
         self.assertIn("walk_y.trc: z was taken for up, and the person's up is along y: give --up y", self.marey("gait", "walk_y.trc", code=1).stderr)
-        self.marey("gait", "walk_y.trc", "--up", "y", "-q")
+        self.assertNotIn("does it lie down", self.marey("gait", "walk_y.trc", "--up", "y", "-q").stderr)
+        self.assertIn("by the --up that was given: is that right?", self.marey("gait", "walk_y.trc", "--up", "z", code=1).stderr)
+        said = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--up", "y", "-o", "walk.mot").stderr
+        self.assertIn("--up y was given, and the skeleton's up is along z: does the person lie down?", said)
+        self.assertNotIn("how wide", said)  # standing.c3d tells it
+        self.marey("convert", "standing.c3d", "standing.trc", "-q")
+        self.assertIn("standing.trc: how wide knees and ankles are is not known", self.marey("solve", "walk.c3d", "--static", "standing.trc", "-o", "walk.mot").stderr)
 
     def test_who_the_static_trial_is_of_and_what_it_lacks(self):
         other = self.marey("solve", "walk.c3d", "--static", "other.c3d", "-o", "x.mot", "-q").stderr

@@ -195,6 +195,18 @@ std::optional<Vector<3>> end_of(gait::SegmentId segment, const gait::MarkerPlace
   return std::nullopt;
 }
 
+/// What is to be said where neither the file nor markers on both sides tell how wide the legs' joints are.
+std::optional<std::string> widths_assumed(const gait::GaitSubject& subject, const std::string& path) {
+  const auto known = [](const std::optional<double>& width) { return width.has_value(); };
+  const auto all = [&](const auto& widths) { return std::all_of(widths.begin(), widths.end(), known); };
+  if (all(subject.knee_width) && all(subject.ankle_width)) return std::nullopt;
+  return fmt::format(
+      "{}: how wide knees and ankles are is not known (Vicon's C3D files tell it, markers on both sides of a joint show it): "
+      "shares "
+      "of the legs' length are taken",
+      path);
+}
+
 }  // namespace
 
 HumanSkeleton human_from_static(const std::string& path, const HumanOptions& options, const Hooks& hooks) {
@@ -208,12 +220,13 @@ HumanSkeleton human_from_static(const std::string& path, const HumanOptions& opt
   human.marker_set = set.title();
   human.set = &set;
   human.standing = standing;
+  if (auto sentence = widths_assumed(subject, path)) human.warnings.push_back(std::move(*sentence));
   gait::GaitPose pose = gait::pose_of(model, subject);
   need_a_pelvis(pose, standing, set, path);
   if (!options.motion.empty()) {
     const GaitMarkers moving = read_gait_markers(options.motion, options.up, hooks, set);
     pose = pose_by_motion(standing, model, subject, moving, human.joints);
-    human.warnings = moving.warnings;
+    human.warnings.insert(human.warnings.end(), moving.warnings.begin(), moving.warnings.end());
     if (const auto other = other_person(standing, moving))
       human.warnings.push_back(
           fmt::format("{} is of another person than {}, or markers were put on anew: {}", options.motion, path, *other));

@@ -167,27 +167,35 @@ void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
 }
 
 /// Throws Error where nothing of a walk is left to be told.
-void need_steps(const std::string& recording, const GaitMeasure& measure) {
-  if (measure.events.empty())
-    throw Error(
-        "{}: no steps were found: HEE and TOE of a side are needed, and a person who walks; --angles writes the angles of one "
-        "who does not",
-        recording);
+void need_steps(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
+  if (!measure.events.empty()) return;
+  const char* hint = measure.lies            ? "; it lies, by the --up that was given: is that right?"
+                     : output.angles.empty() ? "; --angles writes the angles of one who does not"
+                                             : "; --angles alone does not ask for any";
+  throw Error("{}: no steps were found: HEE and TOE of a side are needed, and a person who walks{}", recording, hint);
 }
 
-/// Throws Error where the pelvis' up is the recording's y, which was not said.
-void need_up(const std::string& recording, const GaitMarkers& markers, const gait::GaitSubject& subject) {
+/// Throws Error where the pelvis' up is the recording's y, which was not said. Where it lies across the up that was said, that is
+/// returned, to be told: the person may lie down.
+std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& said,
+                                     const GaitMarkers& markers, const gait::GaitSubject& subject) {
   constexpr double kMostly = 0.8;  // cosine
   Vector<3> up = Vector<3>::Zero();
   for (const gait::MarkerPlaces& row : markers.rows) {
     if (const auto pelvis = gait::pose_of(row, subject)[gait::SegmentId::pelvis]) up += pelvis->rotation.col(2);
   }
-  if (up.norm() > 0 && up.normalized().y() > kMostly)
+  if (!(up.norm() > 0)) return std::nullopt;
+  // A file's y is z here where its y was taken for up, and its z is then −y.
+  const bool y = said == format::UpAxis::y;
+  if (!((y ? -1 : 1) * up.normalized().y() > kMostly)) return std::nullopt;
+  if (!said)
     throw Error("{}: z was taken for up, and the person's up is along y: give --up y (or --up z, if it lies down)", recording);
+  return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, y ? "y" : "z",
+                     y ? "z" : "y");
 }
 
-void need_a_cycle(const std::string& recording, const GaitMeasure& measure) {
-  need_steps(recording, measure);
+void need_a_cycle(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
+  need_steps(recording, measure, output);
   if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
     return;
   if (!measure.cycles.cycles.empty()) throw Error("{}: no angle is known over a whole gait cycle: markers are missing", recording);
@@ -223,7 +231,10 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
     measure.subject.sole_from_ankle_toe = options.subject.sole_from_ankle_toe;
   }
   take_soles(recording, measure.subject);
-  if (!options.up) need_up(recording, markers, measure.subject);
+  if (auto across = up_across(recording, options.up, markers, measure.subject)) {
+    measure.lies = true;
+    measure.warnings.push_back(std::move(*across));
+  }
   const gait::FeetPaths feet = feet_of(markers);
   measure.angles = angle_curves(markers, measure.subject, feet.sacrum);
   const bool any = std::any_of(measure.angles.begin(), measure.angles.end(), [](const gait::AngleCurve& curve) {
@@ -244,10 +255,10 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
 
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
   GaitMeasure measure = measure_gait(recording, options, hooks);
-  if (output.angles.empty() && output.c3d.empty()) need_steps(recording, measure);
+  if (output.angles.empty() && output.c3d.empty()) need_steps(recording, measure, output);
   if (!output.angles.empty()) write_angles(output.angles, measure);
   if (!output.c3d.empty()) write_gait_c3d(output.c3d, recording, options.up, measure);
-  if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure);
+  if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure, output);
   if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
   if (!output.report.empty()) write_gait_report(output.report, recording, measure);
   return measure;

@@ -28,6 +28,7 @@ struct GaitOutput {
 };
 
 struct GaitMeasure {
+  bool lies = false;  ///< the person's up is across the recording's, as far as was said which that is
   std::int64_t frames = 0;
   double rate_hz = 0;
   double begin_s = 0;            ///< the recording's time of the first row

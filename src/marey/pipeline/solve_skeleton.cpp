@@ -256,7 +256,7 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
 }
 
 /// Where the skeleton's up is mostly the recording's other axis: that one is up, unless the person lies down.
-std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, const std::string& recording) {
+std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, bool said, const std::string& recording) {
   constexpr std::size_t kLooks = 64;
   constexpr double kMostly = 0.8;  // cosine
   const auto& rows = solved.motion.rows;
@@ -269,6 +269,9 @@ std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxi
   const double other = taken == UpAxis::z ? up.normalized().y() : -up.normalized().y();
   if (!(other > kMostly)) return std::nullopt;
   const char *named = taken == UpAxis::z ? "z" : "y", *there = taken == UpAxis::z ? "y" : "z";
+  if (said)
+    return fmt::format("{}: --up {} was given, and the skeleton's up is along {}: does the person lie down?", recording, named,
+                       there);
   return fmt::format("{}: {} was taken for up, and the skeleton's up is along {}: is {} up in this file? then give --up {}",
                      recording, named, there, there, there);
 }
@@ -293,9 +296,8 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
-  if (!given.up) {
-    if (auto sentence = lies_on_its_side(solved, *options.up, recording)) solved.summary.warnings.push_back(std::move(*sentence));
-  }
+  if (auto sentence = lies_on_its_side(solved, *options.up, given.up.has_value(), recording))
+    solved.summary.warnings.push_back(std::move(*sentence));
   solved.summary.joints = std::move(found.joints);
   solved.summary.marker_set = std::move(found.marker_set);
   if (calibration) {
