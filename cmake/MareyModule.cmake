@@ -58,14 +58,15 @@ function(marey_write_units target group most)
 endfunction()
 
 # With MAREY_SANITIZE_FOLDERS: the unit is built with the sanitizers where one of its sources lies in those. All others are compiled as in a release, so
-# that a compiler's cache has them, and tests run nearly as fast.
+# that a compiler's cache has them, and tests run nearly as fast. Eigen would allocate in another way under the address sanitizer than in the units without
+# it; it is told that memory is aligned, as it is there too.
 function(marey_sanitize_unit target unit)
   foreach(source IN LISTS ARGN)
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
     cmake_path(GET source PARENT_PATH folder)
     if(folder IN_LIST MAREY_SANITIZE_FOLDERS)
       set_source_files_properties(${unit} TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS
-        "-O1;-g1;-U_FORTIFY_SOURCE;-fsanitize=${MAREY_SANITIZE};-fno-omit-frame-pointer;-fno-sanitize-recover=all;-Wno-error;-Wno-maybe-uninitialized")
+        "-O1;-g1;-U_FORTIFY_SOURCE;-fsanitize=${MAREY_SANITIZE};-fno-omit-frame-pointer;-fno-sanitize-recover=all;-DEIGEN_MALLOC_ALREADY_ALIGNED=1;-Wno-error;-Wno-maybe-uninitialized")
       return()
     endif()
   endforeach()

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/room_files.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -48,12 +48,20 @@ simulate::room::RoomOptions::Bump bump_of(const std::string& text) {
   return {.camera = static_cast<int>(values[0]) - 1, .time_s = values[1], .angle = values[2]};
 }
 
+bool scene_of_people(simulate::room::RoomMotion motion) {
+  using enum simulate::room::RoomMotion;
+  return motion != wand && motion != ground && motion != cloud;
+}
+
 simulate::room::RoomOptions room_of(const SimulateRoom& command) {
   simulate::room::RoomOptions room = command.room;
   room.picture = {command.size[0], command.size[1]};
   room.volume = {command.volume[0], command.volume[1], command.volume[2]};
   if (!command.wand.empty()) room.wand = marker_places_of(command.wand);
   if (!command.bump.empty()) room.bump = bump_of(command.bump);
+  const bool people = scene_of_people(room.motion);
+  if (!people && (room.actors > 1 || room.skin_m > 0))
+    throw WrongUsage("{}", "--actors and --skin are of people: give a --motion of theirs");
   if (room.bump && room.bump->camera >= room.cameras)
     throw WrongUsage("--bump {}: there are {} cameras", command.bump, room.cameras);
   return room;
@@ -83,11 +91,16 @@ void add_scene(Command& room, SimulateRoom& options) {
   std::vector<std::pair<std::string, simulate::room::RoomMotion>> motions;
   for (const simulate::room::NamedRoomMotion& known : simulate::room::room_motions())
     motions.emplace_back(known.name, known.motion);
-  room.choice("--motion", scene.motion, motions,
-              "a person with markers who walks, waves or stands still; a wand that is waved; an L-frame on the ground; a cloud of "
-              "free markers");
+  room.choice(
+      "--motion", scene.motion, motions,
+      "a person with markers who walks, runs, waves, kneels down, rolls on the floor or stands still; a wand that is waved; an "
+      "L-frame on the ground; a cloud of free markers");
   room.whole("--cameras", scene.cameras, "N", 1, 256, "how many, round the volume");
-  room.whole("--markers", scene.markers, "N", 1, 2000, "how many, on the body or free");
+  room.whole("--markers", scene.markers, "N", 1, 2000, "how many, on each body or free");
+  room.whole("--actors", scene.actors, "N", 1, 20, "people who do the same, apart from each other");
+  room.whole("--props", scene.props, "N", 0, 200, "rigid bodies of five markers that fly through the volume");
+  room.number("--skin", scene.skin_m, "m", closed(0, 0.1),
+              "how far a thigh's skin carries its markers at a bend of 90°; other limbs' less");
   room.text("--wand", options.wand, "the wand's markers, m along it, as 0,0.12,0.30 (default), or led: a single light")
       .check(marker_places_of);
   room.whole("--frames", scene.frames, "N", 1, 100'000'000, "length");
@@ -110,6 +123,7 @@ void add_troubles(Command& room, SimulateRoom& options) {
             "CAMERA,SECONDS,ANGLE: somebody runs into a camera (its number from 1), which turns by ANGLE rad")
       .check(bump_of);
   room.flag("--no-occlusion", scene.occlusion, "limbs hide nothing", false);
+  room.flag("--unnamed", options.files.unnamed, "the points without names too, as tracks that end at gaps, with ghosts among them");
   room.flag("--videos", options.files.videos, "render a video of each camera too");
 }
 

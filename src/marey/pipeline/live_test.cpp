@@ -14,7 +14,7 @@
 #include "marey/core/error.h"
 #include "marey/core/recording_sink.h"
 #include "marey/pipeline/live_feeds.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/room_files.h"
 #include "marey/simulate/random.h"
 #include "marey/source/live/device_clock.h"
 

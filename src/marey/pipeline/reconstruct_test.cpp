@@ -17,7 +17,7 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/take_file.h"
 #include "marey/geometry/layout.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/room_files.h"
 #include "marey/simulate/room/room.h"
 
 #include "support/data.h"

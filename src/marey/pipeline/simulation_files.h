@@ -6,7 +6,6 @@
 #include "marey/core/hooks.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/simulate/people/people_film.h"
-#include "marey/simulate/room/room_film.h"
 
 namespace marey::pipeline {
 
@@ -29,22 +28,5 @@ void write_markers(const simulate::markers::MarkerScene& scene, const std::strin
 ///                      within the picture as COCO's run lengths (column by column, background first)
 /// Throws Error where a file cannot be written.
 void film_people(const simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks = {});
-
-struct RoomFilesOptions {
-  bool videos = false;  ///< renders camN.mp4, and makes it each camera's source
-  simulate::room::RoomFilmOptions film;
-};
-
-/// Writes a simulated room into a folder, which must exist:
-///   rig.toml          the true rig; rig_after.toml too, where a camera is bumped
-///   start.toml        what is known before a calibration: names, sizes, rates, lenses
-///   observations.csv  camera,frame,x,y: what the cameras report, from top to bottom in each picture
-///   blobs.csv         the same rows with their markers: camera,frame,x,y,marker (blank for ghosts)
-///   labels.csv        label,x,y,z: where each marker is at the beginning, m
-///   skeleton.toml     the body that bears the markers, where one does
-///   truth.csv         frame,time,label,x,y,z,cameras: m, by the rig's clock; by how many cameras it can be seen
-/// Memory does not grow with the length. Throws Error where a file cannot be written.
-void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},
-                const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

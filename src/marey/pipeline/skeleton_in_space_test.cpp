@@ -11,7 +11,7 @@
 #include "marey/format/motion/marker_set.h"
 #include "marey/format/take/take_file.h"
 #include "marey/pipeline/reconstruct.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/room_files.h"
 #include "marey/pipeline/solve_skeleton.h"
 #include "marey/simulate/random.h"
 

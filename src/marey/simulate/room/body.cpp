@@ -1,7 +1,7 @@
-// A body of 15 capsules (a line and a radius) joined at the usual joints, moved by sines as a walker's joints nearly are: hip and
-// knee after Winter, "Biomechanics and Motor Control of Human Movement", reduced to their first harmonics. Segment lengths are the
-// usual shares of a height of 1.75 m. A marker is hidden where the line to the camera comes nearer to a capsule's line than its
-// radius: 15 distances between two segments for each marker and camera.
+// A body of 15 capsules (a line and a radius) joined at the usual joints. Segment lengths are the usual shares of a height of
+// 1.75 m. A marker is hidden where the line to the camera comes nearer to a capsule's line than its radius: 15 distances between
+// two segments for each marker and camera. Skin slides over the bone as joints bend, most on the thigh (Leardini et al., "Human
+// movement analysis using stereophotogrammetry. Part 3", Gait & Posture 21, 2005: up to 30 mm there, 10 to 15 mm on the shank).
 #include "marey/simulate/room/body.h"
 
 #include <algorithm>
@@ -13,95 +13,11 @@
 namespace marey::simulate::room {
 namespace {
 
-enum Limb {
-  pelvis,
-  chest,
-  head,
-  arm_l,
-  forearm_l,
-  hand_l,
-  arm_r,
-  forearm_r,
-  hand_r,
-  thigh_l,
-  shank_l,
-  foot_l,
-  thigh_r,
-  shank_r,
-  foot_r
-};
-
-constexpr double kHipHeight = 0.93, kHipAside = 0.09, kShoulderUp = 0.40, kShoulderAside = 0.19;
 constexpr double kStandOff = 0.008;  // m from the skin to a marker's centre
-
-Matrix<3> turn_left(double angle) {  // about z
-  return geometry::rotation_from({0, 0, angle});
-}
-Matrix<3> swing_ahead(double angle) {  // what hangs down moves ahead
-  return geometry::rotation_from({0, -angle, 0});
-}
-Matrix<3> lift_left(double angle) {  // what hangs down moves to the left
-  return geometry::rotation_from({angle, 0, 0});
-}
-
-struct Joints {
-  double bob = 0;            // m that the pelvis is above its height
-  double lean = 0, yaw = 0;  // of the chest against the pelvis
-  double hip[2] = {0, 0};    // ahead; [0] is left
-  double knee[2] = {0, 0};   // bent
-  double swing[2] = {0, 0};  // shoulder, ahead
-  double aside[2] = {0, 0};  // shoulder, away from the body
-  double elbow[2] = {0, 0};  // bent ahead
-  double wave[2] = {0, 0};   // forearm, away from the body
-};
-
-const Vector<3>& end_of(int limb) {
-  return limb_shapes()[static_cast<std::size_t>(limb)].end;
-}
-
-void place_arm(BodyPose& pose, const Joints& joints, int side) {
-  const int arm = side == 0 ? arm_l : arm_r;
-  const double left = side == 0 ? 1 : -1;
-  const Rigid3& trunk = pose[chest];
-  Rigid3& upper = pose[static_cast<std::size_t>(arm)];
-  upper.translation = trunk * Vector<3>(0, left * kShoulderAside, kShoulderUp);
-  upper.rotation = trunk.rotation * lift_left(left * joints.aside[side]) * swing_ahead(joints.swing[side]);
-  Rigid3& fore = pose[static_cast<std::size_t>(arm) + 1];
-  fore.translation = upper * end_of(arm);
-  fore.rotation = upper.rotation * lift_left(left * joints.wave[side]) * swing_ahead(joints.elbow[side]);
-  Rigid3& hand = pose[static_cast<std::size_t>(arm) + 2];
-  hand.translation = fore * end_of(arm + 1);
-  hand.rotation = fore.rotation;
-}
-
-void place_leg(BodyPose& pose, const Joints& joints, int side) {
-  const int thigh = side == 0 ? thigh_l : thigh_r;
-  const Rigid3& hips = pose[pelvis];
-  Rigid3& upper = pose[static_cast<std::size_t>(thigh)];
-  upper.translation = hips * Vector<3>(0, side == 0 ? kHipAside : -kHipAside, 0);
-  upper.rotation = hips.rotation * swing_ahead(joints.hip[side]);
-  Rigid3& shank = pose[static_cast<std::size_t>(thigh) + 1];
-  shank.translation = upper * end_of(thigh);
-  shank.rotation = upper.rotation * swing_ahead(-joints.knee[side]);
-  Rigid3& foot = pose[static_cast<std::size_t>(thigh) + 2];
-  foot.translation = shank * end_of(thigh + 1);
-  foot.rotation = shank.rotation;
-}
-
-BodyPose pose_of(const BodyStance& stance, const Joints& joints) {
-  BodyPose pose;
-  pose[pelvis].translation = {stance.x, stance.y, kHipHeight + joints.bob};
-  pose[pelvis].rotation = turn_left(stance.heading);
-  pose[chest].translation = pose[pelvis] * Vector<3>(0, 0, 0.12);
-  pose[chest].rotation = pose[pelvis].rotation * turn_left(joints.yaw) * swing_ahead(-joints.lean);
-  pose[head].translation = pose[chest] * Vector<3>(0.02, 0, 0.55);
-  pose[head].rotation = pose[pelvis].rotation;
-  for (const int side : {0, 1}) {
-    place_arm(pose, joints, side);
-    place_leg(pose, joints, side);
-  }
-  return pose;
-}
+constexpr std::array<int, kLimbs> kParents{-1,        pelvis, chest,   chest,   arm_l,  forearm_l, chest,  arm_r,
+                                           forearm_r, pelvis, thigh_l, shank_l, pelvis, thigh_r,   shank_r};
+// Of what a thigh's skin slides: by limb.
+constexpr std::array<double, kLimbs> kSkin{0.3, 0.3, 0.05, 0.6, 0.4, 0.1, 0.6, 0.4, 0.1, 1, 0.5, 0.15, 1, 0.5, 0.15};
 
 /// Squared distance between two lines' pieces (Ericson, "Real-Time Collision Detection", §5.1.9).
 double squared_distance(const Vector<3>& p, const Vector<3>& p_end, const Vector<3>& q, const Vector<3>& q_end) {
@@ -170,46 +86,6 @@ const std::array<LimbShape, kLimbs>& limb_shapes() {
   return kShapes;
 }
 
-BodyPose walking_pose(const BodyStance& stance, double phase) {
-  Joints joints;
-  joints.bob = 0.02 * std::cos(2 * phase);
-  joints.lean = 0.06;
-  joints.yaw = 0.10 * std::sin(phase);
-  for (const int side : {0, 1}) {
-    const double own = phase + (side == 0 ? 0 : std::numbers::pi);
-    joints.hip[side] = 0.10 + 0.42 * std::sin(own);
-    joints.knee[side] = 0.12 + 0.45 * (1 + std::cos(own)) / 2;  // most where the leg swings forward
-    joints.swing[side] = -0.40 * std::sin(own);
-    joints.aside[side] = 0.12;
-    joints.elbow[side] = 0.35 - 0.15 * std::sin(own);
-  }
-  return pose_of(stance, joints);
-}
-
-BodyPose waving_pose(const BodyStance& stance, double time_s) {
-  Joints joints;
-  joints.yaw = 0.15 * std::sin(1.1 * time_s);
-  for (const int side : {0, 1}) {
-    const double own = 5.2 * time_s + 1.3 * side;
-    joints.hip[side] = 0.01;
-    joints.knee[side] = 0.02;
-    joints.swing[side] = 0.2 * std::sin(0.7 * own);
-    joints.aside[side] = 1.5 + 0.25 * std::sin(0.5 * own);
-    joints.elbow[side] = 0.15;
-    joints.wave[side] = 1.2 + 0.5 * std::sin(own);
-  }
-  return pose_of(stance, joints);
-}
-
-BodyPose standing_pose(const BodyStance& stance) {
-  Joints joints;
-  for (const int side : {0, 1}) {
-    joints.aside[side] = 1.2;
-    joints.elbow[side] = 0.1;
-  }
-  return pose_of(stance, joints);
-}
-
 std::vector<BodyMarker> place_markers(int count, Random& random) {
   const BodyPose upright = standing_pose({});
   std::vector<BodyMarker> markers;
@@ -232,9 +108,7 @@ std::vector<BodyMarker> place_markers(int count, Random& random) {
 }
 
 Skeleton body_skeleton(std::span<const BodyMarker> markers) {
-  constexpr std::array<int, kLimbs> kParents{-1,        pelvis, chest,   chest,   arm_l,  forearm_l, chest,  arm_r,
-                                             forearm_r, pelvis, thigh_l, shank_l, pelvis, thigh_r,   shank_r};
-  const BodyPose rest = pose_of({}, {});
+  const BodyPose rest = upright_pose({});
   Skeleton skeleton;
   skeleton.name = "body";
   const auto add_axis = [&](Segment& segment, bool turns, int axis) {
@@ -261,6 +135,42 @@ Skeleton body_skeleton(std::span<const BodyMarker> markers) {
   }
   for (const BodyMarker& marker : markers) skeleton.markers.push_back({marker.label, marker.limb, marker.in_limb, 1});
   return skeleton;
+}
+
+namespace {
+
+/// Of the limb against the one it hangs on; the pelvis' against the world.
+Matrix<3> turn_of(const BodyPose& pose, std::size_t limb) {
+  if (kParents[limb] < 0) return pose[limb].rotation;
+  return pose[static_cast<std::size_t>(kParents[limb])].rotation.transpose() * pose[limb].rotation;
+}
+
+}  // namespace
+
+std::vector<double> body_coordinates(const BodyPose& pose) {
+  std::vector<double> coordinates;
+  for (std::size_t limb = 0; limb < kLimbs; ++limb) {
+    if (limb == pelvis) coordinates.insert(coordinates.end(), pose[limb].translation.begin(), pose[limb].translation.end());
+    if (limb == hand_l || limb == hand_r || limb == foot_l || limb == foot_r) continue;
+    const Matrix<3> turn = turn_of(pose, limb);  // Rz Ry Rx
+    coordinates.push_back(std::atan2(turn(1, 0), turn(0, 0)));
+    coordinates.push_back(-std::asin(std::clamp(turn(2, 0), -1.0, 1.0)));
+    coordinates.push_back(std::atan2(turn(2, 1), turn(2, 2)));
+  }
+  return coordinates;
+}
+
+Vector<3> on_skin(const BodyPose& pose, const BodyMarker& marker, double skin_m) {
+  const auto limb = static_cast<std::size_t>(marker.limb);
+  if (skin_m <= 0) return pose[limb] * marker.in_limb;
+  double bend = limb == pelvis ? 0 : geometry::angle_axis_of(turn_of(pose, limb)).norm();
+  for (std::size_t other = 0; other < kLimbs; ++other) {
+    if (kParents[other] == marker.limb) bend = std::max(bend, geometry::angle_axis_of(turn_of(pose, other)).norm());
+  }
+  const double slid = skin_m * kSkin[limb] * std::min(1.0, bend / (std::numbers::pi / 2));
+  const Vector<3> along = limb_shapes()[limb].end.normalized();
+  const Vector<3> out = (marker.in_limb - along * along.dot(marker.in_limb)).normalized();
+  return pose[limb] * (marker.in_limb - slid * (0.9 * along + 0.436 * along.cross(out)));  // towards the joint, and round the limb
 }
 
 bool hidden_by_body(const BodyPose& pose, const Vector<3>& from, const Vector<3>& to) {

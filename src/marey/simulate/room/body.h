@@ -8,12 +8,10 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/skeleton.h"
-#include "marey/geometry/rigid.h"
 #include "marey/simulate/random.h"
+#include "marey/simulate/room/body_pose.h"
 
 namespace marey::simulate::room {
-
-constexpr int kLimbs = 15;
 
 /// A part of the body: a line from its joint, thickened to `radius` m. Its frame has the origin in the joint.
 struct LimbShape {
@@ -22,21 +20,6 @@ struct LimbShape {
   double radius;  ///< m
 };
 const std::array<LimbShape, kLimbs>& limb_shapes();
-
-/// Where every limb is: world_from_limb, in m.
-using BodyPose = std::array<Rigid3, kLimbs>;
-
-/// A person of 1.75 m, the pelvis over (x, y), that faces along `heading` (rad from the x axis).
-struct BodyStance {
-  double x = 0, y = 0, heading = 0;
-};
-
-/// `phase` in rad, one double step a turn.
-BodyPose walking_pose(const BodyStance& stance, double phase);
-/// Both arms wave beside the head; `time_s` counts.
-BodyPose waving_pose(const BodyStance& stance, double time_s);
-/// Upright, the arms spread aside.
-BodyPose standing_pose(const BodyStance& stance);
 
 /// A marker on the body: its centre lies a little outside the limb.
 struct BodyMarker {
@@ -51,6 +34,13 @@ std::vector<BodyMarker> place_markers(int count, Random& random);
 /// The body as a skeleton, its segments the limbs in their order: at rest upright with the arms down, the pelvis free, hands and
 /// feet fixed, everything else balls.
 Skeleton body_skeleton(std::span<const BodyMarker> markers);
+
+/// What the skeleton's coordinates are in a pose: m of the pelvis, rad of each joint.
+std::vector<double> body_coordinates(const BodyPose& pose);
+
+/// Where a marker is, m, with the skin that bears it: a thigh's slides by `skin_m` at a bend of 90° or more (other limbs' less),
+/// towards the joint that the limb hangs on and a little round the limb.
+Vector<3> on_skin(const BodyPose& pose, const BodyMarker& marker, double skin_m);
 
 /// Whether some limb stands between two points.
 bool hidden_by_body(const BodyPose& pose, const Vector<3>& from, const Vector<3>& to);

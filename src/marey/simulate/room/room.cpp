@@ -13,6 +13,7 @@
 
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/body.h"
+#include "marey/simulate/room/room_cast.h"
 #include "marey/simulate/room/room_rig.h"
 
 namespace marey::simulate::room {
@@ -28,25 +29,6 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
   return x ^ (x >> 31);
 }
 
-/// A smooth path to and fro that comes near every place between −1 and 1 in time: two sines of incommensurate rates.
-struct Sway {
-  double slow, quick, slow_phase, quick_phase;  // rad/s, rad
-
-  static Sway drawn(double rate, Random& random) {
-    return {rate * random.uniform(0.8, 1.2), rate * random.uniform(1.9, 2.6), random.uniform(0, 2 * kPi),
-            random.uniform(0, 2 * kPi)};
-  }
-  double at(double t) const { return 0.72 * std::sin(slow * t + slow_phase) + 0.28 * std::sin(quick * t + quick_phase); }
-};
-
-struct Drift {
-  std::array<Sway, 3> axes;
-  static Drift drawn(double rate, Random& random) {
-    return {{Sway::drawn(rate, random), Sway::drawn(rate, random), Sway::drawn(rate, random)}};
-  }
-  Vector<3> at(double t) const { return {axes[0].at(t), axes[1].at(t), axes[2].at(t)}; }
-};
-
 }  // namespace
 
 struct RoomScene::Parts {
@@ -54,42 +36,41 @@ struct RoomScene::Parts {
   Rig rig, after_bump;
   std::vector<Camera> cameras, cameras_after;
   std::vector<std::string> labels;
-  std::vector<BodyMarker> body;
+  std::vector<RoomActor> actors;
+  std::vector<Body> props;
+  std::vector<RoomProp> flying;  // the same
   std::vector<Drift> cloud;
   Drift wand_place, wand_turn;
-  double first_angle = 0, step_phase = 0;  // of the walk
 
-  bool has_body() const { return !body.empty(); }
   bool is_bumped(double time_s) const { return options.bump && time_s >= options.bump->time_s; }
   const Camera& camera(int index, double time_s) const {
     return (is_bumped(time_s) ? cameras_after : cameras)[static_cast<std::size_t>(index)];
   }
 
-  BodyPose pose(double t) const;
+  std::vector<BodyPose> poses(double t) const;
+  void add_actors(Random& random, double first_angle, double step_phase);
+  void add_props();
   std::vector<Vector<3>> points(double t) const;
   bool covered(int marker, double t) const;
-  bool sees(int index, double t, const Vector<3>& point, const BodyPose& pose, Vector<2>& pixel) const;
+  bool sees(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies, Vector<2>& pixel) const;
   std::vector<RoomBlob> blobs(int index, double t, std::uint64_t draw) const;
   void merge(std::vector<RoomBlob>& blobs, std::span<const double> far) const;
 };
 
-BodyPose RoomScene::Parts::pose(double t) const {
-  if (options.motion == RoomMotion::wave) return waving_pose({0, 0, first_angle}, t);
-  if (options.motion != RoomMotion::walk) return standing_pose({0, 0, first_angle});
-  // An ellipse whose axes turn slowly, at about 1.2 m/s; one double step takes a second.
-  const double a = 0.33 * options.volume.x(), b = 0.23 * options.volume.y();
-  const double round = 1.1 * t / ((a + b) / 2), turned = 0.05 * t + first_angle;
-  const Vector<2> along(-a * std::sin(round), b * std::cos(round));
-  const double c = std::cos(turned), s = std::sin(turned), x = a * std::cos(round), y = b * std::sin(round);
-  return walking_pose({c * x - s * y, s * x + c * y, std::atan2(along.y(), along.x()) + turned}, 2 * kPi * t + step_phase);
+std::vector<BodyPose> RoomScene::Parts::poses(double t) const {
+  std::vector<BodyPose> all;
+  for (const RoomActor& actor : actors) all.push_back(actor.pose(options, t));
+  return all;
 }
 
 std::vector<Vector<3>> RoomScene::Parts::points(double t) const {
   std::vector<Vector<3>> result;
   const Vector<3> half = options.volume / 2;
-  if (has_body()) {
-    const BodyPose at = pose(t);
-    for (const BodyMarker& marker : body) result.push_back(at[static_cast<std::size_t>(marker.limb)] * marker.in_limb);
+  if (!actors.empty()) {
+    for (const RoomActor& actor : actors) {
+      const BodyPose at = actor.pose(options, t);
+      for (const BodyMarker& marker : actor.markers) result.push_back(on_skin(at, marker, options.skin_m));
+    }
   } else if (options.motion == RoomMotion::ground) {
     result = options.ground_frame;
   } else if (options.motion == RoomMotion::cloud) {
@@ -101,6 +82,10 @@ std::vector<Vector<3>> RoomScene::Parts::points(double t) const {
     const double middle = (options.wand.front() + options.wand.back()) / 2;
     const Vector<3> place = Vector<3>(0, 0, half.z()) + 0.92 * half.cwiseProduct(wand_place.at(t));
     for (const double along : options.wand) result.push_back(place + (along - middle) * axis);
+  }
+  for (const RoomProp& prop : flying) {
+    const Rigid3 at = prop.pose(options, t);
+    for (const auto& marker : prop.body.markers) result.push_back(at * marker.position);
   }
   return result;
 }
@@ -120,12 +105,13 @@ bool RoomScene::Parts::covered(int marker, double t) const {
   return within >= begin && within < begin + length;
 }
 
-bool RoomScene::Parts::sees(int index, double t, const Vector<3>& point, const BodyPose& at, Vector<2>& pixel) const {
+bool RoomScene::Parts::sees(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies, Vector<2>& pixel) const {
   const Camera& eye = camera(index, t);
   const auto seen = eye.project(point);
   if (!seen || !eye.in_picture(*seen)) return false;
   pixel = *seen;
-  return !(options.occlusion && has_body() && hidden_by_body(at, point, eye.centre()));
+  return !options.occlusion ||
+         std::none_of(bodies.begin(), bodies.end(), [&](const BodyPose& at) { return hidden_by_body(at, point, eye.centre()); });
 }
 
 /// Blobs nearer than merge_px become one, again and again: each takes in the next that touches it.
@@ -153,7 +139,7 @@ void RoomScene::Parts::merge(std::vector<RoomBlob>& blobs, std::span<const doubl
 
 std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t draw) const {
   const std::vector<Vector<3>> places = points(t);
-  const BodyPose at = has_body() ? pose(t) : BodyPose{};
+  const std::vector<BodyPose> at = poses(t);
   Random random(mixed(options.seed, draw, static_cast<std::uint64_t>(index)));
   std::vector<RoomBlob> result;
   std::vector<double> far;
@@ -178,8 +164,11 @@ std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t
 }
 
 std::span<const NamedRoomMotion> room_motions() {
-  static constexpr std::array<NamedRoomMotion, 6> kMotions{{{"walk", RoomMotion::walk},
+  static constexpr std::array<NamedRoomMotion, 9> kMotions{{{"walk", RoomMotion::walk},
+                                                            {"run", RoomMotion::run},
                                                             {"wave", RoomMotion::wave},
+                                                            {"kneel", RoomMotion::kneel},
+                                                            {"roll", RoomMotion::roll},
                                                             {"still", RoomMotion::still},
                                                             {"wand", RoomMotion::wand},
                                                             {"ground", RoomMotion::ground},
@@ -199,16 +188,17 @@ RoomScene::RoomScene(const RoomOptions& options) : parts_(std::make_unique<Parts
   for (const RigCamera& camera : parts.after_bump.cameras) parts.cameras_after.push_back(*camera.camera());
 
   Random random(mixed(options.seed, 1));
-  parts.first_angle = random.uniform(0, 2 * kPi);
-  parts.step_phase = random.uniform(0, 2 * kPi);
+  const double first_angle = random.uniform(0, 2 * kPi), step_phase = random.uniform(0, 2 * kPi);
   parts.wand_place = Drift::drawn(1.3, random);
   parts.wand_turn = Drift::drawn(1.1, random);
   switch (options.motion) {
     case RoomMotion::walk:
+    case RoomMotion::run:
     case RoomMotion::wave:
+    case RoomMotion::kneel:
+    case RoomMotion::roll:
     case RoomMotion::still:
-      parts.body = place_markers(options.markers, random);
-      for (const BodyMarker& marker : parts.body) parts.labels.push_back(marker.label);
+      parts.add_actors(random, first_angle, step_phase);
       break;
     case RoomMotion::wand:
       for (std::size_t i = 0; i < options.wand.size(); ++i) parts.labels.push_back(fmt::format("wand{}", i + 1));
@@ -222,6 +212,29 @@ RoomScene::RoomScene(const RoomOptions& options) : parts_(std::make_unique<Parts
         parts.cloud.push_back(Drift::drawn(0.7, random));
       }
       break;
+  }
+  parts.add_props();
+}
+
+void RoomScene::Parts::add_actors(Random& random, double first_angle, double step_phase) {
+  for (int i = 0; i < options.actors; ++i) {
+    RoomActor& actor = actors.emplace_back(RoomActor{.number = i,
+                                                     .of = options.actors,
+                                                     .name = i == 0 ? "" : fmt::format("actor{}:", i + 1),
+                                                     .markers = place_markers(options.markers, random),
+                                                     .first_angle = first_angle,
+                                                     .step_phase = step_phase + 2.4 * i});
+    for (BodyMarker& marker : actor.markers) labels.push_back(marker.label.insert(0, actor.name));
+  }
+}
+
+/// By a generator of their own: the people are the same with them and without.
+void RoomScene::Parts::add_props() {
+  Random random(mixed(options.seed, 2));
+  for (int i = 0; i < options.props; ++i) {
+    const RoomProp& prop = flying.emplace_back(drawn_prop(i + 1, random));
+    props.push_back(prop.body);
+    for (const auto& marker : prop.body.markers) labels.push_back(marker.label);
   }
 }
 
@@ -241,21 +254,38 @@ const Rig& RoomScene::rig_at(double time_s) const {
 const std::vector<std::string>& RoomScene::labels() const {
   return parts_->labels;
 }
-std::optional<Skeleton> RoomScene::skeleton() const {
-  if (!parts_->has_body()) return std::nullopt;
-  return body_skeleton(parts_->body);
+int RoomScene::actors() const {
+  return static_cast<int>(parts_->actors.size());
 }
-std::vector<Rigid3> RoomScene::segments(double time_s) const {
-  if (!parts_->has_body()) return {};
-  const BodyPose at = parts_->pose(time_s);
+std::optional<Skeleton> RoomScene::skeleton(int actor) const {
+  if (actor >= actors()) return std::nullopt;
+  Skeleton body = body_skeleton(parts_->actors[static_cast<std::size_t>(actor)].markers);
+  if (actor > 0) body.name = fmt::format("body{}", actor + 1);
+  return body;
+}
+std::vector<Rigid3> RoomScene::segments(double time_s, int actor) const {
+  if (actor >= actors()) return {};
+  const BodyPose at = parts_->actors[static_cast<std::size_t>(actor)].pose(parts_->options, time_s);
   return {at.begin(), at.end()};
+}
+std::vector<double> RoomScene::coordinates(double time_s, int actor) const {
+  if (actor >= actors()) return {};
+  return body_coordinates(parts_->actors[static_cast<std::size_t>(actor)].pose(parts_->options, time_s));
+}
+const std::vector<Body>& RoomScene::props() const {
+  return parts_->props;
+}
+std::vector<Rigid3> RoomScene::prop_poses(double time_s) const {
+  std::vector<Rigid3> poses;
+  for (const RoomProp& prop : parts_->flying) poses.push_back(prop.pose(parts_->options, time_s));
+  return poses;
 }
 std::vector<Vector<3>> RoomScene::points(double time_s) const {
   return parts_->points(time_s);
 }
 
 std::vector<bool> RoomScene::visible(int camera, double time_s, std::span<const Vector<3>> points) const {
-  const BodyPose at = parts_->has_body() ? parts_->pose(time_s) : BodyPose{};
+  const std::vector<BodyPose> at = parts_->poses(time_s);
   std::vector<bool> result;
   for (int marker = 0; marker < std::ssize(points); ++marker) {
     Vector<2> pixel;

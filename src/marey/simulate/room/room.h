@@ -10,6 +10,7 @@
 
 #include <opencv2/core/types.hpp>
 
+#include "marey/core/body.h"
 #include "marey/core/geometry.h"
 #include "marey/core/rig.h"
 #include "marey/core/skeleton.h"
@@ -19,7 +20,10 @@ namespace marey::simulate::room {
 /// What moves in the room.
 enum class RoomMotion {
   walk,    ///< a person with markers on the body walks round; limbs hide markers
+  run,     ///< runs round
   wave,    ///< the person stands and waves both arms
+  kneel,   ///< goes down on both knees and up again
+  roll,    ///< lies on the floor and rolls to and fro
   still,   ///< the person stands with arms aside and does not move
   wand,    ///< a wand, or a single light, is waved through the whole volume
   ground,  ///< an L-frame lies on the floor: it defines the world
@@ -36,7 +40,10 @@ std::span<const NamedRoomMotion> room_motions();
 struct RoomOptions {
   RoomMotion motion = RoomMotion::walk;
   int cameras = 8;
-  int markers = 50;  ///< on the body or in the cloud; a wand and an L-frame have their own
+  int markers = 50;   ///< on each body or in the cloud; a wand and an L-frame have their own
+  int actors = 1;     ///< people who do the same, apart from each other
+  int props = 0;      ///< rigid bodies of five markers that fly through the volume
+  double skin_m = 0;  ///< how far a thigh's skin carries its markers at a bend of 90°; other limbs' less
   double rate_hz = 120;
   std::int64_t frames = 1200;
 
@@ -99,10 +106,17 @@ class RoomScene {
   /// A name for each marker.
   const std::vector<std::string>& labels() const;
 
-  /// The body that bears the markers; nothing where none does.
-  std::optional<Skeleton> skeleton() const;
+  /// People with markers on them.
+  int actors() const;
+  /// The body of one of them; nothing where there is none.
+  std::optional<Skeleton> skeleton(int actor = 0) const;
   /// Where its segments truly are at a time by the rig's clock: world_from_segment, m. Only where there is a body.
-  std::vector<Rigid3> segments(double time_s) const;
+  std::vector<Rigid3> segments(double time_s, int actor = 0) const;
+  /// What its coordinates truly are, m and rad.
+  std::vector<double> coordinates(double time_s, int actor = 0) const;
+  /// The rigid bodies, and where they truly are.
+  const std::vector<Body>& props() const;
+  std::vector<Rigid3> prop_poses(double time_s) const;
 
   /// Where the markers are at a time by the rig's clock, m.
   std::vector<Vector<3>> points(double time_s) const;
