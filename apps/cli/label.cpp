@@ -23,15 +23,26 @@ namespace {
 struct LearnLabelsCommand {
   std::vector<std::string> recordings;
   std::string out, markers;
+  std::vector<std::string> leave_out;
   solve::labels::LearnOptions options;
   bool json = false, quiet = false;
 };
 
 struct LabelCommand {
   std::string recording, set, out;
+  std::vector<std::string> leave_out;
   solve::labels::LabelOptions options;
   bool json = false, quiet = false;
 };
+
+/// "A,B" is A and B.
+std::vector<std::string> patterns_in(const std::vector<std::string>& given) {
+  std::vector<std::string> patterns;
+  for (const std::string& list : given) {
+    for (std::string& pattern : labels_in(list)) patterns.push_back(std::move(pattern));
+  }
+  return patterns;
+}
 
 void run(LearnLabelsCommand& command) {
   if (!command.markers.empty()) {
@@ -39,8 +50,10 @@ void run(LearnLabelsCommand& command) {
                                  ? format::motion::read_marker_set(command.markers).labels
                                  : labels_in(command.markers);
   }
-  const LearnedMarkers learned = pipeline::learn_labels(command.recordings, command.out, command.options);
-  const std::vector<std::string> warnings = pipeline::warnings_of(learned);
+  std::vector<std::string> warnings;
+  const LearnedMarkers learned =
+      pipeline::learn_labels(command.recordings, command.out, command.options, patterns_in(command.leave_out), &warnings);
+  for (std::string& warning : pipeline::warnings_of(learned)) warnings.push_back(std::move(warning));
   warn(warnings);
   if (command.json) {
     print({{"labels", learned.labels},
@@ -59,9 +72,17 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
   fmt::print(stderr, "{:.2f} % of {} points in {} frames have names\n", percent_of(summary.named, summary.points), summary.points,
              summary.instants);
   fmt::print(stderr, "  {:<16} {:>8} {:>6} {:>9} {:>9}\n", "marker", "seen", "gaps", "renamed", "outliers");
-  for (const auto& marker : summary.health)
+  for (const auto& marker : summary.health) {
+    if (marker.seen == 0) {
+      fmt::print(stderr, "  {:<16}    never: no points lie as far from the others as it should\n", marker.label);
+      continue;
+    }
     fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, percent_of(marker.seen, summary.instants),
                marker.gaps, marker.renamed, marker.outliers);
+  }
+  fmt::print(stderr,
+             "  (seen: of the frames; gaps: times that it is missing in between; renamed: frames in which its track had another "
+             "name of the set before; outliers: frames in which its distances to the others are off)\n");
   if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
   int told = 0;
   for (const auto& piece : summary.unnamed) {
@@ -91,7 +112,8 @@ Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& su
 
 void run(const LabelCommand& command) {
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::label_recording(command.recording, command.set, command.out, command.options, hooks);
+    return pipeline::label_recording(command.recording, command.set, command.out, command.options, hooks,
+                                     patterns_in(command.leave_out));
   });
   warn(summary.warnings);
   if (command.json) {
@@ -99,6 +121,10 @@ void run(const LabelCommand& command) {
   } else if (!command.quiet) {
     print_labelled(command, summary);
   }
+}
+
+void add_leave_out(Command& command, std::vector<std::string>& patterns) {
+  command.texts("--leave-out", patterns, "points that are no markers, by their labels: LHJC,RHJC or *JC; may be given often");
 }
 
 void add_learn(Command& label) {
@@ -110,6 +136,7 @@ void add_learn(Command& label) {
   command.text("--markers", options->markers,
                "those that belong to it, commas between, or a file with one a line (default: all with names)");
   command.also_reads([options] { return std::vector{options->markers}; });  // it may be a file
+  add_leave_out(command, options->leave_out);
   command.flag("--scaled", options->options.scaled,
                "the recordings are of subjects of several sizes, and the set is for others still");
   command.reports(options->json, options->quiet);
@@ -128,6 +155,7 @@ void add_label(Command& program) {
   command.input_file("--set", options->set, "set.toml, by \"marey label learn\"");
   command.output_file("-o,--output", options->out,
                       "the recording with names: " + format::endings_of_written(format::Content::space));
+  add_leave_out(command, options->leave_out);
   auto& how = options->options;
   command.number("--least-fit", how.least_fit, "nats", closed(0, 100), "what fits no name better stays without one");
   command.number("--least-margin", how.least_margin, "nats", closed(0, 100), "by so much a name must be better than the next");

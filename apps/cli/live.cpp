@@ -27,6 +27,7 @@
 #include "people_options.h"
 #include "realtime.h"
 #include "run_hooks.h"
+#include "set_option.h"
 #include "skeleton_option.h"
 #include "summary_figures.h"
 
@@ -44,7 +45,7 @@ struct LiveCommand {
   std::vector<std::string> sources;
   LiveTargets targets = LiveTargets::markers;
   bool ground = false;
-  std::string out, labels, skeleton;
+  std::string out, labels, set, skeleton;
   Kept record = Kept::solved;
   bool armed = false, realtime = false;
   std::optional<double> for_s;
@@ -77,6 +78,7 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
             {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
+  add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
   if (!summary.steps.empty()) json["stages"] = stages_of(summary);
   return json;
@@ -93,6 +95,7 @@ void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command
   const pipeline::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
              drops.empty, drops.late_frames);
+  print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
@@ -122,6 +125,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.space.predict_s = 0.1;
   if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
   options.space.skeleton = skeleton_of(command.skeleton);
+  options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
   options.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
@@ -202,6 +206,7 @@ void add_live(Command& program) {
   command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
   command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
+  add_set_option(command, options->set);
   add_skeleton_option(command, options->skeleton);
   add_blob_options(command, options->markers);
   add_live_outputs(command, options->outputs);

@@ -11,6 +11,7 @@
 
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/set_in_space.h"
 #include "marey/pipeline/skeleton_in_space.h"
 
 #include "command_line.h"
@@ -18,6 +19,7 @@
 #include "json_value.h"
 #include "pitch_size.h"
 #include "run_hooks.h"
+#include "set_option.h"
 #include "skeleton_option.h"
 #include "stream_options.h"
 
@@ -25,7 +27,7 @@ namespace marey::cli {
 namespace {
 
 struct PlayCommand {
-  std::string recording, skeleton;
+  std::string recording, set, skeleton;
   std::string size = "105x68";
   format::ReadOptions read;
   pipeline::PlayOptions how;
@@ -61,8 +63,12 @@ void run(PlayCommand& command) {
   command.read.pitch = parse_pitch_size(command.size);
   if (command.streams.streams.empty()) command.streams.streams = {"json"};
   const auto skeleton = skeleton_of(command.skeleton);
+  const auto set = learned_set_of(command.set, skeleton.get());
+  pipeline::SetInSpaceOptions naming;
+  naming.names_hold = false;
   const auto open = [&]() -> std::unique_ptr<RecordingReader> {
     std::unique_ptr<RecordingReader> reader = format::open_recording(command.recording, command.read);
+    if (set != nullptr) reader = pipeline::with_set(std::move(reader), set, naming);
     return skeleton == nullptr ? std::move(reader) : pipeline::with_skeleton(std::move(reader), skeleton);
   };
   command.how.name = std::filesystem::path(command.recording).filename();
@@ -85,6 +91,7 @@ void add_play(Command& program) {
   command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
   command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
   command.number("--rate", how.rate_hz, "Hz", kRates, "at most so many instants a second of the recording");
+  add_set_option(command, options->set);
   add_skeleton_option(command, options->skeleton);
   add_stream_options(command, options->streams);
   command.group("The recording");

@@ -15,6 +15,7 @@
 #include "json_value.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
+#include "set_option.h"
 #include "skeleton_option.h"
 #include "summary_figures.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 struct ReconstructCommand {
   RigInputs inputs;
-  std::string out, labels, skeleton;
+  std::string out, labels, set, skeleton;
   pipeline::MarkersInSpaceOptions options;
   bool json = false;
   bool quiet = false;
@@ -46,6 +47,7 @@ Json as_json(const pipeline::Summary& summary, const std::string& out) {
   json["left_out"] = Json::object();
   for (const auto& [reason, count] : summary.left_out) json["left_out"][reason] = count;
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
+  add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
   json["stages"] = stages_of(summary);
   return json;
@@ -62,6 +64,7 @@ void print_points_summary(const pipeline::Summary& summary, const std::string& o
   if (summary.measured > 0)
     fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", figure_of(summary, "residual_px"),
                figure_of(summary, "noise_px"));
+  print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);
   fmt::print(stderr, "take: {}\n", out);
@@ -71,6 +74,7 @@ void run(const ReconstructCommand& command) {
   pipeline::MarkersInSpaceOptions options = command.options;
   if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   options.skeleton = skeleton_of(command.skeleton);
+  options.learned_set = learned_set_of(command.set, options.skeleton.get());
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
@@ -97,6 +101,7 @@ void add_reconstruct(Command& program) {
       .ends_in({".marey", ".c3d", ".trc", ".csv"});
   command.input_file("--labels", options->labels,
                      "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");
+  add_set_option(command, options->set);
   add_skeleton_option(command, options->skeleton);
   command.number("--rate", how.rate_hz, "Hz", kRates, "frames a second, where sources and the rig do not say");
   command.number("--noise", how.noise_px, "px", closed(1e-3, 100),

@@ -6,6 +6,7 @@ Usage: bodies_labels_test.py MAREY ROOT [unittest options]
 import csv
 import json
 import pathlib
+import re
 import shlex
 import shutil
 import sqlite3
@@ -106,6 +107,79 @@ class BodiesAndLabels(unittest.TestCase):
             right, wrong = right + near, wrong + (not near)
         self.assertGreater(right, 0.95 * len(truth))
         self.assertLess(wrong, 0.01 * len(truth))
+
+    def named_share(self, name):
+        """Of the points of a table those whose label is the truth's, those with another, and all."""
+        truth = {(row["frame"], row["label"]): [float(row[axis]) for axis in "xyz"] for row in self.rows("walk/truth.csv")}
+        right = wrong = points = 0
+        for row in self.rows(name):
+            points += 1
+            if row["label"]:
+                near = sum((float(row[axis]) - at) ** 2 for axis, at in zip("xyz", truth[row["frame"], row["label"]])) < 0.02 ** 2
+                right, wrong = right + near, wrong + (not near)
+        return right, wrong, points
+
+    def test_names_within_the_frame(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 360, "-o", "walk", "-q")
+        self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
+        files = ["walk/rig.toml", "--observations", "walk/observations.csv"]
+        told = []
+        for take in ("one.marey", "two.marey"):
+            done = self.marey("reconstruct", *files, "--live", "--set", "set.toml", "--skeleton", "walk/skeleton.toml", "-o", take, "--json")
+            told.append(json.loads(done.stdout))
+        self.assertEqual(told[0]["set"]["named"], told[1]["set"]["named"])
+        self.assertAlmostEqual(told[0]["set"]["found_at_s"], 1.0, delta=0.2)
+        self.assertGreater(told[0]["set"]["named"], 0.99 * told[0]["set"]["points"])
+        self.assertLess(told[0]["skeleton"]["rms_mm"], 2)
+        self.marey("convert", "one.marey", "one.csv", "-q")
+        right, wrong, points = self.named_share("one.csv")  # a track bears its name over its whole life
+        self.assertGreater(right, 0.99 * points)
+        self.assertLess(wrong, 0.003 * points)
+        self.assertEqual(len({row["id"] for row in self.rows("one.csv") if row["label"]}), 40, "each name is one track")
+
+    def test_sets_that_do_not_fit_are_said(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 240, "-o", "walk", "-q")
+        self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
+        files = ["reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--live"]
+        (self.folder / "empty.toml").write_text("labels = []\nmoves = true\nscaled = false\nplaces = []\ndistances = []\n")
+        self.assertIn("4 to 2000 names", self.marey(*files, "--set", "empty.toml", "-o", "x.marey", code=1).stderr)
+        text = (self.folder / "set.toml").read_text()
+        (self.folder / "renamed.toml").write_text(re.sub(r'"([a-z_]+[0-9]+)"', r'"X\1"', text))
+        refused = self.marey(*files, "--set", "renamed.toml", "--skeleton", "walk/skeleton.toml", "-o", "x.marey", "-q", code=1).stderr
+        self.assertIn("none of its names is a marker of the skeleton", refused)
+        self.assertEqual(refused.count("\n"), 1, refused)
+        self.assertFalse((self.folder / "x.marey").exists())
+        refused = self.marey("live", "sim://people", "--targets", "people", "--set", "set.toml", "--for", 1, "-q", code=1).stderr
+        self.assertIn("two calibrated cameras", refused)
+        self.marey("simulate", "room", "--motion", "wand", "--frames", 240, "-o", "wand", "-q")
+        few = self.marey("reconstruct", "wand/rig.toml", "--observations", "wand/observations.csv", "--live", "--set", "set.toml", "-o", "few.marey").stderr
+        self.assertIn("never more than 3 markers were seen at once, of the set's 40", few)
+
+    def test_points_are_left_out_by_name(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 100, "-o", "walk", "-q")
+        self.marey("label", "learn", "walk/truth.csv", "--leave-out", "head*,chest1", "-o", "set.toml", "-q")
+        labels = {row["label"] for row in self.rows("walk/truth.csv")}
+        left = {label for label in labels if label.startswith("head") or label == "chest1"}
+        told = json.loads(self.marey("label", "walk/truth.csv", "--set", "set.toml", "--leave-out", "head*", "--leave-out", "chest1", "-o", "named.csv", "--json").stdout)
+        self.assertEqual({marker["label"] for marker in told["markers"]}, labels - left)
+        self.assertEqual({row["label"] for row in self.rows("named.csv")}, labels)
+        self.assertIn("no point is called LHJC", self.marey("label", "learn", "walk/truth.csv", "--leave-out", "LHJC", "-o", "x.toml", code=1).stderr)
+
+    def test_sets_of_which_nothing_comes_are_refused(self):
+        def learn(name, frames, place, code):
+            with open(self.folder / name, "w") as file:
+                file.write("frame,time,id,label,x,y,z\n")
+                for frame in range(frames):
+                    for marker in range(5):
+                        x, y, z = place(frame, marker)
+                        file.write(f"{frame},{frame / 100},{marker + 1},m{marker},{x},{y},{z}\n")
+            done = self.marey("label", "learn", name, "-o", "set.toml", code=code)
+            self.assertEqual((self.folder / "set.toml").exists(), code == 0)
+            return done.stderr
+        self.assertIn("in one line", learn("line.csv", 50, lambda frame, marker: (0.1 * marker, frame / 100, 1), 1))
+        spread = [(0, 0, 0), (0.3, 0, 0), (0, 0.4, 0), (0.2, 0.1, 0.5), (0.5, 0.5, 0.2)]
+        self.assertIn("learned from 1 frame", learn("one.csv", 1, lambda frame, marker: spread[marker], 0))
+        self.assertIn("in one plane", learn("flat.csv", 50, lambda frame, marker: (spread[marker][0], spread[marker][1], 1), 0))
 
     def test_what_cannot_be_is_said(self):
         self.marey("simulate", "room", "--motion", "walk", "--markers", "40", "--frames", "60", "-o", "walk", "-q")

@@ -11,9 +11,11 @@
 
 namespace marey::pipeline {
 
-/// Throws Error where a file cannot be read or written, or holds no such set.
+/// Points whose labels are of these patterns are left out: names, in which * stands for any letters. Throws Error where a file
+/// cannot be read or written, holds no such set, or a pattern fits no label.
 LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
-                            const solve::labels::LearnOptions& options);
+                            const solve::labels::LearnOptions& options, const std::vector<std::string>& leave_out = {},
+                            std::vector<std::string>* warnings = nullptr);
 /// What is to be said of the set besides: points that are no markers.
 std::vector<std::string> warnings_of(const LearnedMarkers& learned);
 
@@ -27,8 +29,10 @@ struct LabelSummary {
 };
 
 /// Names the markers of a recording by a set (set.toml) and writes it: a track for each name, and what has none. Whatever its
-/// tracks were called before counts nothing. Throws Error where a file cannot be read or written, or the set is not in it.
+/// tracks were called before counts nothing. Tracks of the patterns in `leave_out` get no name and stay as they are. Throws Error
+/// where a file cannot be read or written, or the set is not in it.
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
-                             const solve::labels::LabelOptions& options, const Hooks& hooks = {});
+                             const solve::labels::LabelOptions& options, const Hooks& hooks = {},
+                             const std::vector<std::string>& leave_out = {});
 
 }  // namespace marey::pipeline

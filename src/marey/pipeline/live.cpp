@@ -66,6 +66,7 @@ std::unique_ptr<Stage> stage_of(LiveJob job, const std::vector<Feed>& feeds, con
   switch (job) {
     case LiveJob::markers_in_space:
       options.space.live = true;
+      options.space.waits_for_names = false;
       options.space.naming = options.naming;
       return markers_in_space(rig, rate_hz, options.space);
     case LiveJob::markers_in_picture:
@@ -177,10 +178,12 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   const Rig fed = rig_as_fed(rig, feeds);
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
-  if (options.space.set.labels.empty()) options.space.set = names_of_played(fed);
+  if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);
   if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space)
     throw Error("a skeleton is solved from markers in space, of two calibrated cameras or more; these cameras give {}",
                 to_string(summary.job));
+  if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
+    throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));
   look_for_markers(feeds, summary.job, options);
   LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });

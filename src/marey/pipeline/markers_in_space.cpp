@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/pipeline/set_stage.h"
 #include "marey/pipeline/simulation_files.h"
 #include "marey/pipeline/skeleton_in_space.h"
 #include "marey/pipeline/skeleton_stage.h"
@@ -341,10 +342,16 @@ track::RosterTrackerOptions space_tracker_options() {
 }
 
 std::unique_ptr<Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {
-  auto markers = with_naming(std::make_unique<MarkersInSpace>(rig, rate_hz, options), options.naming);
+  std::unique_ptr<Stage> markers = std::make_unique<MarkersInSpace>(rig, rate_hz, options);
+  if (options.learned_set != nullptr) {
+    SetInSpaceOptions how;
+    how.wait = options.waits_for_names;
+    markers = with_set(std::move(markers), options.learned_set, how);
+  }
+  markers = with_naming(std::move(markers), options.naming);
   if (options.skeleton == nullptr) return markers;
-  if (options.set.labels.empty())
-    throw Error("{}", "a skeleton is solved from markers that have names, and these have none: name them by --labels");
+  if (options.set.labels.empty() && options.learned_set == nullptr)
+    throw Error("{}", "a skeleton is solved from markers that have names, and these have none: name them by --labels or --set");
   return with_skeleton(std::move(markers), options.skeleton, live_pose_options());
 }
 

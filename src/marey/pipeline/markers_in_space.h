@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "marey/core/learned_markers.h"
 #include "marey/core/rig.h"
 #include "marey/core/skeleton.h"
 #include "marey/detect/markers/marker_detector.h"
@@ -31,7 +32,9 @@ struct MarkersInSpaceOptions {
   /// Every instant is told as it comes, and no gap is filled; its first `predict_s` are told as they are expected. What a camera
   /// saw beside the moment is brought to it by the markers' motion.
   bool live = false;
-  std::shared_ptr<TrackNaming> naming = {};  ///< names that markers are given by hand; null: none
+  std::shared_ptr<TrackNaming> naming = {};                ///< names that markers are given by hand; null: none
+  std::shared_ptr<const LearnedMarkers> learned_set = {};  ///< names the markers that have none, frame by frame; null: none
+  bool waits_for_names = true;  ///< for the search in its task: results are then the same on any machine; not before live cameras
   std::shared_ptr<const Skeleton> skeleton;  ///< is solved from the labelled markers, instant by instant; null: none
 };
 

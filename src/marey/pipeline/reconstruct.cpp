@@ -72,7 +72,7 @@ Summary reconstruct(const Rig& rig, const std::string& observations, Sinks& sink
   Rig fitted = rig;
   for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
   MarkersInSpaceOptions named = options;
-  if (named.set.labels.empty()) named.set = named_in_take(observations);
+  if (named.set.labels.empty() && named.learned_set == nullptr) named.set = named_in_take(observations);
   const auto stage = markers_in_space(fitted, clock.rate_hz(), named);
   Summary summary = run(*stage, clock, sinks, hooks);
   report_cameras(clock, fitted, summary);

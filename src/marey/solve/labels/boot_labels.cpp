@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "marey/assign/no_index.h"
 #include "marey/solve/labels/four_points.h"
@@ -147,56 +148,90 @@ class Beam {
     return sum;
   }
 
-  double gain(const BootAnswer& answer, std::size_t name, std::size_t point, const std::vector<std::size_t>& others,
-              std::size_t besides = kNobody) const {
+  /// Without what sides cost: no less than the whole.
+  double most_gain(const BootAnswer& answer, std::size_t name, std::size_t point, const std::vector<std::size_t>& others) const {
     double sum = 0;
     for (const std::size_t other : others) {
       const int its = answer.point_of[other];
       if (its != kNoIndex && other != name) sum += model_.ratio(name, other, scene_.between(point, static_cast<std::size_t>(its)));
     }
     if (turn_) sum += direction_gain(answer, name, point);
-    return sum - side_cost(answer, name, point, besides);
+    return sum;
+  }
+
+  struct Next {
+    double score;
+    std::size_t answer;
+    int point;
+    bool whole;  // or what its sides cost is still to be counted
+    bool operator<(const Next& other) const {
+      return std::tie(score, other.answer, other.point) < std::tie(other.score, answer, point);
+    }
+  };
+
+  /// How well the distance between each two points fits the name and each of those before it: by the one before, its point, the
+  /// name's point.
+  void tabulate(std::size_t name, const std::vector<std::size_t>& before) {
+    ratios_.assign(before.size() * points() * points(), 0);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      for (std::size_t its = 0; its < points(); ++its) {
+        double* row = &ratios_[(k * points() + its) * points()];
+        for (std::size_t point = 0; point < points(); ++point) {
+          if (point != its) row[point] = model_.ratio(name, before[k], scene_.between(point, its));
+        }
+      }
+    }
+  }
+
+  /// All continuations of one answer, without what sides cost.
+  void continue_with(const std::vector<BootAnswer>& answers, std::size_t a, std::size_t name,
+                     const std::vector<std::size_t>& before, std::vector<Next>& nexts) const {
+    const BootAnswer& answer = answers[a];
+    std::vector<char> taken(points(), 0);
+    std::vector<double> gains(points(), 0);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      if (answer.point_of[before[k]] == kNoIndex) continue;
+      const auto its = static_cast<std::size_t>(answer.point_of[before[k]]);
+      taken[its] = 1;
+      const double* row = &ratios_[(k * points() + its) * points()];
+      for (std::size_t point = 0; point < points(); ++point) gains[point] += row[point];
+    }
+    nexts.push_back({answer.score, a, kNoIndex, true});
+    for (std::size_t point = 0; point < points(); ++point) {
+      if (taken[point]) continue;
+      const double gain = gains[point] + (turn_ ? direction_gain(answer, name, point) : 0);
+      nexts.push_back({answer.score + gain, a, static_cast<int>(point), before.size() < 3});
+    }
   }
 
   void extend(std::vector<BootAnswer>& answers, std::size_t name, const std::vector<std::size_t>& before) {
-    struct Next {
-      double score;
-      std::size_t answer;
-      int point;
-    };
+    tabulate(name, before);
     std::vector<Next> nexts;
-    for (std::size_t a = 0; a < answers.size(); ++a) {
-      std::vector<char> taken(points(), 0);
-      for (const std::size_t other : before) {
-        if (answers[a].point_of[other] != kNoIndex) taken[static_cast<std::size_t>(answers[a].point_of[other])] = 1;
-      }
-      nexts.push_back({answers[a].score, a, kNoIndex});
-      for (std::size_t point = 0; point < points(); ++point) {
-        if (!taken[point]) nexts.push_back({answers[a].score + gain(answers[a], name, point, before), a, static_cast<int>(point)});
-      }
-    }
+    for (std::size_t a = 0; a < answers.size(); ++a) continue_with(answers, a, name, before, nexts);
     // While hardly anything is known, many answers are alike: more of them are kept.
     const std::size_t most = static_cast<std::size_t>(options_.answers) * (before.size() < 4 ? 8 : before.size() < 8 ? 2 : 1);
-    const auto better = [](const Next& x, const Next& y) {
-      return std::tie(y.score, x.answer, x.point) < std::tie(x.score, y.answer, y.point);
-    };
-    if (nexts.size() > most) {
-      std::nth_element(nexts.begin(), nexts.begin() + static_cast<std::ptrdiff_t>(most), nexts.end(), better);
-      nexts.resize(most);
-    }
-    std::sort(nexts.begin(), nexts.end(), better);
+    std::make_heap(nexts.begin(), nexts.end());
     std::vector<BootAnswer> extended;
-    for (const Next& next : nexts) {
-      BootAnswer answer = answers[next.answer];
+    while (!nexts.empty() && extended.size() < most) {  // sides cost time: they are asked of the best alone
+      std::pop_heap(nexts.begin(), nexts.end());
+      Next& next = nexts.back();
+      if (!next.whole) {
+        next.score -= side_cost(answers[next.answer], name, static_cast<std::size_t>(next.point), kNobody);
+        next.whole = true;
+        std::push_heap(nexts.begin(), nexts.end());
+        continue;
+      }
+      BootAnswer& answer = extended.emplace_back(answers[next.answer]);
       answer.score = next.score;
       answer.point_of[name] = next.point;
-      extended.push_back(std::move(answer));
+      nexts.pop_back();
     }
     answers = std::move(extended);
   }
 
   /// Moves single names to free points, and exchanges two, as long as that gains.
-  void exchange(BootAnswer& answer) const {
+  void exchange(BootAnswer& answer) {
+    count_worths(answer);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       bool changed = false;
       std::vector<int> name_of(points(), kNoIndex);
@@ -222,33 +257,62 @@ class Beam {
 
   double worth(const BootAnswer& answer, std::size_t name, std::size_t besides = kNobody) const {
     if (answer.point_of[name] == kNoIndex) return 0;
-    return gain(answer, name, static_cast<std::size_t>(answer.point_of[name]), model_.order(), besides);
+    const auto point = static_cast<std::size_t>(answer.point_of[name]);
+    return most_gain(answer, name, point, model_.order()) - side_cost(answer, name, point, besides);
   }
 
-  bool try_exchange(BootAnswer& answer, std::size_t name, int point, int holder) const {
-    const auto both = [&] {
-      double sum = worth(answer, name);
-      if (holder == kNoIndex) return sum;
-      const auto other = static_cast<std::size_t>(holder);
-      sum += worth(answer, other, name);
-      if (answer.point_of[name] != kNoIndex && answer.point_of[other] != kNoIndex)  // counted twice
-        sum -= model_.ratio(
-            name, other,
-            scene_.between(static_cast<std::size_t>(answer.point_of[name]), static_cast<std::size_t>(answer.point_of[other])));
-      return sum;
+  /// What the name's point is worth at most, and the holder's, if there is one; what both have of each other counts once.
+  double worth_at_most(const BootAnswer& answer, std::size_t name, int holder) const {
+    const auto of = [&](std::size_t each) {
+      if (answer.point_of[each] == kNoIndex) return 0.0;
+      return most_gain(answer, each, static_cast<std::size_t>(answer.point_of[each]), model_.order());
     };
-    const double before = both();
+    if (holder == kNoIndex) return of(name);
+    return of(name) + of(static_cast<std::size_t>(holder)) - between_both(answer, name, static_cast<std::size_t>(holder));
+  }
+
+  double between_both(const BootAnswer& answer, std::size_t name, std::size_t other) const {
+    if (answer.point_of[name] == kNoIndex || answer.point_of[other] == kNoIndex) return 0;
+    return model_.ratio(
+        name, other,
+        scene_.between(static_cast<std::size_t>(answer.point_of[name]), static_cast<std::size_t>(answer.point_of[other])));
+  }
+
+  double worth_of_both(const BootAnswer& answer, std::size_t name, int holder) const {
+    if (holder == kNoIndex) return worth(answer, name);
+    const auto other = static_cast<std::size_t>(holder);
+    return worth(answer, name) + worth(answer, other, name) - between_both(answer, name, other);
+  }
+
+  bool try_exchange(BootAnswer& answer, std::size_t name, int point, int holder) {
     const int was = answer.point_of[name];
-    answer.point_of[name] = point;
-    if (holder != kNoIndex) answer.point_of[static_cast<std::size_t>(holder)] = was;
-    const double after = both();
+    const auto put = [&](int its, int holders) {
+      answer.point_of[name] = its;
+      if (holder != kNoIndex) answer.point_of[static_cast<std::size_t>(holder)] = holders;
+    };
+    // What it is worth now is no less than this: of the holder's sides those count twice of which the name is one.
+    double least = worth_now_[name];
+    if (holder != kNoIndex)
+      least += worth_now_[static_cast<std::size_t>(holder)] - between_both(answer, name, static_cast<std::size_t>(holder));
+    put(point, was);
+    const double most = worth_at_most(answer, name, holder);
+    put(was, point);
+    if (most <= least + 1e-9) return false;
+    const double before = worth_of_both(answer, name, holder);
+    put(point, was);
+    const double after = worth_of_both(answer, name, holder);
     if (after > before + 1e-9) {
       answer.score += after - before;
+      count_worths(answer);
       return true;
     }
-    answer.point_of[name] = was;
-    if (holder != kNoIndex) answer.point_of[static_cast<std::size_t>(holder)] = point;
+    put(was, point);
     return false;
+  }
+
+  void count_worths(const BootAnswer& answer) {
+    worth_now_.resize(model_.size());
+    for (std::size_t name = 0; name < model_.size(); ++name) worth_now_[name] = worth(answer, name);
   }
 
   const BootScene& scene_;
@@ -258,6 +322,8 @@ class Beam {
   std::optional<Matrix<3>> turn_;
   std::vector<std::vector<std::size_t>> nearest_;  // by name, where directions count
   std::vector<std::vector<Side>> sides_;
+  std::vector<double> ratios_;     // of the name at hand
+  std::vector<double> worth_now_;  // of each name, where single ones are exchanged
 };
 
 }  // namespace

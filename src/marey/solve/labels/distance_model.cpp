@@ -62,15 +62,18 @@ void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceSeen& seen
   set(term, seen.mean, std::sqrt(seen.variance + options_.shift * options_.shift / 2));
 }
 
-void DistanceModel::rank() {
-  partners_.assign(size_, {});
-  for (std::size_t a = 0; a < size_; ++a) {
-    for (std::size_t b = 0; b < size_; ++b) {
-      if (b != a) partners_[a].push_back(b);
-    }
-    std::stable_sort(partners_[a].begin(), partners_[a].end(),
-                     [&](std::size_t b, std::size_t c) { return deviation(a, b) < deviation(a, c); });
+void DistanceModel::rank_partners(std::size_t label) {
+  std::vector<std::size_t>& its = partners_[label];
+  its.clear();
+  for (std::size_t b = 0; b < size_; ++b) {
+    if (b != label) its.push_back(b);
   }
+  std::stable_sort(its.begin(), its.end(), [&](std::size_t b, std::size_t c) { return deviation(label, b) < deviation(label, c); });
+}
+
+void DistanceModel::rank() {
+  partners_.resize(size_);
+  for (std::size_t a = 0; a < size_; ++a) rank_partners(a);
   // Begins with the label whose best ties are the tightest; then always the one best tied to those that are there.
   const auto tightness = [&](std::size_t label, const std::vector<std::size_t>& among) {
     std::vector<double> ties;

@@ -60,6 +60,8 @@ class DistanceModel {
   void set_rank(std::size_t a, std::size_t b, double deviation) { terms_[LearnedMarkers::index_of(a, b)].deviation = deviation; }
   /// To be called when all were adopted, or ranked.
   void rank();
+  /// The same for one label's partners alone, and not for the order.
+  void rank_partners(std::size_t label);
 
  private:
   struct Term {

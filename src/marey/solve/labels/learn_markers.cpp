@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
@@ -21,6 +22,8 @@ constexpr double kSided = 0.01;              // m: what stands out less of a pla
 constexpr std::size_t kAsked = 6;            // neighbours, the steadiest, of which sides are compared
 constexpr double kUnknownDeviation = 0.25;   // m: of two markers that were never seen together
 constexpr double kNearestMarkersM = 0.010;
+constexpr double kThin = 0.010;           // m: RMS, of a layout that is a line or a plane
+constexpr double kFewestTogether = 0.25;  // of all pairs of markers
 
 std::string without_prefix(const std::string& label, const std::string& prefix) {
   return label.starts_with(prefix) ? label.substr(prefix.size()) : label;
@@ -144,6 +147,20 @@ std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& t
   return places;
 }
 
+/// How far the markers of a posture reach, RMS in m, along its three axes; the least first. Who has no place says nothing.
+Vector<3> extents_of(const std::vector<Vector<3>>& places) {
+  Vector<3> mean = Vector<3>::Zero();
+  double count = 0;
+  for (const Vector<3>& place : places) {
+    if (!place.isZero(0)) mean += place, ++count;
+  }
+  Matrix<3> squares = Matrix<3>::Zero();
+  for (const Vector<3>& place : places) {
+    if (!place.isZero(0)) squares += (place - mean / count) * (place - mean / count).transpose() / count;
+  }
+  return Eigen::SelfAdjointEigenSolver<Matrix<3>>(squares).eigenvalues().cwiseMax(0).cwiseSqrt();
+}
+
 /// Of how many fours of neighbours two postures agree on the side, less those on which they do not.
 int agreement(const std::vector<Vector<3>>& one, const std::vector<Vector<3>>& other,
               const std::vector<std::vector<std::size_t>>& near) {
@@ -227,6 +244,9 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
     ++known;
     still += std::sqrt(within / takes) < kStill;
   }
+  if (static_cast<double>(known) < kFewestTogether * static_cast<double>(learned.distances.size()))
+    throw Error("{} of {} pairs of markers are seen together in any frame; distances between the others are not known", known,
+                learned.distances.size());
   learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
   std::vector<std::vector<Vector<3>>> postures;
   for (std::size_t r = 0; r < recordings.size(); ++r)
@@ -234,7 +254,13 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
   const std::size_t chosen = most_agreed(postures, learned);
   learned.places = std::move(postures[chosen]);
   for (Vector<3>& place : learned.places) place *= mean_size / size[chosen];
+  if (extents_of(learned.places)[1] < kThin)
+    throw Error("the {} markers lie in one line, or on one spot: names cannot be told by how they lie", learned.size());
   return learned;
+}
+
+bool is_flat(const LearnedMarkers& learned) {
+  return extents_of(learned.places)[0] < kThin;
 }
 
 std::vector<std::string> too_near_for_markers(const LearnedMarkers& learned) {

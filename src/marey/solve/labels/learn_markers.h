@@ -16,8 +16,12 @@ struct LearnOptions {
 };
 
 /// All recordings count alike, however long. A prefix "SUBJECT:" that all labels of a recording share is left out. Throws Error
-/// where a label is missing in all of them, two tracks of a recording bear one, or fewer than four markers are there.
+/// where a label is missing in all of them, two tracks of a recording bear one, fewer than four markers are there, or hardly any
+/// two are seen together, or all lie in one line.
 LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options);
+
+/// Whether all markers of the set lie in one plane, to 10 mm.
+bool is_flat(const LearnedMarkers& learned);
 
 /// Those of the set that lie nearer to another than two markers do, on the mean: points that a program computed among them (joints'
 /// centres, axes' ends). Of the real takes that were measured no two markers ever came nearer than 19 mm.

@@ -1,0 +1,78 @@
+#include "marey/solve/labels/find_names.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace marey::solve::labels {
+namespace {
+
+constexpr std::size_t kMostLooked = 200;  // instants at which distances are taken
+
+/// The named tracks by name; null where a name was not found.
+std::vector<const TrackColumns*> named_tracks(const Recording& labelled, const LearnedMarkers& learned) {
+  std::map<std::string, const TrackColumns*> by_label;
+  for (const TrackColumns& track : labelled.tracks()) {
+    if (!track.name.label.empty() && !track.empty()) by_label[track.name.label] = &track;
+  }
+  std::vector<const TrackColumns*> tracks;
+  for (const std::string& label : learned.labels) {
+    const auto found = by_label.find(label);
+    tracks.push_back(found == by_label.end() ? nullptr : found->second);
+  }
+  return tracks;
+}
+
+std::vector<DistanceSeen> distances_of(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
+  std::vector<DistanceSeen> seen(tracks.size() * (tracks.size() - 1) / 2);
+  const std::size_t step = std::max<std::size_t>(1, instants / kMostLooked);
+  for (std::size_t instant = 0; instant < instants; instant += step) {
+    std::vector<std::optional<Vector<3>>> places;
+    for (const TrackColumns* track : tracks) {
+      const auto row = track == nullptr ? std::nullopt : track->row_at(static_cast<std::int32_t>(instant));
+      places.push_back(row ? std::optional(track->position(*row)) : std::nullopt);
+    }
+    for (std::size_t a = 1; a < places.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (!places[a] || !places[b]) continue;
+        const double distance = (*places[a] - *places[b]).norm();
+        DistanceSeen& pair = seen[LearnedMarkers::index_of(a, b)];
+        const double share = 1.0 / ++pair.count, off = distance - pair.mean;
+        pair.mean += share * off;
+        pair.variance += share * ((1 - share) * off * off - pair.variance);
+      }
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, const LabelOptions& options,
+                      const LabelFollowOptions& follow, const Hooks& hooks) {
+  const Labelled labelled = label_recording(recent, learned, options, hooks);
+  const std::vector<const TrackColumns*> named = named_tracks(labelled.recording, learned);
+  FoundNames found;
+  found.scale = labelled.scale;
+  for (const TrackColumns& track : recent.tracks()) {
+    if (track.empty()) continue;
+    const std::int32_t last = track.at().back();
+    for (std::size_t name = 0; name < named.size(); ++name) {
+      const auto row = named[name] == nullptr ? std::nullopt : named[name]->row_at(last);
+      if (row && named[name]->position(*row) == track.position(track.size() - 1))
+        found.name_of[track.id()] = static_cast<int>(name);
+    }
+  }
+  // Two pieces of one marker have its name, each in its time: the one that is there last bears it.
+  std::map<int, std::pair<std::int32_t, TrackId>> latest;
+  for (const auto& [track, name] : found.name_of) {
+    const std::pair its(recent.find(track)->at().back(), track);
+    const auto [bearer, is_first] = latest.try_emplace(name, its);
+    if (!is_first && bearer->second < its) bearer->second = its;
+  }
+  std::erase_if(found.name_of, [&](const auto& each) { return latest.at(each.second).second != each.first; });
+  found.follower = std::make_unique<LabelFollower>(learned, labelled.scale, distances_of(named, recent.instants().size()), follow);
+  return found;
+}
+
+}  // namespace marey::solve::labels

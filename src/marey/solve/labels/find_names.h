@@ -1,0 +1,25 @@
+// Names for tracks that are followed live, out of nothing: what `label_recording` finds in the last seconds.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "marey/core/hooks.h"
+#include "marey/core/recording.h"
+#include "marey/solve/labels/label_follower.h"
+#include "marey/solve/labels/label_recording.h"
+
+namespace marey::solve::labels {
+
+struct FoundNames {
+  std::map<TrackId, int> name_of;           ///< of the tracks that had a name when the recording ended, as it found them last
+  std::unique_ptr<LabelFollower> follower;  ///< that goes on with the distances that were found
+  double scale = 1;                         ///< of the subject against the learned set
+};
+
+/// `recent`: tracks in space over some seconds. Takes about as long as `label_recording`: for a task of its own. `learned` must
+/// outlive what comes out. Throws Error where too few of the set's markers can be told.
+FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, const LabelOptions& options,
+                      const LabelFollowOptions& follow, const Hooks& hooks = {});
+
+}  // namespace marey::solve::labels
