@@ -71,6 +71,7 @@ struct Walker {
 solve::labels::LabelOptions live_options() {
   solve::labels::LabelOptions options;
   options.boots = 2;
+  options.boot.answers = 250;
   return options;
 }
 

@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
 """`marey label` on recordings whose names are known: taken away, 5 % hidden in gaps, tracks broken there, 5 % ghosts.
 
-Usage: labels.py MAREY DATA [--subjects HC002D,...] [--hidden 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen]
+Usage: labels.py MAREY DATA [--subjects HC002D,...] [--hidden 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live]
 
 DATA is the folder that tests call MAREY_DATA. For each child of gait_children the walk straight on is named by a set learned from its turn, and
 by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Right, wrong (ghosts with a name among them) and
-unnamed are shares of the points that belong to the set. Beside it a naive peer, which knows the true names of the first frame and hands each on to the
+unnamed are shares of the points that belong to the set. With --live each walk is played too, at a third of its speed, and its points are named within the
+frame (`marey play --set`): of those frames that come after the first with a name. Beside it a naive peer, which knows the true names of the first frame and hands each on to the
 nearest point within 50 mm. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
 """
 import argparse
 import csv
+import json
 import pathlib
 import random
+import socket
 import subprocess
 import tempfile
+import time
 
 MARKERS = """LFHD RFHD LBHD RBHD C7 T10 CLAV STRN RBAK LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN LASI RASI LPSI RPSI SACR
 LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE""".split()
@@ -100,6 +104,31 @@ def label(marey, train, tracks, truth, work, scaled=False):
     return judge(named, truth, known)
 
 
+def live(marey, truth, work):
+    """The last recording that was named, played, by the set that was learned for it."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    played = subprocess.Popen([marey, "play", work / "bare.csv", "--set", work / "set.toml", "--speed", "0.33", "-q", "--stream", f"json::{port}"],
+                              stderr=subprocess.PIPE, text=True)
+    told = None
+    while told is None and played.poll() is None:
+        try:
+            told = socket.create_connection(("127.0.0.1", port), timeout=60).makefile()
+        except OSError:
+            time.sleep(0.02)
+    named, first = [], None
+    for line in told or []:
+        frame = json.loads(line)
+        for point in frame["points"] if frame["type"] == "frame" else []:
+            if not point.get("label"):
+                continue
+            first = frame["frame"] if first is None else first
+            named.append((frame["frame"], point["label"], (point["x"], point["y"], point["z"])))
+    said = played.communicate()[1].strip()
+    after = {of: label for of, label in truth.items() if first is not None and of[0] >= first}
+    return f"{judge(named, after, set(after.values()))}  from frame {first} on" if after else f"nothing was named: {said}"
+
+
 def naive(tracks, truth):
     """Names of the first frame, handed on to the nearest point."""
     frames = {}
@@ -133,6 +162,7 @@ def main():
     parser.add_argument("--gap", type=int, default=10, help="frames, on average")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--unseen", action="store_true")
+    parser.add_argument("--live", action="store_true")
     options = parser.parse_args()
     work = pathlib.Path(tempfile.mkdtemp(prefix="marey_labels_"))
     folder = options.data / "gait_children"
@@ -146,6 +176,8 @@ def main():
         print(f"{subject} {len(tracks)} tracks")
         for kind in ("turn", "static"):
             print(f"  from its {kind:8} {label(options.marey, [take(subject, kind)], tracks, truth, work)}", flush=True)
+            if options.live:
+                print(f"    in the frame    {live(options.marey, truth, work)}", flush=True)
         if options.unseen:
             others = [take(other, kind) for other in sorted(p.name for p in folder.iterdir() if p.is_dir()) if other != subject
                       for kind in ("straight", "turn")]

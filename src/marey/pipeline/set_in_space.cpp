@@ -22,6 +22,8 @@ using solve::labels::TrackedPoint;
 constexpr double kFewestSeen = 0.4;    // of the set's markers, below which nothing is looked for; as label_recording has it
 constexpr double kRememberedHz = 100;  // that points are remembered at, about
 constexpr double kAgainS = 2;          // after a search, where many names are missing
+constexpr double kStillFirstS = 1;     // of points, that names are looked for in first by such a set
+constexpr int kStillSearches = 5;      // so many follow each other, where the set is of one who stood still
 constexpr double kMostAgainS = 5;      // after a search that found nothing, at most
 constexpr double kManyHeld = 0.7;      // of the names that could be
 constexpr double kFewNamed = 0.6;      // of the set, on average: a doubtful set
@@ -66,6 +68,7 @@ SetInSpace::SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz
     : set_(std::move(set)), options_(options), rate_hz_(rate_hz), id_of_name_(set_->size()), seen_(set_->size(), 0) {
   if (set_->size() < kFewestMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
   for (std::size_t name = 0; name < set_->size(); ++name) name_of_label_[set_->labels[name]] = static_cast<int>(name);
+  if (!set_->moves) options_.first_after_s = std::max(options_.first_after_s, kStillFirstS);
   every_ = std::max<std::int64_t>(1, std::llround(rate_hz / kRememberedHz));
 }
 
@@ -134,8 +137,9 @@ void SetInSpace::search(Timestamp now) {
     const std::size_t could = std::min(points_now_.size(), set_->size());
     if (follower_ == nullptr) {
       pause = std::min<double>(failures_, kMostAgainS);
-    } else if (searches_ - failures_ == 1 || static_cast<double>(follower_->held()) < kManyHeld * static_cast<double>(could)) {
-      pause = kAgainS;
+    } else if (searches_ - failures_ <= (set_->moves ? 1 : kStillSearches) ||
+               static_cast<double>(follower_->held()) < kManyHeld * static_cast<double>(could)) {
+      pause = set_->moves ? kAgainS : 0;
     }
     if (seconds(now - searched_at_) < options_.answer_after_s + pause) return;
   }
@@ -188,8 +192,11 @@ void SetInSpace::take_answer(Timestamp now) {
   }
   if (!found_at_s_) found_at_s_ = seconds(now);
   const double names = static_cast<double>(set_->size());
-  if (follower_ == nullptr || static_cast<double>(follower_->held()) < kFewestSeen * names)
+  // Of a set of one who stood still, what is rigid is known the better the longer it was looked at.
+  if (follower_ == nullptr || !set_->moves || static_cast<double>(follower_->held()) < kFewestSeen * names) {
+    if (follower_ != nullptr) searched.found.follower->take(follower_->borne());
     follower_ = std::move(searched.found.follower);
+  }
   follower_->take(searched.found.name_of);
 }
 

@@ -28,11 +28,11 @@ constexpr double kLostFloor = -6, kLostMost = 0.15;         // nats; m, of the e
 constexpr double kLostDeviation = 0.01, kLostDrift = 0.05;  // m, m/s
 constexpr double kMostFrames = 60;                          // that a mean remembers
 constexpr double kLearnEveryS = 0.02;
-constexpr int kRemembered = 1500, kOften = 100;  // instants
-constexpr double kOffLearned = 4;                // deviations: what is further off was named wrongly
-constexpr double kVaried = 0.4, kVaries = 0.01;  // of all distances that vary by more, m: the subject moved its joints
-constexpr double kForgottenS = 10;               // a track that is gone for so long
-constexpr double kTrustedShare = 0.5;            // of the names that are there; with fewer in no doubt, all count
+constexpr int kRemembered = 1500, kOften = 50;    // instants
+constexpr double kOffLearned = 4;                 // deviations: what is further off was named wrongly
+constexpr double kVaried = 0.25, kVaries = 0.01;  // of all distances that vary by more, m: the subject moved its joints
+constexpr double kForgottenS = 10;                // a track that is gone for so long
+constexpr double kTrustedShare = 0.5;             // of the names that are there; with fewer in no doubt, all count
 
 }  // namespace
 
@@ -69,6 +69,14 @@ void LabelFollower::take(const std::map<TrackId, int>& found) {
     known.frames = 0;
     known.sums.clear();
   }
+}
+
+std::map<TrackId, int> LabelFollower::borne() const {
+  std::map<TrackId, int> names;
+  for (const auto& [track, known] : known_) {
+    if (known.name != kNoIndex) names[track] = known.name;
+  }
+  return names;
 }
 
 std::span<const int> LabelFollower::step(Timestamp now, std::span<const TrackedPoint> points) {

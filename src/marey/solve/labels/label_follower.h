@@ -54,6 +54,8 @@ class LabelFollower {
 
   /// Names that were found for tracks, by name: they replace what these bear, and a name is taken from who bore it.
   void take(const std::map<TrackId, int>& found);
+  /// The names that tracks bear, also those that are not there now.
+  std::map<TrackId, int> borne() const;
   /// For every point its name or assign::kNoIndex; no name twice. Times grow. Valid until the next call.
   std::span<const int> step(Timestamp now, std::span<const TrackedPoint> points);
 
