@@ -66,6 +66,7 @@ pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const 
   }
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;
+  options.steady = flags.steady;
   return options;
 }
 

@@ -17,6 +17,7 @@ struct PeopleFlags {
   std::string background = std::string(detect::background::AdaptiveOptions::name);
   std::string detector;
   bool without_background = false;
+  bool steady = false;  ///< of films; marey track has it
   int every = 1;
   bool outline = false;
   std::optional<int> control_points;

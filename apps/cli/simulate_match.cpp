@@ -90,6 +90,8 @@ void add_films(Command& match, SimulateMatch& options) {
   match.number("--contact", files.film.contact, "share", closed(0, 1), "films: of the light, that shoes keep from the ground");
   match.number("--noise", files.film.noise, "grey levels", closed(0, 50), "films: standard deviation of the pixels");
   match.number("--light", files.film.light_change, "share", closed(0, 0.9), "films: by which the light swings");
+  match.number("--shake", files.film.shake_px, "px", closed(0, 50),
+               "films: cameras shake in wind and by steps: how far their pictures move, root mean square");
   match.whole("--wrong-clicks", files.wrong_clicks, "N", 0, 100, "films: how many of each camera's clicks are wrong");
 }
 

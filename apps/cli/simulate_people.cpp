@@ -87,7 +87,9 @@ void add_simulate_people(Command& simulate) {
   command.number("--pace", film.pace, "factor", closed(0.05, 5), "on every person's speed");
   command.number("--noise", film.noise, "grey levels", closed(0, 50), "standard deviation of the pixels");
   command.choice("--light", film.light, kLights, "how it changes");
-  command.number("--shake", film.shake_px, "px", closed(0, 50), "standard deviation of the camera's shaking");
+  command.number(
+      "--shake", film.shake_px, "px", closed(0, 50),
+      "the camera shakes in wind and by steps: how far the picture moves, root mean square; the truth is that of its rest");
   command.input_file("--ground", options->ground,
                      "picture of the empty scene, or a video whose first frame shows it (default: a lawn)");
   command.number("--hidden", film.hidden_s, "s", closed(0.1, 10), "post: the longest time that a person is hidden");

@@ -113,8 +113,17 @@ void check_live(const TrackCommand& command) {
   if (command.seen_only && !in_picture) throw WrongUsage("{}", "--seen-only is for people in one picture; leave it out");
 }
 
+void check_steady(const TrackCommand& command) {
+  if (!command.people.steady) return;
+  if (command.targets != Targets::people)
+    throw WrongUsage("{}", "--steady holds on to the scene that people walk in, and markers have none; leave it out");
+  if (!command.input.detections.empty())
+    throw WrongUsage("{}", "--steady steadies pictures, and --detections brings none; leave it out");
+}
+
 void run(const TrackCommand& command) {
   check_live(command);
+  check_steady(command);
   if (command.ground.ground) return run_on_ground(command);
   if (command.input.source.ends_with(".toml"))
     throw WrongUsage("{} is a rig: add --ground to follow people on the ground that its cameras look at", command.input.source);
@@ -194,6 +203,8 @@ void add_track(Command& program) {
   command.flag("--live", options->live, "write each frame's tracks as they come; nothing is improved by what came later");
   command.number("--delay", options->delay, "s", closed(0, 60),
                  "with --live: look so far ahead before each frame's tracks are written (default: 0)");
+  command.flag("--steady", options->people.steady,
+               "the camera shakes (wind, steps): steady its pictures first; results are in the pixels of its rest");
   command.flag("--seen-only", options->seen_only, "leave out the rows of people whom nobody saw in that frame");
   command.reports(options->json, options->quiet);
   add_people_options(command, options->people);

@@ -62,6 +62,7 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.rate_hz = command.rate_hz;
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   options.live = command.live;
+  options.steady = people.steady;
   options.learn.walk = command.filter.empty();
   if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
   options.tracker.associate =

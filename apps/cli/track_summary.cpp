@@ -36,6 +36,7 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
                {"detections", summary.detections},
                {"elapsed", elapsed},
                {"stopped", summary.stopped},
+               {"notes", summary.notes},
                {"warnings", summary.warnings},
                {"tracks", output.tracks},
                {"overlay", path_or_null(output.overlay)},
@@ -51,6 +52,7 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
 }
 
 void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
+  for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
              summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
   print_left_out(summary);

@@ -7,6 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
 #include "marey/detect/people/person_size_map.h"
+#include "marey/pipeline/steady_camera.h"
 #include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
@@ -175,6 +176,7 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   if (options.ball && whole != nullptr && !turning_ && feed.has_pictures()) ball_.emplace(ball_sizes(view, area), *options.ball);
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
+  if (!turning_) shaking_ = shaking(camera_, samples);
   if (ball_) ball_->prime(samples);
   for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
   detector_->prime(samples);
@@ -265,6 +267,7 @@ void GroundCamera::report(Summary& summary) const {
   counts.frames = frames_;
   counts.missed = summary.frames - frames_;
   counts.detections = detections_;
+  if (shaking_) summary.warnings.push_back(*shaking_);
   counts.outside = outside_;
   summary.detections += detections_;
   if (!detector_) return;

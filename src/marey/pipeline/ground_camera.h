@@ -76,6 +76,7 @@ class GroundCamera {
   std::vector<Expected> expected_;
   std::vector<Observation<2>> seen_;
   std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;
+  std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 
 }  // namespace marey::pipeline

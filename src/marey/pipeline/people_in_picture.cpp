@@ -8,6 +8,7 @@
 #include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/steady_camera.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
@@ -115,7 +116,7 @@ class PeopleInPicture final : public Stage {
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
       detector_ = detect::make_detector(options.detector);
-      if (!options.live) detector_->prime(feed.sample_beginning());
+      if (!options.live) prime(feed);
     }
     if (!options.masks.empty()) {
       if (!detector_) throw Error("{}: masks are of the background model, and detections are given", options.masks);
@@ -164,6 +165,7 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
+    if (shaking_) summary.warnings.push_back(*shaking_);
     if (detector_ == nullptr) return;
     const detect::DetectionCounts counts = detector_->detection_counts();
     if (counts.noise) summary.left_out["noise"] = *counts.noise;
@@ -171,6 +173,12 @@ class PeopleInPicture final : public Stage {
   }
 
  private:
+  void prime(const Feed& feed) {
+    const std::vector<Frame> samples = feed.sample_beginning();
+    detector_->prime(samples);
+    shaking_ = shaking(feed.camera(), samples);
+  }
+
   detect::Detections detect(const CameraFrame& given) {
     if (given.detections) return {.detections = *given.detections, .foreground = {}};
     return detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
@@ -210,6 +218,7 @@ class PeopleInPicture final : public Stage {
   std::vector<Instant> due_;
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;
+  std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 
 }  // namespace

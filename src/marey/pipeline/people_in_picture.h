@@ -25,6 +25,7 @@ struct PeopleInPictureOptions {
   double delay = 0;         ///< s that a live run looks ahead before it tells a moment
   bool seen_only = false;   ///< rows of those whom nobody saw at that moment are left out
   std::string beside;       ///< outlines that wait for the second pass lie in a nameless file beside this path
+  bool steady = false;      ///< the camera shakes: pictures are steadied first, and results are in the pixels of its rest
   bool with_lines = false;  ///< keep their measurement lines too, for an overlay
   std::string masks = {};   ///< a folder for what the background model sees in each frame (draw/mask_folder.h); empty: none
 };

@@ -32,6 +32,7 @@ struct PeopleOnGroundOptions {
   std::vector<Vector<2>> area;               ///< corners of another part of the ground, m, in place of a pitch; none: none
   TurningCameras turning;                    ///< of the rig's cameras, those that turn
   std::optional<BallOptions> ball = {};      ///< the ball is followed too; not where `live`
+  bool steady = false;                       ///< cameras shake: the pictures of each that stands are steadied first
   double margin = 2;                         ///< m round the pitch or the area where people still count
   /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;

@@ -4,7 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
+
+#include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
@@ -14,6 +17,7 @@
 #include "marey/format/take/take_file.h"
 #include "marey/format/tracks/view_box_file.h"
 #include "marey/pipeline/ground_offsets.h"
+#include "marey/pipeline/steady_camera.h"
 
 namespace marey::pipeline {
 namespace {
@@ -66,16 +70,40 @@ Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundO
   return sinks;
 }
 
+/// The rig's cameras, those that stand steadied; cameras that bring detections have no pictures to steady.
+std::vector<Feed> open_steadied(const Rig& rig, const PeopleOnGroundOptions& options, std::vector<SteadyCamera>& steady) {
+  std::vector<std::optional<SteadyCamera>> found(rig.cameras.size());
+  std::vector<std::optional<Feed>> opened(rig.cameras.size());
+  tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {
+    const RigCamera& camera = rig.cameras[i];
+    const CameraId id{static_cast<int>(i)};
+    FeedOptions how{.rate_hz = options.rate_hz};
+    if (!camera.source.empty() && turning_of(options.turning, id) == nullptr) {
+      found[i].emplace(camera, how, options.live);
+      how = found[i]->feed_options();
+    }
+    opened[i].emplace(camera, id, how);
+  });
+  std::vector<Feed> feeds;
+  for (auto& feed : opened) feeds.push_back(std::move(*feed));
+  for (auto& camera : found) {
+    if (camera) steady.push_back(std::move(*camera));
+  }
+  return feeds;
+}
+
 /// Sinks of files need the feeds, to know what to draw into; a caller's are there already.
 using SinksFor = std::function<Sinks&(const Rig& rig, const std::vector<Feed>& feeds)>;
 
 GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
-  std::vector<Feed> feeds = open_feeds(rig, {.rate_hz = options.rate_hz});
+  std::vector<SteadyCamera> steady;
+  std::vector<Feed> feeds = options.steady ? open_steadied(rig, options, steady) : open_feeds(rig, {.rate_hz = options.rate_hz});
   Sinks& sinks = sinks_for(rig, feeds);
   const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const Feed& feed) { return feed.has_pictures(); });
   const auto stage = people_on_ground(feeds, rig, options);
   Clock clock(std::move(feeds));
   GroundSummary summary{run(*stage, clock, sinks, hooks), stage->teams()};
+  for (const SteadyCamera& camera : steady) camera.report(summary);
   if (!options.teams.names.empty() && !pictures)
     summary.warnings.push_back("teams are told by their clothes, and there are no pictures: nobody has a team");
   return summary;
@@ -97,7 +125,7 @@ GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const Peopl
     enter_offsets(timed, offsets);
   }
   GroundSummary summary = run_over(timed, sinks_for, options, hooks);
-  summary.notes = offsets.notes;
+  summary.notes.insert(summary.notes.begin(), offsets.notes.begin(), offsets.notes.end());
   summary.warnings.insert(summary.warnings.begin(), offsets.warnings.begin(), offsets.warnings.end());
   return summary;
 }

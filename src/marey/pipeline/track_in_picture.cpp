@@ -10,15 +10,16 @@
 #include "marey/draw/overlay_film.h"
 #include "marey/draw/plot_file.h"
 #include "marey/format/recording_file.h"
+#include "marey/pipeline/steady_camera.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline {
 namespace {
 
-Feed open(const RigCamera& camera) {
+Feed open(const RigCamera& camera, const FeedOptions& options = {}) {
   if (camera.source.empty() == camera.detections.empty()) throw Error("{}", "give either pictures or detections to track");
   if (camera.rate_hz && !(*camera.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
-  return Feed(camera, CameraId{});
+  return Feed(camera, CameraId{}, options);
 }
 
 Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayOptions& drawn) {
@@ -45,13 +46,17 @@ Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
 Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
                      const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  Feed feed = open(camera);
+  std::optional<SteadyCamera> steady;
+  if (options.steady) steady.emplace(camera, FeedOptions{}, options.live);
+  Feed feed = open(camera, steady ? steady->feed_options() : FeedOptions{});
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
   own.beside = output.tracks;
   own.with_lines = !output.overlay.empty();
   const auto stage = people_in_picture(feed, own);
-  return run_alone(std::move(feed), *stage, sinks, hooks);
+  Summary summary = run_alone(std::move(feed), *stage, sinks, hooks);
+  if (steady) steady->report(summary);
+  return summary;
 }
 
 Summary track_markers(const RigCamera& camera, const TrackOutput& output, const MarkersInPictureOptions& options,

@@ -5,6 +5,9 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <variant>
+
+#include <Eigen/Geometry>
 
 #include "marey/simulate/match/goal_posts.h"
 #include "marey/simulate/match/match_ground.h"
@@ -12,9 +15,42 @@
 namespace marey::simulate::match {
 namespace {
 
-people::PeopleRenderer renderer_of(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
+constexpr double kShakenExposure = 0.01;  // s
+
+/// What a shaking camera may see beside its picture, px: an even number.
+int match_margin(double shake_px) {
+  return shake_px > 0 ? 8 + 2 * static_cast<int>(std::ceil(3 * shake_px)) : 0;
+}
+
+/// The same camera with `margin` px more on each side.
+GroundView wider(const GroundView& view, int margin) {
+  if (margin == 0) return view;
+  const Camera& camera = *view.camera();
+  geometry::Lens lens = camera.lens();
+  std::visit([&](auto& model) { model.principal += Vector<2>(margin, margin); }, lens);
+  return GroundView(Camera(lens, camera.camera_from_world(), camera.size() + cv::Size(2 * margin, 2 * margin)), view.surface());
+}
+
+double focal_of(const Camera& camera) {
+  return std::visit([](const auto& model) { return model.focal.x(); }, camera.lens());
+}
+
+/// Where a pixel of the camera, turned by `turn`, lies in its picture at rest: through the lens as it is.
+people::PixelMap at_rest(const Camera& camera, const Vector<3>& turn) {
+  const Camera alone(camera.lens(), Rigid3{}, camera.size());
+  const Matrix<3> back = Eigen::AngleAxisd(-turn.norm(), turn.stableNormalized()).toRotationMatrix();
+  return [alone, back](const Vector<2>& pixel) -> Vector<2> {
+    const auto ray = alone.bearing(pixel);
+    const auto seen = ray ? alone.project(back * *ray) : std::nullopt;
+    return seen.value_or(pixel);
+  };
+}
+
+people::PeopleRenderer renderer_of(const GroundView& at_camera, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                    const MatchFilmOptions& options, std::uint64_t seed) {
   people::RenderOptions render;
+  render.margin = match_margin(options.shake_px);
+  const GroundView view = wider(at_camera, render.margin);
   render.samples = 3;
   render.shadows = options.shadows;
   render.sun = {0.45, 0.3, 1.0};
@@ -56,7 +92,13 @@ std::vector<Vector<2>> known_places(const geometry::PitchSize& pitch) {
 
 MatchFilm::MatchFilm(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                      const MatchFilmOptions& options, std::uint64_t seed)
-    : options_(options), seed_(seed), renderer_(renderer_of(view, world_from_pitch, pitch, options, seed)) {}
+    : options_(options),
+      seed_(seed),
+      camera_(*view.camera()),
+      renderer_(renderer_of(view, world_from_pitch, pitch, options, seed)) {
+  const cv::Size size = view.size();
+  if (options.shake_px > 0) shake_.emplace(options.shake_px, focal_of(camera_), std::hypot(size.width, size.height) / 2, seed);
+}
 
 Picture MatchFilm::render(std::span<const people::Figure, kMatchPeople> figures,
                           std::span<const people::Stance, kMatchPeople> stances, double time, std::int64_t index) const {
@@ -74,6 +116,11 @@ people::RenderedFrame MatchFilm::render_with(std::span<const people::Figure, kMa
   people::FrameConditions conditions;
   conditions.light = 1 + options_.light_change * (swing - 1) / 2;
   conditions.seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(index);
+  if (shake_) {
+    constexpr int kMoments = 3;
+    for (int i = 0; i < kMoments; ++i)
+      conditions.moments.push_back(at_rest(camera_, shake_->turn(time + kShakenExposure * ((i + 0.5) / kMoments - 0.5))));
+  }
   return renderer_.render(people, conditions, balls);
 }
 

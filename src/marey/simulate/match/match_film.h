@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "marey/core/picture.h"
 #include "marey/geometry/camera.h"
 #include "marey/geometry/pitch.h"
+#include "marey/simulate/camera_shake.h"
 #include "marey/simulate/match/match_view.h"
 #include "marey/simulate/people/camera_look.h"
 
@@ -21,6 +23,7 @@ struct MatchFilmOptions {
   double contact = 0;             ///< share of the light that shoes keep from the ground right under them
   bool ball = false;              ///< there is one
   double exposure_s = 1.0 / 150;  ///< s, for which the shutter is open: what moves faster is smeared; only the ball is
+  double shake_px = 0;            ///< cameras shake: what pan and tilt each move the picture by, root mean square
   people::CameraLook look = {};   ///< what lens, sharpening and codec make of the picture
 };
 
@@ -41,6 +44,8 @@ class MatchFilm {
  private:
   MatchFilmOptions options_;
   std::uint64_t seed_;
+  Camera camera_;
+  std::optional<CameraShake> shake_;
   people::PeopleRenderer renderer_;
 };
 

@@ -73,6 +73,33 @@ Picture scaled(const Picture& picture, cv::Size size) {
   return Picture::from_bgr(bgr);
 }
 
+/// What a shaking camera may see beside its picture, px: an even number.
+int margin_for(double shake_px) {
+  return 8 + 2 * static_cast<int>(std::ceil(3 * shake_px));
+}
+
+/// The picture goes on as in a mirror.
+Picture widened(const Picture& picture, int margin) {
+  if (margin == 0) return picture;
+  cv::Mat bgr;
+  cv::copyMakeBorder(picture.bgr(), bgr, margin, margin, margin, margin, cv::BORDER_REFLECT_101);
+  return Picture::from_bgr(bgr);
+}
+
+/// Where the camera looks while the shutter of frame `index` is open: as many moments as make a blur of it.
+std::vector<PixelMap> moments_of(const CameraShake& shake, const LevelCamera& camera, const PeopleFilmOptions& options, int index) {
+  const double time = index / options.rate_hz, half = PeopleFilm::kExposure / 2;
+  const double smear = camera.focal * (shake.turn(time + half) - shake.turn(time - half)).head<2>().norm();
+  const int count = std::clamp(static_cast<int>(std::ceil(smear)), 1, 6);
+  const Vector<2> middle((camera.size.width - 1) / 2.0, (camera.size.height - 1) / 2.0);
+  std::vector<PixelMap> moments;
+  for (int i = 0; i < count; ++i) {
+    const double at = time + half * ((2 * i + 1.0) / count - 1);
+    moments.push_back(turned_pixels(-shake.turn(at), camera.focal, middle));
+  }
+  return moments;
+}
+
 class FilmSource final : public Source {
  public:
   explicit FilmSource(std::shared_ptr<const PeopleFilm> film) : film_(std::move(film)) {
@@ -122,7 +149,6 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
     FrameConditions& now = conditions_.emplace_back();
     now.light = light[i];
     now.seed = seed * 1'000'003 + i;
-    if (options_.shake_px > 0) now.shift = options_.shake_px * Vector<2>(random.gaussian(), random.gaussian());
   }
   PeopleFilmOptions before = options_;
   before.people = 6;
@@ -138,8 +164,20 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   render.shadows = options_.shadows;
   render.noise = options_.noise;
   render.look = options_.look;
-  const Picture ground = options_.ground.empty() ? draw_lawn(camera_, 1) : scaled(options_.ground, options_.size);
-  renderer_ = std::make_unique<PeopleRenderer>(ground, camera_, std::move(motion.posts), render);
+  LevelCamera seen = camera_;
+  if (options_.shake_px > 0) {
+    shake_.emplace(options_.shake_px, camera_.focal, std::hypot(camera_.size.width, camera_.size.height) / 2, seed);
+    for (int i = 0; i < frames(); ++i) conditions_[static_cast<std::size_t>(i)].moments = moments_of(*shake_, camera_, options_, i);
+    render.margin = margin_for(options_.shake_px);
+    seen.size += cv::Size(2 * render.margin, 2 * render.margin);
+  }
+  const Picture ground =
+      options_.ground.empty() ? draw_lawn(seen, 1) : widened(scaled(options_.ground, options_.size), render.margin);
+  renderer_ = std::make_unique<PeopleRenderer>(ground, seen, std::move(motion.posts), render);
+}
+
+Vector<3> PeopleFilm::turn(int index) const {
+  return shake_ ? shake_->turn(index / options_.rate_hz) : Vector<3>::Zero().eval();
 }
 
 RenderedFrame PeopleFilm::render(int index) const {

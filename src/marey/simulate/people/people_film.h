@@ -11,6 +11,7 @@
 
 #include "marey/core/picture.h"
 #include "marey/core/source.h"
+#include "marey/simulate/camera_shake.h"
 #include "marey/simulate/ground_picture.h"
 #include "marey/simulate/people/figure.h"
 #include "marey/simulate/people/people_renderer.h"
@@ -45,7 +46,7 @@ struct PeopleFilmOptions {
   double height_px = 60;      ///< of a person of 1.78 m who stands in the middle of the picture
   double pace = 1;            ///< factor on all speeds
   double noise = 2;           ///< standard deviation of luma, grey levels
-  double shake_px = 0;        ///< standard deviation of the picture's movement, each axis
+  double shake_px = 0;        ///< the camera shakes: what pan and tilt each move the picture by, root mean square
   LightChange light = LightChange::steady;
   bool shadows = true;
   CameraLook look;           ///< what lens, sharpening and codec make of the picture
@@ -59,6 +60,8 @@ struct PeopleFilmOptions {
 /// A film of people whose truth is known: the same for the same seed.
 class PeopleFilm {
  public:
+  static constexpr double kExposure = 0.01;  ///< s; people stand still for that long, a camera that shakes does not
+
   /// Throws Error where an option is out of its domain.
   PeopleFilm(PeopleSituation situation, std::uint64_t seed, const PeopleFilmOptions& options = {});
 
@@ -69,7 +72,10 @@ class PeopleFilm {
   /// All who are in the film at all, in the order of their ids 1, 2, …
   const std::vector<Figure>& figures() const { return figures_; }
 
-  /// Frame 0 ≤ `index` < frames(): picture and truth. Safe to call from several threads.
+  /// The turn of a camera that shakes from its rest, in frame 0 ≤ `index` < frames(): as CameraShake has it.
+  Vector<3> turn(int index) const;
+
+  /// Frame 0 ≤ `index` < frames(): picture and truth, which is that of the camera at rest. Safe to call from several threads.
   RenderedFrame render(int index) const;
   /// What the camera saw before the film began, in the light of the film: other people who keep apart, moments apart. To learn the
   /// scene from. 0 ≤ `index` < kEarlier.
@@ -85,6 +91,7 @@ class PeopleFilm {
   std::vector<FrameConditions> conditions_;       ///< by frame
   std::vector<Figure> earlier_figures_;
   std::vector<std::vector<PosedFigure>> earlier_;
+  std::optional<CameraShake> shake_;
   std::unique_ptr<PeopleRenderer> renderer_;
 };
 

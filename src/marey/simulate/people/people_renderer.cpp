@@ -322,6 +322,21 @@ void PeopleRenderer::see_past(std::span<const Sprite> sprites, const Sprite& own
   truth.visible_share = truth.visible.area() / truth.whole.area();
 }
 
+/// The truth in the pixels of the picture without its margin, and without those who are in the margin alone.
+void PeopleRenderer::come_from_margin(RenderedFrame& frame) const {
+  const int margin = options_.margin;
+  if (margin == 0) return;
+  const cv::Size picture = size() - cv::Size(2 * margin, 2 * margin);
+  for (TrueFigure& person : frame.people) {
+    for (Silhouette* shape : {&person.whole, &person.visible}) shape->lattice -= cv::Point(margin, margin) * shape->samples;
+    crop(person.visible, picture);
+    person.visible_share = person.visible.empty() ? 0 : person.visible.area() / person.whole.area();
+    person.foot -= Vector<2>(margin, margin);
+  }
+  std::erase_if(frame.people, [&](const TrueFigure& person) { return !meets(person.whole, picture); });
+  for (TrueBall& ball : frame.balls) ball.at -= Vector<2>(margin, margin);
+}
+
 RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const FrameConditions& conditions,
                                      std::span<const PosedBall> balls) const {
   Planes planes = ground(conditions);
@@ -367,6 +382,8 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
   }
   lay_all(std::move(sprites), std::move(ball_sprites), planes);
   if (conditions.light != 1) dim(planes, conditions.light);
+  if (!conditions.moments.empty() || options_.margin > 0) planes = seen_through(planes, conditions.moments, options_.margin);
+  come_from_margin(frame);
   add_noise(planes, conditions.seed);
   apply(options_.look, planes.luma, planes.cb, planes.cr);
   frame.picture = Picture(planes.luma, planes.cb, planes.cr, Picture::Range::limited);

@@ -9,6 +9,7 @@
 #include "marey/core/geometry.h"
 #include "marey/core/picture.h"
 #include "marey/simulate/people/camera_look.h"
+#include "marey/simulate/people/exposure.h"
 #include "marey/simulate/people/figure.h"
 #include "marey/simulate/people/silhouette_raster.h"
 
@@ -53,12 +54,14 @@ struct RenderOptions {
   double contact = 0;                         ///< share of the light that shoes keep from the ground right under them
   double noise = 2;                           ///< standard deviation of luma, grey levels; chroma has half of it
   CameraLook look;                            ///< lens, sharpening and codec
+  int margin = 0;                             ///< px, even: so far the ground given reaches beyond the pictures, on each side
 };
 
 /// What changes from frame to frame besides the people.
 struct FrameConditions {
   double light = 1;                     ///< factor on every level
-  Vector<2> shift = Vector<2>::Zero();  ///< px that the picture moves: the camera shakes
+  Vector<2> shift = Vector<2>::Zero();  ///< px that the picture moves, and its truth with it
+  std::vector<PixelMap> moments = {};   ///< of a camera that moves while the shutter is open; its truth is that of the rest
   std::uint64_t seed = 0;               ///< of the noise
 };
 
@@ -93,8 +96,8 @@ struct Sprite;
 /// Draws people, their shadows and posts over a picture of the ground.
 class PeopleRenderer {
  public:
-  /// `ground` is the empty scene as the camera sees it, colour or grey, of the size that frames will have. Posts stand in it for
-  /// good.
+  /// `ground` is the empty scene as the camera sees it, colour or grey, of the size that frames will have and `margin` more on each
+  /// side; `projection` goes to its pixels. Posts stand in it for good.
   PeopleRenderer(const Picture& ground, Projection projection, std::vector<Post> posts = {}, const RenderOptions& options = {});
 
   /// The same for the same arguments. Safe to call from several threads.
@@ -114,6 +117,7 @@ class PeopleRenderer {
   void see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const;
   void darken(Planes& planes, std::span<const Silhouette> shadows) const;
   void add_noise(Planes& planes, std::uint64_t seed) const;
+  void come_from_margin(RenderedFrame& frame) const;
 
   cv::Mat luma_, cb_, cr_;
   Projection projection_;

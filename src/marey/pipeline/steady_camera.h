@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "marey/core/frame.h"
+#include "marey/core/rig.h"
+#include "marey/pipeline/feed.h"
+#include "marey/pipeline/run.h"
+#include "marey/source/steady/steadier.h"
+
+namespace marey::pipeline {
+
+/// A camera that ought to stand and shakes: its feed gives pictures as the camera at rest would have taken them
+/// (source/steady/standing_scene.h). Those that cannot be steadied are left out, and their time passes.
+class SteadyCamera {
+ public:
+  /// The scene is learned from the beginning first, unless `live` or the pictures cannot be read twice. Throws Error where they
+  /// show nothing that could be held on to, or cannot be read.
+  SteadyCamera(const RigCamera& camera, const FeedOptions& options, bool live);
+
+  /// What the camera's feed is opened with.
+  FeedOptions feed_options() const;
+  /// How far the camera moved goes among the notes; what was lost, and whether it was turned for good, among the warnings.
+  void report(Summary& summary) const;
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
+  RigCamera camera_;
+  FeedOptions options_;
+  bool opens_again_;
+};
+
+/// What the user should know where `samples` of a camera that is not steadied show that it shakes; else nothing.
+std::optional<std::string> shaking(const RigCamera& camera, std::span<const Frame> samples);
+
+}  // namespace marey::pipeline

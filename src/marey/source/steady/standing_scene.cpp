@@ -1,0 +1,335 @@
+#include "marey/source/steady/standing_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace marey::source::steady {
+namespace {
+
+constexpr int kWindow = 15, kLevels = 3;
+constexpr double kContrast = 40, kLeastContrast = 10;  // grey levels: standard deviation of a shrunk picture; of a flat one
+constexpr int kGridAcross = 14, kGridDown = 9;         // corners are taken from everywhere
+constexpr int kBorder = 6;                             // px, in which no corner is followed
+constexpr double kUsualFocal = 1.5;                    // in widths of the picture
+constexpr std::array<double, 13> kFocals{0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.5, 5.0, 10.0, 30.0};  // in widths
+constexpr double kTellsFocal = 1.5;  // px of motion, from which on the focal length shows
+constexpr std::size_t kFirstFocalPictures = 10, kFocalPictures = 40;
+constexpr int kMeanEvery = 5, kMeanLeast = 10;  // pictures
+constexpr double kMeanShare = 0.08;
+constexpr std::size_t kMostKinds = 6;
+constexpr int kSearchAgain = 5;  // pictures: one that is lost for longer is looked for everywhere so often
+constexpr int kCoarse = 2;
+constexpr int kInMedian = 15;
+
+std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients) {
+  std::vector<cv::Mat> pyramid;
+  cv::buildOpticalFlowPyramid(picture, pyramid, {kWindow, kWindow}, kLevels, gradients);
+  return pyramid;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The best few corners of each cell of a grid.
+std::vector<cv::Point2f> corners_of(const cv::Mat& picture, int most, double least) {
+  cv::Mat as_float, quality, best;
+  picture.convertTo(as_float, CV_32F);
+  cv::cornerMinEigenVal(as_float, quality, 7, 3);
+  cv::dilate(quality, best, cv::Mat::ones(9, 9, CV_8U));
+  const int each = std::max(1, most / (kGridAcross * kGridDown)) + 1;
+  struct Corner {
+    float quality;
+    cv::Point2f at;
+  };
+  std::vector<Corner> all;
+  for (int cell = 0; cell < kGridAcross * kGridDown; ++cell) {
+    const int column = cell % kGridAcross, row = cell / kGridAcross;
+    const int left = std::max(kBorder, column * picture.cols / kGridAcross),
+              top = std::max(kBorder, row * picture.rows / kGridDown);
+    const int right = std::min(picture.cols - kBorder, (column + 1) * picture.cols / kGridAcross);
+    const int bottom = std::min(picture.rows - kBorder, (row + 1) * picture.rows / kGridDown);
+    std::vector<Corner> here;
+    for (int y = top; y < bottom; ++y) {
+      for (int x = left; x < right; ++x) {
+        const float value = quality.at<float>(y, x);
+        if (value >= least && value == best.at<float>(y, x))
+          here.push_back({value, {static_cast<float>(x), static_cast<float>(y)}});
+      }
+    }
+    const auto better = [](const Corner& a, const Corner& b) { return a.quality > b.quality; };
+    std::stable_sort(here.begin(), here.end(), better);
+    if (std::ssize(here) > each) here.resize(static_cast<std::size_t>(each));
+    all.insert(all.end(), here.begin(), here.end());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Corner& a, const Corner& b) { return a.quality > b.quality; });
+  std::vector<cv::Point2f> corners;
+  for (const Corner& corner : all) {
+    if (std::ssize(corners) < most) corners.push_back(corner.at);
+  }
+  return corners;
+}
+
+/// Pixel by pixel.
+cv::Mat median_picture(const std::vector<cv::Mat>& pictures) {
+  cv::Mat median(pictures.front().size(), CV_8UC1);
+  std::vector<std::uint8_t> levels(pictures.size());
+  for (int y = 0; y < median.rows; ++y) {
+    for (int x = 0; x < median.cols; ++x) {
+      for (std::size_t i = 0; i < pictures.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
+      const auto middle = levels.begin() + std::ssize(levels) / 2;
+      std::nth_element(levels.begin(), middle, levels.end());
+      median.at<std::uint8_t>(y, x) = *middle;
+    }
+  }
+  return median;
+}
+
+}  // namespace
+
+StandingScene::StandingScene(cv::Size picture, const std::optional<PinholeView>& known, const StandingSceneOptions& options)
+    : options_(options), picture_(picture), focal_known_(known.has_value()) {
+  shrink_ = std::max(1, (picture.width + options.most_across - 1) / options.most_across);
+  size_ = {std::max(1, picture.width / shrink_), std::max(1, picture.height / shrink_)};
+  if (known) {
+    view_.focal = known->focal / shrink_;
+    view_.principal = (known->principal + Vector<2>(0.5, 0.5)) / shrink_ - Vector<2>(0.5, 0.5);
+  } else {
+    view_.focal = kUsualFocal * size_.width;
+    view_.principal = {(size_.width - 1) / 2.0, (size_.height - 1) / 2.0};
+  }
+}
+
+PinholeView StandingScene::view() const {
+  return {view_.focal * shrink_, (view_.principal + Vector<2>(0.5, 0.5)) * shrink_ - Vector<2>(0.5, 0.5)};
+}
+
+/// Levels are brought to one mean and contrast, so that a cloud changes little.
+cv::Mat StandingScene::shrunk(const Picture& picture) const {
+  const cv::Mat luma = picture.luma()({0, 0, size_.width * shrink_, size_.height * shrink_});
+  cv::Mat small = luma, result;
+  if (shrink_ > 1) cv::resize(luma, small, size_, 0, 0, cv::INTER_AREA);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(small, mean, deviation);
+  const double of_8_bits = small.depth() == CV_16U ? 1.0 / 256 : 1.0;
+  const double gain = kContrast / std::max(deviation[0], kLeastContrast / of_8_bits);
+  small.convertTo(result, CV_8U, gain, 128 - gain * mean[0]);
+  return result;
+}
+
+bool StandingScene::take_corners(const cv::Mat& from) {
+  Corners corners;
+  corners.at = corners_of(from, options_.corners, options_.least_corner);
+  if (std::ssize(corners.at) < options_.fewest) return false;
+  corners.pyramid = pyramid_of(from, true);
+  if (corners_.size() == kMostKinds) corners_.erase(corners_.begin() + 1);  // those of the beginning lie where the rest does
+  corners_.push_back(std::move(corners));
+  used_ = corners_.size() - 1;
+  return true;
+}
+
+/// Where the corners that can be followed are seen; `within` is how many would be in the picture.
+std::vector<FollowedPlace> StandingScene::follow(const Corners& corners, const std::vector<cv::Mat>& pyramid,
+                                                 const SceneMotion& start, int& within) const {
+  const Matrix<3> to_picture = moved_from_rest(start, view_);
+  const auto inside = [this](const cv::Point2f& at) {
+    return at.x >= kBorder && at.y >= kBorder && at.x < size_.width - kBorder && at.y < size_.height - kBorder;
+  };
+  std::vector<cv::Point2f> from, to;
+  for (const cv::Point2f& corner : corners.at) {
+    const Vector<3> ahead = to_picture * Vector<3>(corner.x, corner.y, 1);
+    const cv::Point2f at(static_cast<float>(ahead.x() / ahead.z()), static_cast<float>(ahead.y() / ahead.z()));
+    if (!inside(at)) continue;
+    from.push_back(corner);
+    to.push_back(at);
+  }
+  within = static_cast<int>(from.size());
+  std::vector<FollowedPlace> places;
+  if (from.empty()) return places;
+  std::vector<unsigned char> found;
+  std::vector<float> error;
+  cv::calcOpticalFlowPyrLK(corners.pyramid, pyramid, from, to, found, error, {kWindow, kWindow}, kLevels,
+                           {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 15, 0.02}, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (found[i] != 0 && inside(to[i])) places.push_back({{from[i].x, from[i].y}, {to[i].x, to[i].y}});
+  }
+  return places;
+}
+
+std::optional<SceneFit> StandingScene::fit(const std::vector<FollowedPlace>& places, int within, std::size_t all) const {
+  const auto found = fit_motion(places, view_, options_.agree);
+  if (!found || found->agreeing < options_.fewest || found->agreeing < options_.share * within) return std::nullopt;
+  if (found->agreeing < options_.share_of_all * static_cast<double>(all)) return std::nullopt;
+  if (found->motion.turn.head<2>().norm() * view_.focal > options_.farthest * size_.width) return std::nullopt;
+  if (found->spread < options_.least_spread * size_.height) return std::nullopt;
+  return found;
+}
+
+std::optional<SceneFit> StandingScene::find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid,
+                                                 const SceneMotion& start, std::vector<FollowedPlace>* kept) const {
+  int within = 0;
+  std::vector<FollowedPlace> places = follow(corners, pyramid, start, within);
+  auto found = fit(places, within, corners.at.size());
+  if (kept != nullptr) *kept = std::move(places);
+  return found;
+}
+
+cv::Mat StandingScene::coarse(const cv::Mat& picture) const {
+  cv::Mat small, result;
+  cv::resize(picture, small, {}, 1.0 / kCoarse, 1.0 / kCoarse, cv::INTER_AREA);
+  small.convertTo(result, CV_32F);
+  return result;
+}
+
+/// With all corners that are known, from wherever the whole picture seems to have gone.
+std::optional<SceneFit> StandingScene::find_anywhere(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+  const cv::Mat small = coarse(now);
+  cv::Mat window;
+  cv::createHanningWindow(window, small.size(), CV_32F);
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const std::size_t kind = (used_ + i) % corners_.size();
+    const cv::Point2d by = kCoarse * cv::phaseCorrelate(coarse(corners_[kind].pyramid[0]), small, window);
+    SceneMotion start;
+    start.turn = {-by.y / view_.focal, by.x / view_.focal, 0};
+    const auto found = find_from(corners_[kind], pyramid, start);
+    if (!found) continue;
+    used_ = kind;
+    return found;
+  }
+  return std::nullopt;
+}
+
+/// The focal length with which the pictures' places lie best.
+void StandingScene::settle_focal(const std::vector<std::vector<FollowedPlace>>& pictures) {
+  double least = 0;
+  std::optional<double> best;
+  for (const double focal : kFocals) {
+    PinholeView view = view_;
+    view.focal = focal * size_.width;
+    double cost = 0;
+    for (const auto& places : pictures) {
+      if (const auto found = fit_motion(places, view, options_.agree)) cost += found->cost;
+    }
+    if (best && cost >= least) continue;
+    least = cost;
+    best = view.focal;
+  }
+  if (best) view_.focal = *best;
+}
+
+/// While pictures come one by one: as soon as there are enough that tell it. Whether it has changed.
+bool StandingScene::learn_focal(const std::vector<FollowedPlace>& places, const SceneMotion& motion) {
+  if (focal_known_ || motion.turn.head<2>().norm() * view_.focal < kTellsFocal) return false;
+  for_focal_.push_back(places);
+  if (for_focal_.size() != kFirstFocalPictures && for_focal_.size() != kFocalPictures) return false;
+  settle_focal(for_focal_);
+  focal_known_ = for_focal_.size() == kFocalPictures;
+  if (focal_known_) for_focal_.clear();
+  return true;
+}
+
+cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) const {
+  const Matrix<3> h = moved_from_rest(motion, view_);
+  const cv::Matx33d by(h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1), h(2, 2));
+  cv::Mat result;
+  cv::warpPerspective(now, result, by, now.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  return result;
+}
+
+/// Whether a third of the samples show what one of them does: they then have places and motions against it.
+bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
+  corners_.clear();
+  if (!take_corners(samples[anchor].shrunk)) return false;
+  last_ = {};
+  std::size_t found = 0;
+  for (Sampled& sample : samples) {
+    const auto pyramid = pyramid_of(sample.shrunk, false);
+    auto fit = find_from(corners_.front(), pyramid, last_, &sample.places);
+    if (!fit) fit = find_anywhere(sample.shrunk, pyramid);
+    sample.motion = fit ? std::optional(fit->motion) : std::nullopt;
+    if (!fit) continue;
+    last_ = fit->motion;
+    ++found;
+  }
+  return 3 * found >= samples.size();
+}
+
+bool StandingScene::learn(std::span<const Picture> pictures) {
+  std::vector<Sampled> samples;
+  for (const Picture& picture : pictures) {
+    if (picture.size() == picture_) samples.push_back({shrunk(picture), {}, {}});
+  }
+  bool found = false;
+  for (std::size_t quarter = 0; quarter < 4 && !found && !samples.empty(); ++quarter)
+    found = begin_with(samples, quarter * (samples.size() - 1) / 3);
+  if (!found) {
+    corners_.clear();
+    return false;
+  }
+  std::erase_if(samples, [](const Sampled& sample) { return !sample.motion; });
+  std::vector<std::vector<FollowedPlace>> telling;
+  for (const Sampled& sample : samples) {
+    if (sample.motion->turn.head<2>().norm() * view_.focal >= kTellsFocal) telling.push_back(sample.places);
+  }
+  if (!focal_known_ && !telling.empty()) settle_focal(telling);
+  if (telling.size() >= 5) focal_known_ = true;
+  SceneMotion rest;
+  std::array<std::vector<double>, 3> turns;
+  for (Sampled& sample : samples) {
+    if (const auto again = fit_motion(sample.places, view_, options_.agree)) sample.motion = again->motion;
+    for (int axis = 0; axis < 3; ++axis) turns[static_cast<std::size_t>(axis)].push_back(sample.motion->turn[axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis) rest.turn[axis] = median_of(turns[static_cast<std::size_t>(axis)]);
+  std::vector<cv::Mat> laid_over;
+  const std::size_t step = (samples.size() + kInMedian - 1) / kInMedian;
+  for (std::size_t i = 0; i < samples.size(); i += step)
+    laid_over.push_back(at_rest(samples[i].shrunk, against(*samples[i].motion, rest)));
+  corners_.clear();
+  last_ = {};
+  return take_corners(median_picture(laid_over));
+}
+
+/// The mean of recent pictures, and new corners out of it where too few of the old ones are found again.
+void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
+  Corners& corners = corners_[used_];
+  const double share = static_cast<double>(fit.agreeing) / static_cast<double>(corners.at.size());
+  agreed_ = agreed_ == 0 ? share : agreed_ + 0.05 * (share - agreed_);
+  corners.agreed = std::max(corners.agreed, agreed_);
+  if (++since_mean_ < kMeanEvery) return;
+  since_mean_ = 0;
+  if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
+  ++in_mean_;
+  cv::accumulateWeighted(at_rest(now, fit.motion), mean_, std::max(kMeanShare, 1.0 / in_mean_));
+  if (in_mean_ < kMeanLeast || agreed_ > options_.renew * corners.agreed) return;
+  cv::Mat levels;
+  mean_.convertTo(levels, CV_8U);
+  in_mean_ = 0;
+  if (take_corners(levels)) agreed_ = 0;
+}
+
+std::optional<SceneMotion> StandingScene::find(const Picture& picture) {
+  if (picture.size() != picture_) return std::nullopt;
+  const cv::Mat now = shrunk(picture);
+  if (corners_.empty()) return take_corners(now) ? std::optional(SceneMotion{}) : std::nullopt;
+  const auto pyramid = pyramid_of(now, false);
+  std::vector<FollowedPlace> places;
+  auto found = find_from(corners_[used_], pyramid, last_, &places);
+  if (found) {
+    if (learn_focal(places, found->motion)) found = fit_motion(places, view_, options_.agree);
+  } else if (lost_run_ % kSearchAgain == 0) {
+    found = find_anywhere(now, pyramid);
+  }
+  lost_run_ = found ? 0 : lost_run_ + 1;
+  if (!found) return std::nullopt;
+  last_ = found->motion;
+  keep_up(now, *found);
+  return found->motion;
+}
+
+}  // namespace marey::source::steady

@@ -1,0 +1,196 @@
+#include "marey/source/steady/steadier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "marey/source/steady/near_warp.h"
+
+namespace marey::source::steady {
+namespace {
+
+constexpr double kLostForGood = 10;         // s
+constexpr double kLeastBump = 3;            // px
+constexpr std::ptrdiff_t kBumpSeconds = 3;  // s that it must have stood before and after
+constexpr double kBumpDeviations = 3;       // of a second's mean, on either side
+constexpr double kEnough = 0.7;             // share of samples whose motion must be known to tell of it
+
+Vector<2> moved(const Matrix<3>& homography, const Vector<2>& pixel) {
+  return (homography * pixel.homogeneous()).hnormalized();
+}
+
+/// The same homography between the halved pixels of chroma.
+Matrix<3> of_chroma(const Matrix<3>& homography) {
+  Matrix<3> from_chroma = Matrix<3>::Identity();
+  from_chroma.diagonal() << 2, 2, 1;
+  from_chroma.col(2) << 0.5, 0.5, 1;
+  return from_chroma.inverse() * homography * from_chroma;
+}
+
+Picture at_rest(const Picture& picture, const Picture& under, const Matrix<3>& homography) {
+  const Picture& ground = under.size() == picture.size() && under.is_colour() == picture.is_colour() ? under : picture;
+  cv::Mat luma = ground.luma().clone();
+  warp_nearly(picture.luma(), homography, luma);
+  if (!picture.is_colour()) return Picture(luma);
+  cv::Mat cb = ground.cb().clone(), cr = ground.cr().clone();
+  warp_nearly(picture.cb(), of_chroma(homography), cb);
+  warp_nearly(picture.cr(), of_chroma(homography), cr);
+  return {luma, cb, cr, picture.range()};
+}
+
+/// The mean, over four places of the picture, of how far each is from its rest, squared.
+double squared_motion(const Matrix<3>& homography, cv::Size size) {
+  double sum = 0;
+  for (const double x : {0.25, 0.75}) {
+    for (const double y : {0.25, 0.75}) {
+      const Vector<2> at(x * size.width, y * size.height);
+      sum += (moved(homography, at) - at).squaredNorm() / 4;
+    }
+  }
+  return sum;
+}
+
+class SteadySource final : public Source {
+ public:
+  SteadySource(std::unique_ptr<Source> source, Steadier steadier) : source_(std::move(source)), steadier_(std::move(steadier)) {}
+
+  const SourceInfo& info() const override { return source_->info(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
+  std::optional<Frame> next() override {
+    auto frame = source_->next();
+    if (frame && !frame->picture.empty()) frame = steadier_.steadied(std::move(*frame));
+    return frame;
+  }
+
+ private:
+  std::unique_ptr<Source> source_;
+  Steadier steadier_;
+};
+
+}  // namespace
+
+void SteadyLog::add(const Frame& frame, const std::optional<SceneMotion>& motion, const PinholeView& view, cv::Size size) {
+  const std::lock_guard lock(writing_);
+  ++counts_.pictures;
+  last_time_ = seconds(frame.time);
+  if (!motion) {
+    ++counts_.lost;
+    lost_.insert(frame.index);
+    if (!lost_from_) lost_from_ = last_time_;
+    return;
+  }
+  lost_from_.reset();
+  const Matrix<3> homography = moved_from_rest(*motion, view);
+  const double squared = squared_motion(homography, size);
+  squares_ += squared;
+  counts_.most_px = std::max(counts_.most_px, std::sqrt(squared));
+  if (seconds_.empty() || last_time_ >= seconds_.back().time + 1) seconds_.push_back({.time = last_time_});
+  const Vector<2> middle(size.width / 2.0, size.height / 2.0);
+  seconds_.back().sum += moved(homography, middle) - middle;
+  ++seconds_.back().count;
+}
+
+bool SteadyLog::was_lost(std::int64_t index) {
+  const std::lock_guard lock(writing_);
+  return lost_.erase(index) > 0;
+}
+
+SteadyLog::Report SteadyLog::report() const {
+  const std::lock_guard lock(writing_);
+  Report report = counts_;
+  const std::int64_t told = report.pictures - report.lost;
+  if (told > 0) report.rms_px = std::sqrt(squares_ / static_cast<double>(told));
+  if (lost_from_ && last_time_ - *lost_from_ >= kLostForGood) report.lost_since_s = lost_from_;
+  // Where the middle stood before and after each second: the largest step of all, if it is one.
+  std::vector<Vector<2>> means;
+  for (const Second& second : seconds_) means.push_back(second.sum / second.count);
+  const std::ptrdiff_t n = std::ssize(means);
+  Vector<2> all = Vector<2>::Zero();
+  for (const Vector<2>& mean : means) all += mean;
+  Vector<2> before = Vector<2>::Zero();
+  double most = 0;
+  std::ptrdiff_t split = 0;
+  for (std::ptrdiff_t i = 1; i < n; ++i) {
+    before += means[static_cast<std::size_t>(i - 1)];
+    if (i < kBumpSeconds || n - i < kBumpSeconds) continue;
+    const auto left = static_cast<double>(i), right = static_cast<double>(n - i);
+    const Vector<2> by = (all - before) / right - before / left;
+    const double gain = left * right * by.squaredNorm();
+    if (gain <= most) continue;
+    most = gain;
+    split = i;
+    report.bump = Bump{.time = seconds_[static_cast<std::size_t>(i)].time, .by_px = by.norm()};
+  }
+  if (!report.bump) return report;
+  Vector<2> sums[2] = {Vector<2>::Zero(), Vector<2>::Zero()};
+  for (std::ptrdiff_t i = 0; i < n; ++i) sums[i >= split] += means[static_cast<std::size_t>(i)];
+  double scatter = 0;
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const double count = i >= split ? static_cast<double>(n - split) : static_cast<double>(split);
+    scatter += (means[static_cast<std::size_t>(i)] - sums[i >= split] / count).squaredNorm() / static_cast<double>(n);
+  }
+  if (report.bump->by_px < kLeastBump || report.bump->by_px < kBumpDeviations * std::sqrt(scatter)) report.bump.reset();
+  return report;
+}
+
+std::string said(const SteadyLog::Report& report) {
+  return fmt::format("steadied {} of {} pictures: the camera moved by {:.1f} px (root mean square), {:.1f} px at most",
+                     report.pictures - report.lost, report.pictures, report.rms_px, report.most_px);
+}
+
+std::vector<std::string> warned(const SteadyLog::Report& report) {
+  std::vector<std::string> all;
+  if (report.lost > 0)
+    all.push_back(
+        fmt::format("{} of {} pictures could not be steadied, and nobody was looked for in them", report.lost, report.pictures));
+  if (report.lost_since_s)
+    all.push_back(
+        fmt::format("from {:.1f} s on the pictures do not show the scene of the beginning: the film was cut, or the camera "
+                    "turned away or covered",
+                    *report.lost_since_s));
+  if (report.bump)
+    all.push_back(
+        fmt::format("at about {:.0f} s the camera was turned by {:.0f} px and stayed so; its pictures are shown as it stood "
+                    "most of the beginning",
+                    report.bump->time, report.bump->by_px));
+  return all;
+}
+
+Frame Steadier::steadied(Frame frame) {
+  const cv::Size size = frame.picture.size();
+  const auto motion = scene_.find(frame.picture);
+  log_->add(frame, motion, scene_.view(), size);
+  if (!motion) return frame;
+  last_ = at_rest(frame.picture, last_, moved_from_rest(*motion, scene_.view()));
+  frame.picture = last_;
+  return frame;
+}
+
+std::unique_ptr<Source> steadied(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<SteadyLog> log) {
+  return std::make_unique<SteadySource>(std::move(source), Steadier(std::move(scene), std::move(log)));
+}
+
+std::optional<double> motion_among(std::span<const Frame> samples) {
+  if (samples.size() < 2 || samples.front().picture.empty()) return std::nullopt;
+  const cv::Size size = samples.front().picture.size();
+  StandingScene scene(size, std::nullopt);
+  std::vector<Picture> pictures;
+  for (const Frame& frame : samples) {
+    if (frame.picture.size() == size) pictures.push_back(frame.picture);
+  }
+  if (!scene.learn(pictures)) return std::nullopt;
+  double squares = 0, known = 0;
+  for (const Picture& picture : pictures) {
+    const auto motion = scene.find(picture);
+    if (!motion) continue;
+    squares += squared_motion(moved_from_rest(*motion, scene.view()), size);
+    ++known;
+  }
+  if (known < kEnough * static_cast<double>(pictures.size())) return std::nullopt;
+  return std::sqrt(squares / known);
+}
+
+}  // namespace marey::source::steady

@@ -1,0 +1,116 @@
+"""`marey track --steady`: a fixed camera that shakes, in the image and on the ground, and films that cannot be steadied.
+
+Usage: steady_test.py MAREY [unittest options]. Nothing else is needed.
+"""
+
+import json
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+SIZE = (160, 120)
+
+
+def scene(seed):
+    """A picture with corners, 40 px larger than SIZE: rows of grey levels."""
+    rnd = random.Random(seed)
+    rows = [[110] * (SIZE[0] + 40) for _ in range(SIZE[1] + 40)]
+    for _ in range(160):
+        x, y, w, h, level = rnd.randrange(190), rnd.randrange(150), rnd.randrange(4, 14), rnd.randrange(4, 14), rnd.randrange(40, 210)
+        for row in rows[y:y + h]:
+            row[x:x + w] = [level] * len(row[x:x + w])
+    return rows
+
+
+def write_pictures(folder, pictures):
+    folder.mkdir()
+    for i, rows in enumerate(pictures):
+        (folder / f"{i:04}.pgm").write_bytes(b"P5\n%d %d\n255\n" % (len(rows[0]), len(rows)) + b"".join(map(bytes, rows)))
+
+
+def window(rows, x, y):
+    return [row[20 + x:20 + x + SIZE[0]] for row in rows[20 + y:20 + y + SIZE[1]]]
+
+
+class Steady(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_steady_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        film = ("--situation", "crowd", "--seed", "5", "--size", "640", "360", "--height", "60", "--frames", "150", "-q")
+        cls.run_marey("simulate", "people", "-o", "still", *film)
+        cls.run_marey("simulate", "people", "-o", "shaken", "--shake", "6", *film)
+
+    @classmethod
+    def run_marey(cls, *arguments, code=0):
+        done = subprocess.run([MAREY, *arguments], capture_output=True, text=True, cwd=cls.folder, timeout=280)
+        assert done.returncode == code, f"{arguments}\n{done.returncode}\n{done.stdout}\n{done.stderr}"
+        return done
+
+    def idf1(self, film, *options):
+        self.run_marey("track", f"{film}/video.mp4", "-o", f"{film}/tracks.txt", "-q", *options)
+        return json.loads(self.run_marey("evaluate", "--truth", f"{film}/truth.txt", "--tracks", f"{film}/tracks.txt", "--json").stdout)["idf1"]
+
+    def test_people_before_a_shaking_camera_are_followed_as_before_one_that_stands(self):
+        self.assertEqual((self.folder / "still/truth.txt").read_text(), (self.folder / "shaken/truth.txt").read_text())
+        still, shaken, steadied = self.idf1("still"), self.idf1("shaken"), self.idf1("shaken", "--steady")
+        print(f"IDF1: still {still:.3f}, shaken {shaken:.3f}, steadied {steadied:.3f}")
+        self.assertGreater(still - shaken, 0.2)
+        self.assertLess(still - steadied, 0.1)
+
+    def test_it_is_said_how_far_the_camera_moved_and_that_steady_would_help(self):
+        done = self.run_marey("track", "shaken/video.mp4", "-o", "said.txt", "--json")
+        self.assertIn("--steady", "".join(json.loads(done.stdout)["warnings"]))
+        report = json.loads(self.run_marey("track", "shaken/video.mp4", "-o", "said.txt", "--steady", "--json").stdout)
+        self.assertEqual(report["warnings"], [])
+        self.assertRegex(report["notes"][0], r"steadied 150 of 150 pictures: the camera moved by \d+\.\d px")
+        report = json.loads(self.run_marey("track", "still/video.mp4", "-o", "said.txt", "--json").stdout)
+        self.assertEqual(report["warnings"], [])
+
+    def test_the_same_film_gives_the_same_tracks_and_an_overlay(self):
+        for name in ("a", "b"):
+            self.run_marey("track", "shaken/video.mp4", "--steady", "-o", f"{name}.txt", "--overlay", f"{name}.mp4", "-q")
+        self.assertEqual((self.folder / "a.txt").read_bytes(), (self.folder / "b.txt").read_bytes())
+        self.assertTrue((self.folder / "a.mp4").stat().st_size)
+
+    def test_on_the_ground_and_live(self):
+        for name, film, *options in (("still", "still"), ("without", "shaken"), ("with", "shaken", "--steady")):
+            self.run_marey("track", f"{film}/rig.toml", "--ground", "-o", f"{name}.csv", "-q", *options)
+        scores = {name: json.loads(self.run_marey("evaluate", "--truth", "still.csv", "--tracks", f"{name}.csv", "--distance", "1",
+                                                  "--json").stdout) for name in ("without", "with")}
+        self.assertGreater(scores["with"]["idf1"], scores["without"]["idf1"] + 0.1)
+        self.run_marey("track", "shaken/video.mp4", "--steady", "--live", "-o", "live.txt", "-q")
+        self.assertTrue((self.folder / "live.txt").read_text())
+
+    def test_pictures_that_show_nothing_that_stands_are_refused(self):
+        rnd = random.Random(1)
+        flat = [[[118 + rnd.randrange(3) for _ in range(SIZE[0])] for _ in range(SIZE[1])] for _ in range(6)]
+        write_pictures(self.folder / "flat", flat)
+        done = self.run_marey("track", "flat", "--steady", "-o", "none.txt", code=1)
+        self.assertIn("nothing that stands", done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1)
+        self.assertFalse((self.folder / "none.txt").exists())
+
+    def test_black_pictures_and_a_cut_are_left_out_and_said(self):
+        here, there, rnd = scene(1), scene(2), random.Random(3)
+        pictures = [[[0] * SIZE[0]] * SIZE[1]]
+        pictures += [window(here, rnd.randrange(-4, 5), rnd.randrange(-4, 5)) for _ in range(40)]
+        pictures += [window(there, 0, 0)] * 20
+        write_pictures(self.folder / "cut", pictures)
+        report = json.loads(self.run_marey("track", "cut", "--rate", "10", "--steady", "-o", "cut.txt", "--json").stdout)
+        self.assertEqual(report["frames"], 40)
+        self.assertIn("21 of 61 pictures could not be steadied", "".join(report["warnings"]))
+
+    def test_what_it_cannot_be_asked_for(self):
+        self.run_marey("track", "--detections", "still/truth.txt", "--steady", "-o", "none.txt", code=2)
+        self.run_marey("track", "shaken/video.mp4", "--targets", "markers", "--steady", "-o", "none.txt", code=2)
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    unittest.main()
