@@ -11,13 +11,13 @@
 #include "marey/pipeline/run.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ball/ball_moment.h"
-#include "marey/track/ball/ball_search.h"
+#include "marey/track/ball/ball_way.h"
 
 namespace marey::pipeline {
 
 struct BallOptions {
   detect::ball::BallDetectorOptions detector;
-  track::ball::BallSearchOptions search;
+  track::ball::BallWayOptions way;
 };
 
 /// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts

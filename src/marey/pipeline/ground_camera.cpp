@@ -257,8 +257,8 @@ void GroundCamera::look_for_ball(const Frame& frame, const std::vector<Detection
   view.camera = id_;
   view.time = frame.time;
   for (const Detection& person : people) view.people.push_back(person.box);
-  for (const detect::ball::BallCandidate& candidate : ball_->detect(frame, view.people))
-    view.seen.push_back({candidate.centre, candidate.sigma, candidate.score});
+  for (const detect::ball::BallCandidate& candidate : ball_->detect(frame))
+    view.seen.push_back({candidate.centre, candidate.sigma, candidate.score, candidate.company, {}, false});
 }
 
 void GroundCamera::report(Summary& summary) const {

@@ -2,7 +2,8 @@
 // leave out what is as small as a ball far away. What is brighter than it falls into regions; a region is judged by its light, the
 // sum of what it adds, which motion smears but does not change: a ball's is that of a white disc of the radius that it has there.
 // The score is the logarithm of the ratio of two densities of the radius, a ball's (a normal one of the logarithm) and that of
-// anything else (even in the logarithm), less for what is ragged and for what lies in a person's box, where shirts and socks are.
+// anything else (even in the logarithm), less for what is ragged. A ball is alone on the grass; a sock, a shirt or a head has the
+// rest of somebody beside it, brighter or darker than the scene, whether or not that was found to be a person: its company.
 // Cost: some passes over the picture.
 #include "marey/detect/ball/ball_detector.h"
 
@@ -44,13 +45,16 @@ void BallDetector::follow(const cv::Mat& luma, Timestamp time) {
   cv::subtract(scene_, cv::Scalar(1), scene_, down);
 }
 
-std::vector<BallCandidate> BallDetector::detect(const Frame& frame, std::span<const Box> people) {
+std::vector<BallCandidate> BallDetector::detect(const Frame& frame) {
   cv::Mat luma = frame.picture.luma();
   if (luma.type() == CV_16UC1) luma.convertTo(luma, CV_8U, 1 / 257.0);
   if (scene_.size() != luma.size()) scene_ = luma.clone();
   cv::subtract(luma, scene_, added_);
+  cv::Mat bright, blobs, figures, centres, other;
+  cv::absdiff(luma, scene_, other);
+  cv::threshold(other, other, options_.contrast, 1, cv::THRESH_BINARY);
+  cv::integral(other, other_, CV_32S);
   follow(luma, frame.time);
-  cv::Mat bright, blobs, figures, centres;
   cv::threshold(added_, bright, options_.contrast, 255, cv::THRESH_BINARY);
   const int count = cv::connectedComponentsWithStats(bright, blobs, figures, centres, 8, CV_32S);
   std::vector<BallCandidate> found;
@@ -58,15 +62,28 @@ std::vector<BallCandidate> BallDetector::detect(const Frame& frame, std::span<co
     const int* figure = figures.ptr<int>(blob);
     const cv::Rect box(figure[cv::CC_STAT_LEFT], figure[cv::CC_STAT_TOP], figure[cv::CC_STAT_WIDTH], figure[cv::CC_STAT_HEIGHT]);
     if (figure[cv::CC_STAT_AREA] < 2 || box.width > 80 || box.height > 80) continue;
-    if (const auto candidate = judge(blobs, blob, box, people)) found.push_back(*candidate);
+    if (const auto candidate = judge(blobs, blob, box)) found.push_back(*candidate);
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
   if (std::ssize(found) > options_.most) found.resize(static_cast<std::size_t>(options_.most));
   return found;
 }
 
-std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob, const cv::Rect& box,
-                                                 std::span<const Box> people) const {
+/// Of the square round a box up to five radii away, without the box and what motion or a film's compression smears round it.
+double BallDetector::company(const cv::Rect& box, double radius) const {
+  const auto grown = [&](int by) {
+    return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) & cv::Rect({}, scene_.size());
+  };
+  const auto sum = [&](const cv::Rect& part) {
+    return other_.at<int>(part.br()) - other_.at<int>(part.y, part.br().x) - other_.at<int>(part.br().y, part.x) +
+           other_.at<int>(part.tl());
+  };
+  const cv::Rect inner = grown(2), outer = grown(static_cast<int>(std::lround(5 * radius)) + 2);
+  const int area = outer.area() - inner.area();
+  return area <= 0 ? 0 : static_cast<double>(sum(outer) - sum(inner)) / area;
+}
+
+std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob, const cv::Rect& box) const {
   double light = 0, scene = 0, xx = 0, yy = 0, xy = 0;
   int area = 0;
   Vector<2> sum = Vector<2>::Zero();
@@ -106,13 +123,9 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   const double round = std::hypot(0.5 * candidate.radius, 0.6);  // what a disc spreads, blurred by the lens
   candidate.score -= 0.5 * std::pow(std::max(0.0, narrow / round - 1.2) / 0.25, 2);
   candidate.score -= 0.5 * std::pow(std::max(0.0, wide / round - 2) / 0.8, 2);
-  const auto holds = [&](const Box& person) {
-    return candidate.centre.x() > person.left && candidate.centre.x() < person.right() && candidate.centre.y() > person.top &&
-           candidate.centre.y() < person.bottom();
-  };
-  if (std::any_of(people.begin(), people.end(), holds)) candidate.score -= options_.on_person;
   candidate.sigma = 0.4 + 0.1 * wide;
   if (candidate.score < -12) return std::nullopt;
+  candidate.company = company(box, *expected);
   return candidate;
 }
 

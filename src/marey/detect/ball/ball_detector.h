@@ -16,8 +16,7 @@ namespace marey::detect::ball {
 /// The radius of a ball that lies on the ground and is seen at a pixel, px; nothing where no ground is seen.
 using BallSize = std::function<std::optional<double>(const Vector<2>& pixel)>;
 
-/// First guesses, but for `on_person`, the best of 4.5, 6.5, 7.5 and 8.5 on seven seconds of one simulated match (seed 2, the
-/// football stand); a sweep over seeds is still to be made (bench/ball.py).
+/// First guesses; how often the ball is found with them, and false things: docs/ball.md.
 struct BallDetectorOptions {
   double contrast = 14;       ///< grey levels that it is brighter than the scene, at least
   double white = 185;         ///< grey level of a ball
@@ -25,9 +24,8 @@ struct BallDetectorOptions {
   double most_light = 16;     ///< more is no ball, however near it flies
   double size_spread = 0.35;  ///< deviation of the logarithm of the radius, of balls that are smaller than on the ground there,
   double flown_spread = 0.9;  ///< and of those that are larger, for they fly nearer: from a low stand twice as near and more
-  double on_person = 8.5;     ///< by which the score is less within a person's box: shirts and socks are that much denser there
   double follow_hz = 4;       ///< grey levels a second by which the scene is followed
-  int most = 40;              ///< candidates in a frame, the best
+  int most = 60;              ///< candidates in a frame, the best
 };
 
 struct BallCandidate {
@@ -35,6 +33,7 @@ struct BallCandidate {
   double sigma = 0.5;                    ///< px, of each coordinate
   double radius = 0;                     ///< px: of a white disc of as much light
   double score = 0;                      ///< logarithm of how much likelier a ball looks so than anything else that is found
+  double company = 0;                    ///< 0 … 1: of what is round it, up to some radii away, the share that is not the scene
 };
 
 class BallDetector {
@@ -44,17 +43,19 @@ class BallDetector {
   /// Learns the empty scene: the median of these. Without it the first frame is the scene.
   void prime(std::span<const Frame> samples);
 
-  /// Frames in order; `people` are boxes, px.
-  std::vector<BallCandidate> detect(const Frame& frame, std::span<const Box> people);
+  /// Frames in order.
+  std::vector<BallCandidate> detect(const Frame& frame);
 
  private:
   void follow(const cv::Mat& luma, Timestamp time);
-  std::optional<BallCandidate> judge(const cv::Mat& blobs, int blob, const cv::Rect& box, std::span<const Box> people) const;
+  std::optional<BallCandidate> judge(const cv::Mat& blobs, int blob, const cv::Rect& box) const;
+  double company(const cv::Rect& box, double radius) const;
 
   BallSize size_;
   BallDetectorOptions options_;
   cv::Mat scene_;  // CV_8UC1
   cv::Mat added_;  // CV_8UC1: by how much the frame is brighter
+  cv::Mat other_;  // CV_32SC1: integral of where it is brighter or darker
   std::optional<Timestamp> followed_;
 };
 

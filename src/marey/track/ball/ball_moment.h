@@ -16,6 +16,10 @@ struct BallSighting {
   Vector<2> pixel = Vector<2>::Zero();
   double sigma = 0.6;  ///< px, of each coordinate
   double score = 0;    ///< logarithm of how much likelier a ball looks so than anything else that is found
+  double company = 0;  ///< 0 … 1: of what is round it, the share that is not the empty scene
+  /// By weigh_sightings(); nothing: as many false things as the view has, all over its picture.
+  std::optional<double> false_density;  ///< 1/px²: how densely things are seen here that are no ball
+  bool on_person = false;               ///< where a person's limbs are, which move as predictably as a ball
 };
 
 /// What one camera saw at a moment.

@@ -154,13 +154,15 @@ double settle(BallBelief& belief, BallMode mode, BallEvent event, double step, c
   return -0.5 * squared;
 }
 
-std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view) {
-  Vector<3> at = belief.place();
+std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view, const std::optional<Vector<3>>& around) {
+  const Vector<3> here = around.value_or(belief.place());
+  Vector<3> at = here;
   at.z() += view.surface().height(at.head<2>());
   const auto seen = view.camera()->project_with_jacobian(at);
   if (!seen) return std::nullopt;
   BallProjection projection;
-  projection.pixel = seen->pixel;
+  projection.pixel = seen->pixel + seen->by_world * (belief.place() - here);
+  projection.radius = kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
   projection.by_state.setZero();
   projection.by_state.leftCols<3>() = seen->by_world;
   projection.spread = projection.by_state * belief.covariance * projection.by_state.transpose();

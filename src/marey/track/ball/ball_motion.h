@@ -68,10 +68,13 @@ struct BallProjection {
   Vector<2> pixel;
   Eigen::Matrix<double, 2, 6> by_state;  ///< ∂pixel/∂state
   Matrix<2> spread;                      ///< px²: of the belief alone
+  double radius = 0;                     ///< px, of the ball there
 };
 
-/// Nothing where it is not before the camera.
-std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view);
+/// Nothing where it is not before the camera. The projection is straightened out at `around` (a place, m), by default the
+/// belief's own.
+std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view,
+                                      const std::optional<Vector<3>>& around = std::nullopt);
 
 /// Corrects the belief by a pixel, and returns the logarithm of the pixel's density, 1/px².
 double correct(BallBelief& belief, const BallProjection& seen_at, const BallSighting& sighting);

@@ -11,6 +11,9 @@
 #include <iterator>
 #include <utility>
 
+#include "marey/track/ball/ball_birth.h"
+#include "marey/track/ball/ball_clutter.h"
+
 namespace marey::track::ball {
 namespace {
 
@@ -85,17 +88,24 @@ std::vector<Continuation> continuations(const BallNode& before, const BallMoment
   return all;
 }
 
-double clutter(const BallView& view, const GroundView& ground, const BallSearchOptions& options) {
-  const double area = static_cast<double>(ground.size().width) * ground.size().height;
-  return std::log(std::max(options.false_seen, static_cast<double>(view.seen.size())) / area);
+bool on_person(const BallView& view, const Vector<2>& pixel) {
+  const auto holds = [&](const Box& person) {
+    const Box box = limbs_of(person);
+    return pixel.x() > box.left && pixel.x() < box.right() && pixel.y() > box.top && pixel.y() < box.bottom();
+  };
+  return std::any_of(view.people.begin(), view.people.end(), holds);
 }
 
 double share_found(BallMode mode, const BallView& view, const Vector<2>& pixel, const BallSearchOptions& options) {
-  if (mode == BallMode::held) return options.found_held;
-  const auto holds = [&](const Box& box) {
-    return pixel.x() > box.left && pixel.x() < box.right() && pixel.y() > box.top && pixel.y() < box.bottom();
-  };
-  return std::any_of(view.people.begin(), view.people.end(), holds) ? options.found_hidden : options.found;
+  if (on_person(view, pixel)) return options.found_hidden;
+  return mode == BallMode::held ? options.found_held : options.found;
+}
+
+/// What a thing seen adds, whose density where it is would be `density` (a logarithm) if it were the ball. On people it may add
+/// nothing, only cost: limbs go on as predictably as a ball does.
+double weight(const BallSighting& sighting, double density, double found, double false_density) {
+  const double ratio = sighting.score + density - false_density;
+  return sighting.on_person ? -std::log1p(std::exp(-ratio)) : std::log(found) + ratio;
 }
 
 /// What is within the gate, the nearest first.
@@ -120,7 +130,6 @@ std::vector<int> gated(const BallView& view, const BallProjection& at, const Bal
 /// Each way in which one more camera may have seen it.
 void look(const std::vector<BallNode>& all, const BallView& view, const GroundView& ground, const BallSearchOptions& options,
           std::vector<BallNode>& out) {
-  const double density = clutter(view, ground, options);
   for (const BallNode& node : all) {
     BallNode missed = node;
     missed.step.used.push_back(-1);
@@ -134,7 +143,10 @@ void look(const std::vector<BallNode>& all, const BallView& view, const GroundVi
       const BallSighting& sighting = view.seen[static_cast<std::size_t>(i)];
       BallNode seen = node;
       seen.step.used.push_back(i);
-      seen.score += std::log(found) + sighting.score - density + correct(seen.step.belief, *at, sighting);
+      const double density = correct(seen.step.belief, *at, sighting);
+      const double more = weight(sighting, density, found, false_density(sighting, view, ground, options));
+      seen.score += more;
+      if (!sighting.on_person && at->radius >= options.least_radius) seen.step.evidence += more;
       out.push_back(std::move(seen));
     }
     missed.score += std::log(1 - found);
@@ -142,51 +154,19 @@ void look(const std::vector<BallNode>& all, const BallView& view, const GroundVi
   }
 }
 
-/// A ball that nothing was known of, on the ground or in the air, where a camera sees something.
-void be_born(const std::shared_ptr<BallNode>& before, const BallMoment& moment, const GroundViews& views,
-             const BallSearchOptions& options, std::vector<BallNode>& out) {
-  for (std::size_t v = 0; v < moment.views.size(); ++v) {
-    const BallView& view = moment.views[v];
-    const GroundView& ground = views.view_at(view.camera, view.time);
-    const double area = static_cast<double>(ground.size().width) * ground.size().height;
-    for (std::size_t i = 0; i < view.seen.size(); ++i) {
-      const BallSighting& sighting = view.seen[i];
-      const auto place = ground.place(sighting.pixel);
-      if (!place) continue;
-      const Vector<3> centre = ground.camera()->centre(), foot(place->ground.x(), place->ground.y(), 0);
-      for (const double height : {kBallRadius, 2.0, 5.0}) {
-        const bool flies = height > 1;
-        BallNode born;
-        born.parent = before;
-        born.step = {
-            flies ? BallMode::flying : BallMode::rolling, BallEvent::kick, {}, std::vector<int>(moment.views.size(), -1), true, {}};
-        const double share = height / centre.z();
-        if (!(share < 0.9) || centre.z() <= 0) continue;
-        BallBelief& belief = born.step.belief;
-        belief.mean.head<3>() = foot + share * (centre - foot);
-        const double v_sigma = options.motion.kick_speed;
-        belief.covariance.setZero();
-        const double pixel_m = std::max(0.05, sighting.sigma * place->by_pixel.norm());
-        belief.covariance.topLeftCorner<3, 3>().diagonal().setConstant(flies ? 0.05 : pixel_m * pixel_m);
-        belief.covariance.topLeftCorner<3, 3>() +=
-            (flies ? 1.0 : 1e-3) * (centre - foot) * (centre - foot).transpose() / (centre.z() * centre.z());
-        belief.covariance.bottomRightCorner<3, 3>() =
-            Vector<3>(v_sigma, v_sigma, flies ? options.motion.kick_up : 0.3).cwiseAbs2().asDiagonal();
-        born.step.used[v] = static_cast<int>(i);
-        born.score = before->score + std::log(options.p_born * options.found / area * (flies ? 0.1 : 0.8)) + sighting.score -
-                     clutter(view, ground, options);
-        out.push_back(std::move(born));
-      }
-    }
-  }
+BallStep lost_step(const BallMoment& moment) {
+  BallStep step;
+  step.used.assign(moment.views.size(), -1);
+  return step;
 }
 
 bool same(const BallNode& a, const BallNode& b) {
   if (a.step.mode != b.step.mode || a.step.holder != b.step.holder) return false;
   if (a.step.mode == BallMode::lost) return true;
-  constexpr double kSamePlace = 0.15, kSameVelocity = 0.7;  // m, m/s
-  return a.step.used == b.step.used && (a.step.belief.place() - b.step.belief.place()).norm() < kSamePlace &&
-         (a.step.belief.velocity() - b.step.belief.velocity()).norm() < kSameVelocity;
+  constexpr double kSamePlace = 0.15, kSameVelocity = 0.7, kSameHeld = 0.3;  // m, m/s, m
+  const double away = (a.step.belief.place() - b.step.belief.place()).norm();
+  if (a.step.mode == BallMode::held) return away < kSameHeld;
+  return away < kSamePlace && (a.step.belief.velocity() - b.step.belief.velocity()).norm() < kSameVelocity;
 }
 
 }  // namespace
@@ -196,7 +176,7 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
   std::vector<BallNode> done;
   if (before->step.mode == BallMode::lost) {
     BallNode lost{before->step, before->score, before, 0};
-    lost.step = {BallMode::lost, BallEvent::none, {}, std::vector<int>(moment.views.size(), -1), false, {}};
+    lost.step = lost_step(moment);
     done.push_back(std::move(lost));
     be_born(before, moment, views, options, done);
     return done;
@@ -205,7 +185,8 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
     BallNode node;
     node.parent = before;
     const BallPerson* holder = person_at(moment, next.holder);
-    node.step = {next.mode, next.event, {}, {}, false, {}};
+    node.step.mode = next.mode;
+    node.step.event = next.event;
     if (holder != nullptr) node.step.holder = holder->id;
     node.score = before->score + next.log_prior;
     node.age = before->age + 1;

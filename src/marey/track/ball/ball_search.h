@@ -19,15 +19,16 @@ struct BallSearchOptions {
   double decide_after = 3;     ///< s after which the best hypothesis decides
   double gate = 3.5;           ///< standard deviations within which something seen may be the ball
   int branches = 4;            ///< of things within the gate, how many are tried
-  double found = 0.9;          ///< share of frames in which a ball in plain view is found
+  double found = 0.95;         ///< share of frames in which a ball in plain view is found
   double found_held = 0.5;     ///< the same of one at somebody's feet
-  double found_hidden = 0.3;   ///< the same where a person's box is
+  double found_hidden = 0.15;  ///< the same where a person's limbs are, and what is found there decides little
   double reach = 1.6;          ///< m from a person within which that person may play the ball
   double p_kick = 0.02;        ///< of frames near a person: the ball is kicked
   double p_kick_alone = 1e-4;  ///< of frames with nobody near: a post, a bump
   double p_take = 0.03;        ///< of frames near a person: the ball is taken
   double p_lose = 5e-4;        ///< of frames: nothing more is known
   double p_born = 0.02;        ///< of frames without a ball: it is found again
+  double least_radius = 0.9;   ///< px; a smaller ball looks like any part of people far away: it is followed, and no evidence
   double false_seen = 8;       ///< things that are no ball in a frame, on average; fewer than are seen count as that many
 };
 
@@ -38,6 +39,7 @@ struct BallStep {
   std::optional<TrackId> holder;  ///< who has it, where it is held
   std::vector<int> used;          ///< of each view, the index of what was the ball; −1 where it was not seen
   bool born = false;              ///< nothing was known of it before
+  double evidence = 0;            ///< what was seen well, away from people, adds to the hypothesis' score
   BallBelief belief;              ///< after this moment, by what came until then
 };
 

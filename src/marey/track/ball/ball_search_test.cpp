@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/track/ball/ball_smooth.h"
+#include "marey/track/ball/ball_way.h"
 
 namespace marey::track::ball {
 namespace {
@@ -44,6 +44,13 @@ struct Scene {
   std::vector<BallMoment> moments;
 };
 
+BallSighting spot(const Vector<2>& pixel, double score) {
+  BallSighting seen;
+  seen.pixel = pixel;
+  seen.score = score;
+  return seen;
+}
+
 /// What the cameras see of it: noisy by half a pixel, missed now and then, among `clutter` other things.
 Scene seen(const std::vector<Vector<3>>& ball, const std::vector<double>& cameras, int clutter, double missed, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -62,8 +69,8 @@ Scene seen(const std::vector<Vector<3>>& ball, const std::vector<double>& camera
       view.camera = CameraId{static_cast<int>(c)};
       view.time = moment.time;
       if (even(random) >= missed)
-        view.seen.push_back({*views[c].camera()->project(ball[i]) + Vector<2>(noise(random), noise(random)), 0.6, 1});
-      for (int k = 0; k < clutter; ++k) view.seen.push_back({{1920 * even(random), 200 + 880 * even(random)}, 0.6, 0});
+        view.seen.push_back(spot(*views[c].camera()->project(ball[i]) + Vector<2>(noise(random), noise(random)), 1));
+      for (int k = 0; k < clutter; ++k) view.seen.push_back(spot({1920 * even(random), 200 + 880 * even(random)}, 0));
     }
   }
   return scene;
@@ -85,22 +92,64 @@ double worst(const std::vector<Vector<3>>& ball, const std::vector<BallState>& s
 
 TEST(BallSearch, OneCameraTellsAnArcsDepthByGravity) {
   const auto ball = arc(38);
-  const auto states = followed(seen(ball, {30}, 10, 0.1, 5));
-  ASSERT_EQ(states.size(), ball.size());
-  for (std::size_t i = 3; i + 3 < ball.size(); ++i) EXPECT_EQ(states[i].mode, BallMode::flying) << i;
-  EXPECT_LT(worst(ball, states), 1.8);
+  std::vector<double> off;
+  for (std::uint64_t seed = 5; seed < 14; ++seed) off.push_back(worst(ball, followed(seen(ball, {30}, 10, 0.1, seed))));
+  std::sort(off.begin(), off.end());
+  EXPECT_LT(off[off.size() / 2], 0.8);
 }
 
 TEST(BallSearch, TwoCamerasTriangulate) {
   const auto ball = arc(38);
-  EXPECT_LT(worst(ball, followed(seen(ball, {10, 50}, 10, 0.1, 6))), 1.2);
+  for (std::uint64_t seed = 5; seed < 14; ++seed)
+    EXPECT_LT(worst(ball, followed(seen(ball, {10, 50}, 10, 0.1, seed))), 0.12) << "seed " << seed;
 }
 
-TEST(BallSearch, WithoutABallNothingIsFound) {
-  const Scene scene = seen(arc(40), {30}, 12, 1.1, 7);
-  int claimed = 0;
-  for (const BallState& state : followed(scene)) claimed += state.cameras != 0 ? 1 : 0;
-  EXPECT_LE(claimed, 6);
+std::vector<std::optional<BallState>> told(Scene scene) {
+  return ball_way(scene.moments, scene.views, [](const Vector<2>&) { return true; }, {});
+}
+
+TEST(BallWay, WithoutABallNothingIsTold) {
+  for (const std::uint64_t seed : {7, 8, 9, 10, 11}) {
+    for (const auto& state : told(seen(arc(60), {30}, 3, 1.1, seed))) EXPECT_FALSE(state) << "seed " << seed;
+  }
+}
+
+TEST(BallWay, AKickIsTold) {
+  const auto ball = arc(38);
+  const auto way = told(seen(ball, {10, 50}, 3, 0.1, 12));
+  for (std::size_t i = 3; i + 3 < way.size(); ++i) {
+    ASSERT_TRUE(way[i]) << i;
+    EXPECT_LT((way[i]->belief.place() - ball[i]).norm(), 0.2) << i;
+  }
+}
+
+TEST(BallWay, WhereItLayBeforeTheKickIsToldOnceItWasKicked) {
+  auto ball = std::vector<Vector<3>>(50, Vector<3>(20, 20, kBallRadius));
+  const std::size_t lay = ball.size();
+  for (const Vector<3>& place : arc(38)) ball.push_back(place);
+  const auto way = told(seen(ball, {10, 50}, 3, 0.1, 13));
+  for (std::size_t i = 3; i < lay; ++i) {
+    ASSERT_TRUE(way[i]) << i;
+    EXPECT_LT((way[i]->belief.place() - ball[i]).norm(), 0.2) << i;
+  }
+  ball.resize(lay);  // nobody kicks it: a bit of paint
+  for (const auto& state : told(seen(ball, {10, 50}, 3, 0.1, 14))) EXPECT_FALSE(state);
+}
+
+TEST(BallWay, WhatMovesWithSomebodyIsNoBall) {
+  std::vector<Vector<3>> knee;
+  for (int i = 0; i < 75; ++i) knee.emplace_back(20 + 5 * i / kRate, 20, 0.5);
+  Scene scene = seen(knee, {10, 50}, 3, 0.1, 15);
+  for (std::size_t i = 0; i < scene.moments.size(); ++i) {
+    for (BallView& view : scene.moments[i].views) {
+      const Camera& camera = *scene.views->view_at(view.camera, view.time).camera();
+      const Vector<2> foot = *camera.project({knee[i].x(), knee[i].y(), 0}),
+                      head = *camera.project({knee[i].x(), knee[i].y(), 1.75});
+      const double height = foot.y() - head.y();
+      view.people.push_back({head.x() - 0.2 * height, head.y(), 0.4 * height, height});
+    }
+  }
+  for (const auto& state : told(scene)) EXPECT_FALSE(state);
 }
 
 /// Everything that may follow, without a beam and without taking like for like.

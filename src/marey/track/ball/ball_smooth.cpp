@@ -18,12 +18,13 @@ const BallPerson* holder_of(const BallStep& step, const BallMoment& moment) {
   return found == moment.people.end() ? nullptr : &*found;
 }
 
-/// What the cameras saw of it corrects it.
-BallBelief seen(BallBelief belief, const BallStep& step, const BallMoment& moment, const GroundViews& views) {
+/// What the cameras saw of it corrects it, by how they see what is `around`.
+BallBelief seen(BallBelief belief, const BallStep& step, const BallMoment& moment, const GroundViews& views,
+                const std::optional<Vector<3>>& around) {
   for (std::size_t v = 0; v < step.used.size(); ++v) {
     if (step.used[v] < 0) continue;
     const BallView& view = moment.views[v];
-    const auto at = project(belief, views.view_at(view.camera, view.time));
+    const auto at = project(belief, views.view_at(view.camera, view.time), around);
     if (at) correct(belief, *at, view.seen[static_cast<std::size_t>(step.used[v])]);
   }
   return belief;
@@ -45,40 +46,56 @@ void smooth_back(std::span<const Pass> passes, std::span<BallState> states) {
   }
 }
 
+/// A stretch without a gap, from what was known at its first moment. Where a belief was wide, cameras do not see it in proportion
+/// to its place: each further pass takes what they see of the places that the pass before came to (an iterated smoother: Bell
+/// 1994, "The iterated Kalman smoother as a Gauss-Newton method").
+void smooth_stretch(std::span<const BallMoment> moments, std::span<const BallStep> steps, const GroundViews& views,
+                    const BallMotionOptions& options, std::span<BallState> states) {
+  constexpr int kPasses = 4;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto around = [&](std::size_t i) {
+      return pass == 0 ? std::nullopt : std::optional<Vector<3>>(states[i].belief.place());
+    };
+    std::vector<Pass> passes;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      Pass& one = passes.emplace_back();
+      if (i == 0) {
+        one.predicted = {steps[0].belief, Matrix<6>::Identity()};
+        one.filtered = steps[0].belief;
+        continue;
+      }
+      const BallPerson* holder = holder_of(steps[i], moments[i]);
+      const double later = seconds(moments[i].time - moments[i - 1].time);
+      one.predicted = predict(passes[i - 1].filtered, steps[i].mode, steps[i].event, later, holder, options);
+      one.filtered = one.predicted.belief;
+      settle(one.filtered, steps[i].mode, steps[i].event, later, holder, options);
+      one.filtered = seen(one.filtered, steps[i], moments[i], views, around(i));
+    }
+    smooth_back(passes, states);
+  }
+}
+
 }  // namespace
 
 std::vector<BallState> smooth_ball(std::span<const BallMoment> moments, std::span<const BallStep> steps, const GroundViews& views,
                                    const BallMotionOptions& options) {
   std::vector<BallState> states(steps.size());
-  std::vector<Pass> passes;
-  const auto close = [&](std::size_t end) {
-    if (!passes.empty()) smooth_back(passes, std::span(states).subspan(end - passes.size(), passes.size()));
-    passes.clear();
-  };
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const BallStep& step = steps[i];
-    states[i].mode = step.mode;
-    states[i].event = step.event;
-    states[i].holder = step.holder;
-    for (std::size_t v = 0; v < step.used.size(); ++v) {
-      if (step.used[v] >= 0) states[i].cameras |= mask_of(moments[i].views[v].camera);
+    states[i].mode = steps[i].mode;
+    states[i].event = steps[i].event;
+    states[i].holder = steps[i].holder;
+    for (std::size_t v = 0; v < steps[i].used.size(); ++v) {
+      if (steps[i].used[v] >= 0) states[i].cameras |= mask_of(moments[i].views[v].camera);
     }
-    if (step.mode == BallMode::lost || step.born) close(i);
-    if (step.mode == BallMode::lost) continue;
-    if (passes.empty()) {
-      passes.push_back({{step.belief, Matrix<6>::Identity()}, step.belief});
-      continue;
-    }
-    const BallPerson* holder = holder_of(step, moments[i]);
-    Pass pass;
-    const double later = seconds(moments[i].time - moments[i - 1].time);
-    pass.predicted = predict(passes.back().filtered, step.mode, step.event, later, holder, options);
-    pass.filtered = pass.predicted.belief;
-    settle(pass.filtered, step.mode, step.event, later, holder, options);
-    pass.filtered = seen(pass.filtered, step, moments[i], views);
-    passes.push_back(pass);
   }
-  close(steps.size());
+  const auto lost = [&](std::size_t i) { return steps[i].mode == BallMode::lost; };
+  for (std::size_t first = 0, end = 0; first < steps.size(); first = end) {
+    end = first + 1;
+    if (lost(first)) continue;
+    while (end < steps.size() && !lost(end) && !steps[end].born) ++end;
+    smooth_stretch(moments.subspan(first, end - first), steps.subspan(first, end - first), views, options,
+                   std::span(states).subspan(first, end - first));
+  }
   return states;
 }
 

@@ -1,0 +1,106 @@
+// Cost: each view's things are compared with those of some seconds round it, and with all of its boxes.
+#include "marey/track/ball/ball_clutter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace marey::track::ball {
+namespace {
+
+enum Zone { kOpen, kNear, kOnPerson };
+
+bool holds(const Box& box, const Vector<2>& pixel) {
+  return pixel.x() > box.left && pixel.x() < box.right() && pixel.y() > box.top && pixel.y() < box.bottom();
+}
+
+Box grown(const Box& box, double sides, double top, double bottom) {
+  return {box.left - sides, box.top - top, box.width + 2 * sides, box.height + top + bottom};
+}
+
+/// Where somebody's ball is seen, and what a quick foot or a box that was too narrow leaves out.
+Box surroundings_of(const Box& person) {
+  return grown(person, 0.4 * person.height + 2, 0.15 * person.height + 2, 0.2 * person.height + 2);
+}
+
+Zone zone_of(const BallView& view, const BallSighting& one, const BallClutterOptions& options) {
+  if (one.company > options.most_company) return kOnPerson;
+  const Vector<2>& pixel = one.pixel;
+  Zone zone = kOpen;
+  for (const Box& person : view.people) {
+    if (holds(limbs_of(person), pixel)) return kOnPerson;
+    if (holds(surroundings_of(person), pixel)) zone = kNear;
+  }
+  return zone;
+}
+
+/// One camera's views, in the order of time.
+using CameraViews = std::vector<BallView*>;
+
+/// Of the other frames of some seconds round it, the share in which something is seen at the same place.
+double recurrence(const CameraViews& views, std::size_t at, const Vector<2>& pixel, const BallClutterOptions& options) {
+  int frames = 0, again = 0;
+  const auto look = [&](std::size_t i) {
+    const double away = std::abs(seconds(views[i]->time - views[at]->time));
+    if (away > options.recurs_for) return false;
+    if (away < options.recurs_from) return true;
+    ++frames;
+    const auto is = [&](const BallSighting& one) { return (one.pixel - pixel).norm() < options.recurs_within; };
+    again += std::any_of(views[i]->seen.begin(), views[i]->seen.end(), is) ? 1 : 0;
+    return true;
+  };
+  for (std::size_t i = at; i-- > 0 && look(i);) continue;
+  for (std::size_t i = at + 1; i < views.size() && look(i); ++i) continue;
+  return frames == 0 ? 0 : static_cast<double>(again) / frames;
+}
+
+void weigh_camera(const CameraViews& views, double picture, const BallClutterOptions& options) {
+  std::array<double, 3> seen{options.least_open * static_cast<double>(views.size()), 1, 1}, area{};
+  std::vector<std::vector<std::pair<Zone, double>>> known;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    double on = 0, round = 0;
+    for (const Box& person : views[i]->people) {
+      on += limbs_of(person).area();
+      round += surroundings_of(person).area();
+    }
+    area[kOnPerson] += on;
+    area[kNear] += round - on;
+    area[kOpen] += picture;
+    auto& of_view = known.emplace_back();
+    for (const BallSighting& one : views[i]->seen) {
+      of_view.emplace_back(zone_of(*views[i], one, options), recurrence(views, i, one.pixel, options));
+      constexpr double kRecurs = 0.3;
+      if (of_view.back().second < kRecurs) seen[of_view.back().first] += 1;
+    }
+  }
+  const double spread = options.recurs_within / 2, at_the_place = 1 / (2 * std::numbers::pi * spread * spread);  // px, 1/px²
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t k = 0; k < known[i].size(); ++k) {
+      const auto& [zone, again] = known[i][k];
+      BallSighting& one = views[i]->seen[k];
+      one.on_person = zone == kOnPerson;
+      one.false_density = seen[zone] / std::max(area[zone], 1.0) + again * at_the_place;
+    }
+  }
+}
+
+}  // namespace
+
+Box limbs_of(const Box& person) {
+  return grown(person, 0.1 * person.height + 1, 0.04 * person.height + 1, 0.06 * person.height + 1);
+}
+
+void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options) {
+  std::map<CameraId, CameraViews> cameras;
+  for (BallMoment& moment : moments) {
+    for (BallView& view : moment.views) cameras[view.camera].push_back(&view);
+  }
+  for (const auto& [camera, of_camera] : cameras) {
+    const cv::Size size = views.view_at(camera, of_camera.front()->time).size();
+    weigh_camera(of_camera, static_cast<double>(size.width) * size.height, options);
+  }
+}
+
+}  // namespace marey::track::ball

@@ -1,0 +1,28 @@
+// How much a thing seen weighs as the ball: little where false things are seen often. Shirts, socks and limbs are seen on people
+// and close to them, bits of paint at one place again and again.
+#pragma once
+
+#include <span>
+
+#include "marey/core/ground_views.h"
+#include "marey/track/ball/ball_moment.h"
+
+namespace marey::track::ball {
+
+struct BallClutterOptions {
+  double least_open = 1;      ///< false things in a picture away from people, on average, at least
+  double most_company = 0.1;  ///< what has more is a part of somebody
+  double recurs_for = 2;      ///< s before and after, in which a thing that is seen at the same place again
+  double recurs_from = 0.4;   ///< and no sooner than that, so that a ball which rolls slowly is none
+  double recurs_within = 4;   ///< px
+};
+
+/// Sets `false_density` and `on_person` of everything seen, by what all the moments show. Densities are those of three zones, on
+/// people, close to them and elsewhere, each counted over all moments, and of what was seen at the place itself. The ball is
+/// counted too, which makes little of a difference where it moves. Boxes of people may overlap: their areas are added up.
+void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options);
+
+/// Where a person's limbs may be seen, px: a little more than the box.
+Box limbs_of(const Box& person);
+
+}  // namespace marey::track::ball

@@ -1,0 +1,26 @@
+// A ball that lies still looks like a bit of paint, until it is played or after it has come to rest: where a sure way begins, what
+// lay there before and is gone afterwards was the ball; and where one ends, the other way round.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/track/ball/ball_smooth.h"
+
+namespace marey::track::ball {
+
+struct BallRestOptions {
+  double reach = 2.5;   ///< m, between a way's end and where the ball lay: its first steps are often hidden
+  double within = 2;    ///< px, of where it lies, that it is seen
+  double look = 1.5;    ///< s before and after, in which it must have been seen,
+  double seen = 0.6;    ///< in this share of moments on the one side,
+  double gone = 0.15;   ///< and no more than this on the other
+  double unseen = 1.5;  ///< s without its being seen, after which nobody knows
+};
+
+/// Adds to `way`, where it begins and ends, the moments at which the ball lay still. `way` has one entry a moment.
+void add_rests(std::span<const BallMoment> moments, const GroundViews& views, const BallRestOptions& options,
+               std::vector<std::optional<BallState>>& way);
+
+}  // namespace marey::track::ball
