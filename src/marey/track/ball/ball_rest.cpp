@@ -64,7 +64,7 @@ std::vector<Vector<3>> places_near(const Vector<3>& end, const Walk& walk, std::
         const Vector<3> centre = ground.camera()->centre(), foot(met->ground.x(), met->ground.y(), 0);
         const Vector<3> place = foot + kBallRadius / centre.z() * (centre - foot);
         const auto known = [&](const Vector<3>& other) { return (other - place).norm() < kApart; };
-        if ((place - end).head<2>().norm() > options.reach || std::any_of(places.begin(), places.end(), known)) continue;
+        if ((place - end).norm() > options.reach || std::any_of(places.begin(), places.end(), known)) continue;
         places.push_back(place);
       }
     }
@@ -128,11 +128,12 @@ void add_rest(const Vector<3>& place, const Walk& rest, std::span<const BallMome
 }  // namespace
 
 void add_rests(std::span<const BallMoment> moments, const GroundViews& views, const BallRestOptions& options, Way& way) {
+  constexpr double kHigh = 1;  // m
   const Way told = way;
   const std::ptrdiff_t count = std::ssize(told);
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto& here = told[static_cast<std::size_t>(i)];
-    if (!here || here->belief.place().z() > options.reach) continue;
+    if (!here || here->belief.place().z() > kHigh) continue;  // it flew from elsewhere, as far as anybody knows
     for (const std::ptrdiff_t step : {-1, 1}) {
       const std::ptrdiff_t next = i + step;
       if (next < 0 || next >= count || told[static_cast<std::size_t>(next)]) continue;
