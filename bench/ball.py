@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """How well the ball is found in simulated matches: `marey track --ground --ball`, judged by the truth, beside a naive peer.
 
-    bench/ball.py build/release/marey [--seeds 21,22,23] [--stands 1,2,4] [--seconds 20] [--size 1920x1080] [--work FOLDER]
+    bench/ball.py build/release/marey [--seeds 21,22,23] [--stands 1,2,4] [--seconds 20] [--size 1920x1080] [--work FOLDER] [--without]
 
 For each match: `marey simulate match --render --ball`, then the track named "ball". `F1` counts pictures, by the published rule (a
 hit is within 4 px of the true centre): the place that is told for a picture whose camera is said to have seen the ball, projected
 into it, against the true one where half of the ball's disc or more is to be seen. `place` is how far the place told is from the true
 one in space, m, over all instants with both, in play; p50 and p90. `told` is the share of instants in play with a place.
-A stand of 2 is the football stand; of 1 or 4, cameras round the pitch. The peer (`--peer`, which needs OpenCV's Python) takes the
+`--without` plays without a ball, and tells how many instants of one were told nevertheless. A stand of 2 is the football stand; of 1 or 4, cameras round the pitch. The peer (`--peer`, which needs OpenCV's Python) takes the
 brightest small spot of each picture nearest to its last one.
 """
 
@@ -67,7 +67,8 @@ def world_from(rig):
 def simulate(program, folder, stand, seed, options):
     where = ["--stand", "football"] if stand == 2 else ["--cameras", stand]
     width, height = options.size.split("x")
-    run(program, "simulate", "match", "-o", folder, "--render", "--ball", "--no-boxes", "--seconds", options.seconds, "--seed", seed,
+    ball = [] if options.without else ["--ball"]
+    run(program, "simulate", "match", "-o", folder, "--render", *ball, "--no-boxes", "--seconds", options.seconds, "--seed", seed,
         "--size", width, height, "--quiet", *where)
 
 
@@ -149,21 +150,26 @@ def main():
     parser.add_argument("--size", default="1920x1080")
     parser.add_argument("--work", default="ball_bench")
     parser.add_argument("--peer", action="store_true")
+    parser.add_argument("--without", action="store_true")
     options = parser.parse_args()
     print(f"{'cameras':>7} {'seed':>5} {'F1':>6} {'precision':>9} {'recall':>6} {'place p50':>9} {'p90, m':>7} {'told':>5} {'peer F1':>7}")
     for stand in map(int, options.stands.split(",")):
         sums, errors, playing = [0, 0, 0], [], 0
         for seed in options.seeds.split(","):
-            folder = pathlib.Path(options.work) / f"{stand}_{seed}"
-            if not (folder / "ball.csv").exists():
+            folder = pathlib.Path(options.work) / (f"none_{stand}_{seed}" if options.without else f"{stand}_{seed}")
+            if not (folder / "truth.csv").exists():
                 folder.mkdir(parents=True, exist_ok=True)
                 simulate(options.program, folder, stand, seed, options)
+            if options.without:
+                print(f"{stand:>7} {seed:>5} {len(ours(options.program, folder))} instants told of a ball that is not there", flush=True)
+                continue
             hits, false, missed, off, held = judge(folder, ours(options.program, folder))
             beside = f"{f1(*peer(folder)):.3f}" if options.peer else "-"
             line(stand, seed, hits, false, missed, off, held, beside)
             sums = [a + b for a, b in zip(sums, (hits, false, missed))]
             errors, playing = errors + off, playing + held
-        line(stand, "all", *sums, errors, playing, "")
+        if not options.without:
+            line(stand, "all", *sums, errors, playing, "")
 
 
 def line(stand, seed, hits, false, missed, errors, playing, beside):
