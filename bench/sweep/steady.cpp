@@ -2,14 +2,14 @@
 // registered by marey's standing scene, and beside it by two naive peers: Lucas & Kanade from each picture to the next with
 // OpenCV's estimateAffinePartial2D, added up; and OpenCV's findTransformECC (Euclidean, pictures of half the size) against the
 // first picture. Prints the distance in px between where 25 places of the rest are put and where they are, less its mean over the
-// film (a rest that lies elsewhere is no error of registration), and what each costs a picture on one core.
+// film (a rest that lies elsewhere is no error of registration), and what each costs a picture of one core's time.
 //
 //   steady SHAKE_PX SEED PICTURES [SHAKE_PX SEED PICTURES …]
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -153,9 +153,9 @@ Errors errors_of(const Film& film, const Registered& found) {
 }
 
 void print_row(const Film& film, const std::string& name, const std::function<Registered(const Film&)>& method) {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor, so that a busy machine does not matter
   const Registered found = method(film);
-  const double ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   const Errors errors = errors_of(film, found);
   fmt::print("  {:28} median {:6.3f}  95 % {:7.3f}  largest {:7.3f} px   lost {:3}   {:6.1f} ms a picture\n", name, errors.median,
              errors.most_of, errors.largest, errors.lost, ms / static_cast<double>(film.frames.size()));

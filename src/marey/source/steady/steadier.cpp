@@ -55,18 +55,23 @@ double squared_motion(const Matrix<3>& homography, cv::Size size) {
 
 class SteadySource final : public Source {
  public:
-  SteadySource(std::unique_ptr<Source> source, Steadier steadier) : source_(std::move(source)), steadier_(std::move(steadier)) {}
+  SteadySource(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<SteadyLog> log)
+      : source_(std::move(source)), log_(log), steadier_(std::move(scene), std::move(log)) {}
 
   const SourceInfo& info() const override { return source_->info(); }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
   std::optional<Frame> next() override {
-    auto frame = source_->next();
-    if (frame && !frame->picture.empty()) frame = steadier_.steadied(std::move(*frame));
-    return frame;
+    while (auto frame = source_->next()) {
+      if (frame->picture.empty()) return frame;
+      Frame steady = steadier_.steadied(std::move(*frame));
+      if (!log_->was_lost(steady.index)) return steady;
+    }
+    return std::nullopt;
   }
 
  private:
   std::unique_ptr<Source> source_;
+  std::shared_ptr<SteadyLog> log_;
   Steadier steadier_;
 };
 
@@ -144,8 +149,7 @@ std::string said(const SteadyLog::Report& report) {
 std::vector<std::string> warned(const SteadyLog::Report& report) {
   std::vector<std::string> all;
   if (report.lost > 0)
-    all.push_back(
-        fmt::format("{} of {} pictures could not be steadied, and nobody was looked for in them", report.lost, report.pictures));
+    all.push_back(fmt::format("{} of {} pictures could not be steadied and were left out", report.lost, report.pictures));
   if (report.lost_since_s)
     all.push_back(
         fmt::format("from {:.1f} s on the pictures do not show the scene of the beginning: the film was cut, or the camera "
@@ -170,7 +174,7 @@ Frame Steadier::steadied(Frame frame) {
 }
 
 std::unique_ptr<Source> steadied(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<SteadyLog> log) {
-  return std::make_unique<SteadySource>(std::move(source), Steadier(std::move(scene), std::move(log)));
+  return std::make_unique<SteadySource>(std::move(source), std::move(scene), std::move(log));
 }
 
 std::optional<double> motion_among(std::span<const Frame> samples) {

@@ -68,7 +68,7 @@ class Steadier {
   Picture last_;
 };
 
-/// The same source, steadied.
+/// The same source, steadied, without the pictures that cannot be: their time passes.
 std::unique_ptr<Source> steadied(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<SteadyLog> log);
 
 /// How far the camera moved between pictures, px root mean square; nothing where that cannot be told.
