@@ -89,9 +89,9 @@ class Steady(unittest.TestCase):
 
     def test_pictures_that_show_nothing_that_stands_are_refused(self):
         rnd = random.Random(1)
-        flat = [[[118 + rnd.randrange(3) for _ in range(SIZE[0])] for _ in range(SIZE[1])] for _ in range(6)]
+        flat = [[[118 + rnd.randrange(3) for _ in range(SIZE[0])] for _ in range(SIZE[1])] for _ in range(25)]
         write_pictures(self.folder / "flat", flat)
-        done = self.run_marey("track", "flat", "--steady", "-o", "none.txt", code=1)
+        done = self.run_marey("track", "flat", "--rate", "10", "--steady", "-o", "none.txt", code=1)
         self.assertIn("nothing that stands", done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1)
         self.assertFalse((self.folder / "none.txt").exists())

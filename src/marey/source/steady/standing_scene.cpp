@@ -242,7 +242,7 @@ cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) co
   return result;
 }
 
-/// Whether a third of the samples show what one of them does: they then have places and motions against it.
+/// Whether a third of the other samples show what one of them does: they then have places and motions against it.
 bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
   corners_.clear();
   if (!take_corners(samples[anchor].shrunk)) return false;
@@ -257,7 +257,7 @@ bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor
     last_ = fit->motion;
     ++found;
   }
-  return 3 * found >= samples.size();
+  return 3 * found >= samples.size() + 2;  // it shows itself
 }
 
 bool StandingScene::learn(std::span<const Picture> pictures) {
