@@ -66,15 +66,25 @@ SkeletonMarkers::SkeletonMarkers(const Skeleton& skeleton, const std::vector<std
 }
 
 void SkeletonMarkers::name(std::span<const TrackName> named) {
+  const auto give = [&](const TrackName& track, const auto& found) {
+    marker_of_[track.id] = found->second;
+    recorded_.insert(found->first);
+  };
   for (const TrackName& track : named) {
     marker_of_.erase(track.id);
-    const std::string_view label = track.label, alone = label.substr(label.find_last_of(':') + 1);
-    auto found = by_label_.find(label);
-    if (found == by_label_.end()) found = by_label_.find(alone);
-    if (found != by_label_.end()) {
-      marker_of_[track.id] = found->second;
-      recorded_.insert(found->first);
-    } else if (!label.empty() && !left_out_.contains(label)) {
+    const auto found = by_label_.find(track.label);
+    if (found == by_label_.end()) continue;
+    if (!subject_) subject_.emplace();
+    give(track, found);
+  }
+  for (const TrackName& track : named) {
+    if (track.label.empty() || marker_of_.contains(track.id)) continue;
+    const std::string_view label = track.label, subject = label.substr(0, label.find_last_of(':') + 1);
+    const auto found = by_label_.find(label.substr(subject.size()));
+    if (found != by_label_.end() && !subject.empty() && subject_.value_or(std::string(subject)) == subject) {
+      subject_ = subject;
+      give(track, found);
+    } else if (!left_out_.contains(label)) {
       unknown_.insert(track.label);
     }
   }

@@ -26,6 +26,8 @@ class SkeletonMarkers {
   /// The skeleton must outlive it. Markers of the labels in `leave_out` are nobody's.
   explicit SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& leave_out = {});
 
+  /// A label counts as the skeleton has it, or with a subject's name before it ("Jane:LASI"): then that of the first subject, and
+  /// another one's labels are unknown.
   void name(std::span<const TrackName> named);
   /// Where each of the skeleton's markers is at this instant, as far as it was measured, filled or solved: what is predicted says
   /// nothing new, and some systems write 0, 0, 0 where a marker is missing.
@@ -41,6 +43,7 @@ class SkeletonMarkers {
   std::map<std::string, std::size_t, std::less<>> by_label_;
   std::map<TrackId, std::size_t> marker_of_;
   std::set<std::string, std::less<>> recorded_, unknown_, left_out_;
+  std::optional<std::string> subject_;  // "Jane:"; empty where labels bear none
   std::size_t count_;
 };
 

@@ -166,5 +166,34 @@ TEST(SkeletonInSpace, SaysThatNoNameIsKnown) {
   EXPECT_THROW(markers_in_space(scene.rig(), 100, options), Error) << "points without names";
 }
 
+/// Whose places a skeleton of the markers "a" and "b" takes: by track, the x of each is its number.
+std::vector<double> taken_of(const std::vector<std::string>& labels) {
+  Skeleton skeleton;
+  skeleton.markers = {{"a", 0, Vector<3>::Zero(), 1}, {"b", 0, Vector<3>::Zero(), 1}};
+  SkeletonMarkers markers(skeleton);
+  std::vector<TrackName> names;
+  Instant instant;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const TrackId track{static_cast<int>(i) + 1};
+    names.push_back({track, labels[i], ""});
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = track;
+    sample.position = {static_cast<double>(i) + 1, 0, 1};
+  }
+  markers.name(names);
+  solve::skeleton::SeenMarkers seen;
+  markers.take(instant, seen);
+  std::vector<double> taken;
+  for (const auto& place : seen) taken.push_back(place ? place->x() : 0);
+  return taken;
+}
+
+TEST(SkeletonMarkers, AreOfOneSubject) {
+  EXPECT_EQ(taken_of({"a", "b"}), (std::vector<double>{1, 2}));
+  EXPECT_EQ(taken_of({"Jane:a", "Jane:b"}), (std::vector<double>{1, 2}));
+  EXPECT_EQ(taken_of({"Jane:a", "Bob:a", "Bob:b", "Jane:b"}), (std::vector<double>{1, 4}));
+  EXPECT_EQ(taken_of({"Bob:a", "Bob:b", "a", "b"}), (std::vector<double>{3, 4}));
+}
+
 }  // namespace
 }  // namespace marey::pipeline
