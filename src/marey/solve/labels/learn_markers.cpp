@@ -106,6 +106,49 @@ double size_against(const DistanceSums& sums, const DistanceSums& first) {
   return square > 0 ? product / square : 1;
 }
 
+/// How large the subjects are, against the first one's: by recording.
+struct Sizes {
+  std::vector<double> of;
+  double mean = 0;
+};
+
+Sizes sizes_of(const std::vector<DistanceSums>& sums, bool scaled) {
+  Sizes sizes{.of = std::vector<double>(sums.size(), 1.0)};
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    if (scaled) sizes.of[r] = size_against(sums[r], sums[0]);
+    sizes.mean += sizes.of[r] / static_cast<double>(sums.size());
+  }
+  return sizes;
+}
+
+/// The distances' means and deviations over all recordings, brought to the mean size; and whether the subject moved. Throws Error
+/// where hardly any two markers are seen together.
+void learn_distances(const std::vector<DistanceSums>& sums, const Sizes& sizes, LearnedMarkers& learned) {
+  std::size_t still = 0, known = 0;
+  for (std::size_t pair = 0; pair < sums[0].sum.size(); ++pair) {
+    double mean = 0, square = 0, within = 0;
+    int takes = 0;
+    for (std::size_t r = 0; r < sums.size(); ++r) {
+      if (sums[r].count[pair] == 0) continue;
+      const double scale = sizes.mean / sizes.of[r], its = scale * sums[r].mean(pair),
+                   varies = scale * scale * sums[r].variance(pair);
+      mean += its, square += its * its + varies, within += varies, ++takes;
+    }
+    if (takes == 0) {
+      learned.distances.push_back({0.5, kUnknownDeviation});
+      continue;
+    }
+    mean /= takes;
+    learned.distances.push_back({mean, std::sqrt(std::max(square / takes - mean * mean, 0.0))});
+    ++known;
+    still += std::sqrt(within / takes) < kStill;
+  }
+  if (static_cast<double>(known) < kFewestTogether * static_cast<double>(learned.distances.size()))
+    throw Error("{} of {} pairs of markers are seen together in any frame; distances between the others are not known", known,
+                learned.distances.size());
+  learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
+}
+
 std::vector<std::string> labels_of(std::span<const Recording> recordings, const LearnOptions& options) {
   if (!options.labels.empty()) return options.labels;
   std::vector<std::string> labels;
@@ -220,40 +263,14 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
   }
   require_all(tracks, learned.labels, recordings.size() == 1 ? recordings[0].header.name : "the recordings");
   for (std::size_t r = 0; r < recordings.size(); ++r) sums.push_back(sums_of(tracks[r], recordings[r].instants().size()));
-  std::vector<double> size(sums.size(), 1.0);
-  double mean_size = 0;
-  for (std::size_t r = 0; r < sums.size(); ++r) {
-    if (options.scaled) size[r] = size_against(sums[r], sums[0]);
-    mean_size += size[r] / static_cast<double>(sums.size());
-  }
-  std::size_t still = 0, known = 0;
-  for (std::size_t pair = 0; pair < sums[0].sum.size(); ++pair) {
-    double mean = 0, square = 0, within = 0;
-    int takes = 0;
-    for (std::size_t r = 0; r < sums.size(); ++r) {
-      if (sums[r].count[pair] == 0) continue;
-      const double scale = mean_size / size[r], its = scale * sums[r].mean(pair), varies = scale * scale * sums[r].variance(pair);
-      mean += its, square += its * its + varies, within += varies, ++takes;
-    }
-    if (takes == 0) {
-      learned.distances.push_back({0.5, kUnknownDeviation});
-      continue;
-    }
-    mean /= takes;
-    learned.distances.push_back({mean, std::sqrt(std::max(square / takes - mean * mean, 0.0))});
-    ++known;
-    still += std::sqrt(within / takes) < kStill;
-  }
-  if (static_cast<double>(known) < kFewestTogether * static_cast<double>(learned.distances.size()))
-    throw Error("{} of {} pairs of markers are seen together in any frame; distances between the others are not known", known,
-                learned.distances.size());
-  learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
+  const Sizes sizes = sizes_of(sums, options.scaled);
+  learn_distances(sums, sizes, learned);
   std::vector<std::vector<Vector<3>>> postures;
   for (std::size_t r = 0; r < recordings.size(); ++r)
     postures.push_back(fullest_posture(tracks[r], recordings[r].instants().size()));
   const std::size_t chosen = most_agreed(postures, learned);
   learned.places = std::move(postures[chosen]);
-  for (Vector<3>& place : learned.places) place *= mean_size / size[chosen];
+  for (Vector<3>& place : learned.places) place *= sizes.mean / sizes.of[chosen];
   if (extents_of(learned.places)[1] < kThin)
     throw Error("the {} markers lie in one line, or on one spot: names cannot be told by how they lie", learned.size());
   return learned;
