@@ -14,6 +14,15 @@ interface Entry {
   gone: boolean; // of a live run
 }
 
+interface Row {
+  element: HTMLElement;
+  swatch: HTMLElement;
+  name: HTMLButtonElement;
+  bar: HTMLElement;
+  percent: HTMLElement;
+  eye: HTMLButtonElement;
+}
+
 export class Table {
   private list = document.querySelector<HTMLElement>("#tracks")!;
   private filter = document.querySelector<HTMLInputElement>("#filter")!;
@@ -21,6 +30,7 @@ export class Table {
   private entries: Entry[] = [];
   private shown: Entry[] = [];
   private body = document.createElement("div");
+  private rows = new Map<number, Row>(); // those in sight, by track
   private by: "name" | "seen" = "name";
 
   constructor(private state: State, private colours: Colours) {
@@ -73,56 +83,76 @@ export class Table {
     this.body.style.height = `${this.shown.length * ROW}px`;
     const first = Math.max(0, Math.floor(this.list.scrollTop / ROW) - 4);
     const last = Math.min(this.shown.length, first + Math.ceil(this.list.clientHeight / ROW) + 8);
-    this.body.replaceChildren(...this.shown.slice(first, last).map((entry, i) => this.row(entry, first + i)));
+    this.place(this.shown.slice(first, last), first);
   }
 
-  private row(entry: Entry, place: number): HTMLElement {
+  /** A row stays the same element while its track is in sight: a press that began on it ends on it, however often the list is drawn meanwhile. */
+  private place(entries: Entry[], first: number): void {
+    const wanted = new Set(entries.map((entry) => entry.track.id));
+    for (const [id, row] of this.rows) {
+      if (wanted.has(id)) continue;
+      row.element.remove();
+      this.rows.delete(id);
+    }
+    entries.forEach((entry, i) => {
+      const { id } = entry.track;
+      const row = this.rows.get(id) ?? this.row(id);
+      this.rows.set(id, row);
+      this.fill(row, entry, first + i);
+      if (this.body.children[i] !== row.element) this.body.insertBefore(row.element, this.body.children[i] ?? null);
+    });
+  }
+
+  private fill(row: Row, entry: Entry, place: number): void {
     const { id } = entry.track;
     const { selected, hidden } = this.state;
-    const row = document.createElement("div");
-    row.className = "row";
-    row.style.top = `${place * ROW}px`;
-    row.dataset.id = `${id}`;
-    row.classList.toggle("selected", selected.has(id));
-    row.classList.toggle("hidden", hidden.has(id));
-    row.classList.toggle("gone", entry.gone);
+    row.element.style.top = `${place * ROW}px`;
+    row.element.classList.toggle("selected", selected.has(id));
+    row.element.classList.toggle("hidden", hidden.has(id));
+    row.element.classList.toggle("gone", entry.gone);
+    row.swatch.style.background = this.colours.css(id);
+    if (row.name.textContent !== entry.name) row.name.textContent = entry.name;
+    row.name.title = entry.track.team ? `${entry.name}, ${entry.track.team}` : entry.name;
+    row.name.setAttribute("aria-pressed", `${selected.has(id)}`);
+    row.bar.hidden = entry.seen === null;
+    row.bar.style.width = `${(100 * (entry.seen ?? 0)).toFixed(1)}%`;
+    row.percent.textContent = entry.seen === null ? "" : entry.seen > 0.9995 ? "100" : (100 * entry.seen).toFixed(1);
+    row.eye.title = hidden.has(id) ? "Show" : "Hide";
+    row.eye.setAttribute("aria-label", `${row.eye.title} ${entry.name}`);
+  }
+
+  private row(id: number): Row {
+    const element = document.createElement("div");
+    element.className = "row";
+    element.dataset.id = `${id}`;
     const swatch = document.createElement("span");
     swatch.className = "swatch";
-    swatch.style.background = this.colours.css(id);
     const name = document.createElement("button");
     name.className = "name";
-    name.textContent = entry.name;
-    name.title = entry.track.team ? `${entry.name}, ${entry.track.team}` : entry.name;
-    name.setAttribute("aria-pressed", `${selected.has(id)}`);
     name.addEventListener("click", () => this.state.toggle_selected(id));
-    row.addEventListener("mouseenter", () => {
+    element.addEventListener("mouseenter", () => {
       this.state.hover = id;
-      row.classList.add("hover");
+      element.classList.add("hover");
       this.state.changed_hover();
     });
-    row.addEventListener("mouseleave", () => {
+    element.addEventListener("mouseleave", () => {
       this.state.hover = null;
+      element.classList.remove("hover");
       this.state.changed_hover();
     });
     const share = document.createElement("span");
     share.className = "share";
-    if (entry.seen !== null) {
-      const bar = document.createElement("i");
-      bar.style.width = `${(100 * entry.seen).toFixed(1)}%`;
-      share.append(bar);
-    }
+    const bar = document.createElement("i");
+    share.append(bar);
     const percent = document.createElement("span");
     percent.className = "percent";
-    percent.textContent = entry.seen === null ? "" : entry.seen > 0.9995 ? "100" : (100 * entry.seen).toFixed(1);
     const eye = document.createElement("button");
     eye.className = "eye";
-    eye.title = hidden.has(id) ? "Show" : "Hide";
-    eye.setAttribute("aria-label", `${eye.title} ${entry.name}`);
     eye.addEventListener("click", () => {
-      if (!hidden.delete(id)) hidden.add(id);
+      if (!this.state.hidden.delete(id)) this.state.hidden.add(id);
       this.state.changed();
     });
-    row.append(swatch, name, share, percent, eye);
-    return row;
+    element.append(swatch, name, share, percent, eye);
+    return { element, swatch, name, bar, percent, eye };
   }
 }
