@@ -20,6 +20,7 @@
 #include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
+#include "ground_options.h"
 #include "json_value.h"
 #include "live_outputs.h"
 #include "live_screen.h"
@@ -52,6 +53,7 @@ struct LiveCommand {
   double preroll_s = 5, late_s = 0.05, patience_s = 3;
   detect::markers::MarkerOptions markers;
   PeopleFlags people;
+  GroundAreaFlags where;
   LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
@@ -117,7 +119,7 @@ std::vector<std::string> files_beside_take(const LiveCommand& command) {
   return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
 }
 
-pipeline::LiveOptions options_of(const LiveCommand& command) {
+pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   pipeline::LiveOptions options;
   options.targets = command.targets;
   options.ground = command.ground;
@@ -128,7 +130,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
-  options.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
+  apply(command.where, rig, command.sources.front(), true, options.on_ground);
   options.policy.late_s = command.late_s;
   options.patience_s = command.patience_s;
   options.take = command.out;
@@ -137,6 +139,13 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
+}
+
+/// The part of the ground that the page shows.
+viewer::LiveGround ground_of(const pipeline::PeopleOnGroundOptions& options) {
+  viewer::LiveGround ground{.pitch = options.pitch, .area = {}};
+  for (const Vector<2>& corner : options.area) ground.area.emplace_back(corner.x(), corner.y(), 0);
+  return ground;
 }
 
 /// Ends by a signal, by a key, or when the time is over.
@@ -150,11 +159,11 @@ void run(const LiveCommand& command) {
     if (const auto refused = ask_for_realtime()) warn({*refused});
   }
   const Rig rig = rig_of_live_sources(command.sources);
-  pipeline::LiveOptions options = options_of(command);
+  pipeline::LiveOptions options = options_of(command, rig);
   options.desk = std::make_shared<pipeline::CameraDesk>(rig, command.markers.threshold);
   options.naming = std::make_shared<pipeline::TrackNaming>();
   LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
-                      command.targets == LiveTargets::markers, command.quiet);
+                      command.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
   LiveEnd end;
   LiveScreen screen(command.quiet);
@@ -193,7 +202,8 @@ void add_live(Command& program) {
   Command command = program.subcommand("live", "Track what live cameras see, while they see it");
   add_live_sources(command, options->sources);
   command.choice("--targets", options->targets, kLiveTargets, "what is followed");
-  command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
+  const Option ground = command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
+  add_ground_area_options(command, ground, options->where);
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
   command.also_writes([options] { return files_beside_take(*options); });
