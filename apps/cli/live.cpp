@@ -1,5 +1,6 @@
 #include "marey/pipeline/live.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -141,6 +142,17 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   return options;
 }
 
+/// LSL's channels are fixed at its first instant, when targets without given labels have none.
+void tell_of_slots(const LiveCommand& command) {
+  const bool lsl = std::any_of(command.outputs.streams.streams.begin(), command.outputs.streams.streams.end(),
+                               [](const std::string& target) { return target.starts_with("lsl"); });
+  if (!lsl || !command.labels.empty() || !command.skeleton.empty()) return;
+  fmt::print(stderr,
+             "marey: lsl: no labels are given ({}): the outlet has {} slots, each with a track's ID and coordinates, NaN where "
+             "empty\n",
+             command.targets == LiveTargets::markers ? "--labels" : "people have none", command.outputs.streams.unlabelled_slots);
+}
+
 /// The part of the ground that the page shows.
 viewer::LiveGround ground_of(const pipeline::PeopleOnGroundOptions& options) {
   viewer::LiveGround ground{.pitch = options.pitch, .area = {}};
@@ -165,6 +177,7 @@ void run(const LiveCommand& command) {
   LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
                       command.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
+  if (!command.quiet) tell_of_slots(command);
   LiveEnd end;
   LiveScreen screen(command.quiet);
   const auto recording = options.recording;
@@ -225,6 +238,8 @@ void add_live(Command& program) {
     options->outputs.take = options->out;
     if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
     if (options->ground) options->targets = LiveTargets::people;
+    options->outputs.streams.unlabelled_slots =
+        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->markers.most_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
     run(*options);
