@@ -177,6 +177,15 @@ class LiveCameras(unittest.TestCase):
         (self.folder / "file_pictures").write_text("a file")
         self.assertIn("file_pictures", self.marey("live", room, "--for", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
 
+    def test_pictures_drawn_beforehand_take_little_memory(self):
+        room = "sim://room?cameras=8&rate=240&markers=8&size=1280x1024&drawn=2"  # 5 GB of pictures
+        with open(self.folder / "said.txt", "w+") as said:
+            run = subprocess.Popen([MAREY, "live", room, "--for", "0.5", "-q"], cwd=self.folder, stderr=said)
+            _, status, used = os.wait4(run.pid, 0)
+            run.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(run.returncode, 0, (self.folder / "said.txt").read_text())
+        self.assertLess(used.ru_maxrss, 500_000, "kB")
+
     def test_what_is_played_is_not_recorded_over(self):
         self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--for", 1, "-o", "walk.marey", "--record", "raw")
         pictures = self.folder / "walk_pictures"

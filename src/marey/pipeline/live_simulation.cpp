@@ -122,11 +122,28 @@ struct SharedRoom {
   }
 };
 
+/// What a camera sees, drawn beforehand.
+struct DrawnRoom {
+  simulate::room::RoomSpots spots;
+  std::vector<simulate::room::RoomSpots::Drawn> drawn;
+
+  DrawnRoom(const SharedRoom& room, int camera);
+};
+
+DrawnRoom::DrawnRoom(const SharedRoom& room, int camera) : spots(room.scene, static_cast<std::size_t>(camera)) {
+  drawn.resize(static_cast<std::size_t>(std::llround(room.behaviour.drawn_s * room.rate_hz())));
+  const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
+  tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) {
+    const double t = offset + static_cast<double>(i) / room.rate_hz();
+    drawn[i] = spots.draw(t, room.seen_by(camera, t, i), i);
+  });
+}
+
 /// One of its cameras. Frame n is exposed at offset + n / rate by the camera's own clock.
 class RoomCamera final : public Connection {
  public:
-  RoomCamera(std::shared_ptr<const SharedRoom> room, std::shared_ptr<const std::vector<cv::Mat>> drawn, int camera,
-             const std::string& name, Timestamp begin, source::LiveTime& time, std::stop_token stop)
+  RoomCamera(std::shared_ptr<const SharedRoom> room, std::shared_ptr<const DrawnRoom> drawn, int camera, const std::string& name,
+             Timestamp begin, source::LiveTime& time, std::stop_token stop)
       : room_(std::move(room)), drawn_(std::move(drawn)), camera_(camera), begin_(begin), time_(time), stop_(std::move(stop)) {
     info_.name = name;
     info_.size = room_->scene.options().picture;
@@ -208,9 +225,10 @@ class RoomCamera final : public Connection {
 
   CameraFrame drawn(std::int64_t frame) const {
     CameraFrame given;
-    if (drawn_ != nullptr && !drawn_->empty()) {
-      const auto count = std::ssize(*drawn_), turn = std::max<std::int64_t>(1, 2 * count - 2), at = frame % turn;
-      given.frame.picture = exposed_picture((*drawn_)[static_cast<std::size_t>(at < count ? at : turn - at)]);
+    if (drawn_ != nullptr) {
+      const auto count = std::ssize(drawn_->drawn), turn = std::max<std::int64_t>(1, 2 * count - 2), at = frame % turn;
+      given.frame.picture =
+          exposed_picture(drawn_->spots.picture(drawn_->drawn[static_cast<std::size_t>(at < count ? at : turn - at)]));
       return given;
     }
     const double t = exposed(frame);
@@ -230,7 +248,7 @@ class RoomCamera final : public Connection {
   }
 
   std::shared_ptr<const SharedRoom> room_;
-  std::shared_ptr<const std::vector<cv::Mat>> drawn_;
+  std::shared_ptr<const DrawnRoom> drawn_;
   int camera_;
   Timestamp begin_;
   source::LiveTime& time_;
@@ -262,15 +280,10 @@ class Rooms {
   std::map<std::string, std::weak_ptr<const SharedRoom>> rooms_;
 };
 
-std::shared_ptr<const std::vector<cv::Mat>> draw_beforehand(const SharedRoom& room, int camera) {
-  const auto count = static_cast<std::size_t>(std::llround(room.behaviour.drawn_s * room.rate_hz()));
-  auto drawn = std::make_shared<std::vector<cv::Mat>>(room.behaviour.blobs ? 0 : count);
-  const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
-  tbb::parallel_for(std::size_t{0}, drawn->size(), [&](std::size_t i) {
-    const double t = offset + static_cast<double>(i) / room.rate_hz();
-    (*drawn)[i] = room.drawn(camera, t, i);
-  });
-  return drawn;
+/// Null where everything is drawn as it comes.
+std::shared_ptr<const DrawnRoom> draw_beforehand(const SharedRoom& room, int camera) {
+  if (room.behaviour.blobs || room.behaviour.drawn_s * room.rate_hz() < 0.5) return nullptr;
+  return std::make_shared<DrawnRoom>(room, camera);
 }
 
 source::live::Connect open_room(Rooms& rooms, const Address& address, const Opening& opening) {
