@@ -13,6 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
+#include "marey/pipeline/live_teams.h"
 #include "marey/track/view_log.h"
 
 namespace marey::pipeline {
@@ -73,6 +74,9 @@ class GroundStage final : public PeopleOnGround {
     tracker.evidence.tentative_patience = std::max(tracker.evidence.tentative_patience, kPatientFrames / feeds.front().rate_hz());
     if (options.live) {
       tracker_ = track::ground::make_ground_tracker(tracker, views_);
+      analyse::TeamOptions teams = options.teams;
+      teams.pitch = area_.pitch();
+      if (!teams.names.empty()) live_teams_.emplace(teams);
     } else {
       run_.emplace(tracker, options_.join, options_.learn, views_,
                    [this](const GroundInstant& instant, std::span<const ObservationMatch> matches) { note(instant, matches); });
@@ -264,6 +268,7 @@ class GroundStage final : public PeopleOnGround {
       sample.provenance = track.state == Track<2>::State::observed ? Provenance::measured : Provenance::predicted;
       sample.cameras = track.cameras;
     }
+    if (live_teams_) instant.named = live_teams_->step(instant, appearances(seen));
     if (!wants_boxes_) return instant;
     logs_ = std::vector<track::ViewLog>(cameras_.size());
     for (std::size_t i = 0; i < logs_.size(); ++i) {
@@ -274,6 +279,16 @@ class GroundStage final : public PeopleOnGround {
     for (track::ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;
+  }
+
+  /// What was observed of each track at this instant.
+  std::map<TrackId, Appearance> appearances(std::span<const CameraObservations> seen) const {
+    std::map<TrackId, Appearance> appearances;
+    for (const ObservationMatch& match : tracker_->matches()) {
+      const auto& observation = seen[static_cast<std::size_t>(match.view)].seen[static_cast<std::size_t>(match.observation)];
+      if (observation.appearance && !observation.shared) appearances.insert_or_assign(match.track, *observation.appearance);
+    }
+    return appearances;
   }
 
   /// The second pass: the tracks of the whole recording, in the user's coordinates, without those who never were in the area.
@@ -369,6 +384,7 @@ class GroundStage final : public PeopleOnGround {
   Recording recording_;
   std::vector<track::ball::BallMoment> ball_moments_;
   std::optional<TrackId> ball_;
+  std::optional<LiveTeams> live_teams_;  // where `live`, of teams that are named
   analyse::Teams teams_;
   std::int64_t off_pitch_ = 0;
   double joining_s_ = 0;
