@@ -60,12 +60,13 @@ void append_between(std::span<const TrackRow> rows, const TrackletLog& log, doub
   auto guess = rows.begin();
   for (std::int32_t frame = from.frame + 1; frame < to.frame; ++frame) {
     const double share = seconds(log.time_of(frame) - begin) / span;
+    const TrackRow straight = straight_row(from, to, frame, share);
     if (way == GapWay::straight) {
-      filled.push_back(straight_row(from, to, frame, share));
+      filled.push_back(straight);
       continue;
     }
     while (guess->frame < frame) ++guess;
-    if (guess->frame == frame) filled.push_back(cubic_row(from, to, *guess, span, share));
+    filled.push_back(cubic_row(from, to, guess->frame == frame ? *guess : straight, span, share));
   }
 }
 

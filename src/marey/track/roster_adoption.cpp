@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace marey::track {
@@ -12,6 +13,9 @@ constexpr double kMostMisfit = 4;           // variances
 constexpr double kStayed = 0.1;             // s that a newcomer stays, before it may be a target that was lost
 constexpr double kShortPath = 3;            // marker widths that a target without rigid neighbours may have gone astray
 constexpr double kOwnMotion = 0.25;         // s in which a target's own motion still says where it is
+constexpr double kJolted = 0.34;            // of the targets of the frame before that are missed at once: their motion turned
+constexpr double kJoltLasts = 0.1;          // s in which they are then searched where they are if they turned
+constexpr double kSteps = 0.25;             // marker widths, and of its path, that a place is uncertain by there
 constexpr double kClear = 3;                // variances, or widths, by which a pair must be better than what else may be
 constexpr double kNotPriced = 1e3;          // variances
 constexpr double kUnknown = 100;            // variances: targets that rigid neighbours identify go first
@@ -37,10 +41,42 @@ void RosterAdoption<D>::find_lost(std::span<Target> targets, std::span<const Obs
   for (int i = 0; i < std::ssize(seen); ++i) {
     if (!taken[i]) free_.push_back(i);
   }
+  notice_jolt(targets);
   likelihood.count_unexplained(std::max<double>(0, static_cast<double>(free_.size()) - static_cast<double>(lost_.size())));
   if (lost_.empty()) return;
   adopt_points(targets, seen, taken, likelihood, neighbours);
   adopt_newcomers(targets, likelihood, neighbours);
+}
+
+/// One target that is missed was covered; where many of those that were just seen are missed in one frame, something happened to
+/// all of them: they turned back, hit something, or images are missing.
+template <int D>
+void RosterAdoption<D>::notice_jolt(std::span<const Target> targets) {
+  if (!options_.rigid_neighbours) return;
+  dt_ = std::numeric_limits<double>::infinity();
+  for (const Target& target : targets) dt_ = std::min(dt_, target.unseen);
+  double seen_before = 0, missed = 0;
+  for (const Target& target : targets) {
+    if (target.standing != Target::Standing::established || target.unseen > 1.5 * dt_) continue;
+    ++seen_before;
+    missed += target.missed();
+  }
+  if (missed > 0 && missed >= kJolted * seen_before) {
+    since_jolt_ = 1.5 * dt_;
+  } else if (since_jolt_ > 0) {
+    since_jolt_ = since_jolt_ + dt_ < kJoltLasts ? since_jolt_ + dt_ : 0;
+  }
+}
+
+/// Whether a target in space that was just seen would be at a place had it turned: one alone only on the way that it came, for what
+/// appears elsewhere may be another.
+template <int D>
+bool RosterAdoption<D>::turned_to(const Target& target, const Vector<D>& place) const {
+  const double slack = kSteps * target.width;
+  if (target.unseen < since_jolt_) return target.within_reach(place, slack);
+  if (target.unseen > 1.5 * dt_) return false;
+  const Vector<D> back = target.last_place - target.unseen * target.filter.velocity();
+  return (place - back).norm() <= slack + kSteps * target.unseen * target.filter.velocity().norm();
 }
 
 /// How far a target's own motion leaves it from a place; where it turned or stopped unseen, its last place is the better guess.
@@ -70,15 +106,16 @@ template <int D>
 std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector<D>& place, const Neighbours& neighbours,
                                               const Target* newcomer) const {
   if (!options_.rigid_neighbours) {
-    if ((place - target.last_place).norm() > options_.max_speed * target.unseen + target.width) return std::nullopt;
+    if (!target.within_reach(place, target.width)) return std::nullopt;
     return std::max(0.0, kLeastImprobable - log_density(target, place));
   }
-  if (!target.near(place)) return std::nullopt;
+  const bool turned = turned_to(target, place);
+  if (!turned && !target.near(place)) return std::nullopt;
   if (const auto misfit = neighbours.misfit(target, place)) return *misfit < kMostMisfit ? misfit : std::nullopt;
   // Where the body has gone meanwhile nobody knows: the distances of a newcomer will prove who it is.
   if (newcomer != nullptr || target.unseen > kOwnMotion) return std::nullopt;
-  const double path = (place - target.filter.position()).norm();
-  if (path > kShortPath * target.width) return std::nullopt;
+  const double path = turned ? path_to(target, place) : (place - target.filter.position()).norm();
+  if (!turned && path > kShortPath * target.width) return std::nullopt;
   return kUnknown + path / target.width;
 }
 
@@ -151,7 +188,8 @@ void RosterAdoption<D>::adopt_points(std::span<Target> targets, std::span<const 
 template <int D>
 void RosterAdoption<D>::begin_anew(Target& target, const Vector<D>& place, const Matrix<D>& R) const {
   const double jump = (place - target.filter.position()).norm();
-  if (target.filter.gate_distance(place, R) <= kGentleJump || jump < target.width) return;
+  const double shortest = (D == 3 ? kSteps : 1) * target.width;
+  if (target.filter.gate_distance(place, R) <= kGentleJump || jump < shortest) return;
   filter::AnyFilter<D> fresh(options_.filter, target.last_place, R);
   fresh.predict(target.unseen);
   if (fresh.gate_distance(place, R) > 1) fresh = filter::AnyFilter<D>(options_.filter, place, R);

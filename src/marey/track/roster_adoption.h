@@ -30,6 +30,8 @@ class RosterAdoption {
  private:
   using Neighbours = RosterRigidNeighbours<D>;
 
+  void notice_jolt(std::span<const Target> targets);
+  bool turned_to(const Target& target, const Vector<D>& place) const;
   double path_to(const Target& target, const Vector<D>& place) const;
   double log_density(const Target& target, const Vector<D>& place) const;
   std::optional<double> cost(const Target& target, const Vector<D>& place, const Neighbours& neighbours,
@@ -42,6 +44,8 @@ class RosterAdoption {
   bool leaves_doubt(int row) const;
 
   RosterTrackerOptions options_;
+  double dt_ = 0;          // s since the frame before
+  double since_jolt_ = 0;  // s since many targets were missed at once, and a frame; 0: that is long ago
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> lost_, free_, proven_;
   std::vector<assign::GatedPair> pairs_;

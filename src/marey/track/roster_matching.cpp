@@ -91,6 +91,7 @@ double RosterMatching<D>::gain(const Target& target, const Observation<D>& point
   if (target.filter.gate_distance(point.value, R) > 1) return 0;
   const double log_likelihood = target.filter.log_likelihood(point.value, R);
   if (target.unseen > 1.5 * dt) {
+    if (D == 2 && !target.within_reach(point.value, target.width)) return 0;
     if (!likelihood.believes_jump(residual.norm() + target.width)) return 0;
     if (likelihood.cluttered() && likelihood.log_return(log_likelihood) < kComesBack) return 0;
   }

@@ -26,11 +26,13 @@ struct RosterTarget {
   TrackId id;
   std::string label;
   filter::AnyFilter<D> filter;
-  double width;                         ///< of its marker
-  double usual_variance;                ///< of its observations
-  Vector<D> last_place;                 ///< where it was last seen
-  double unseen = 0;                    ///< s, since then
-  double seen = 0;                      ///< s, in which it was
+  double width;           ///< of its marker
+  double usual_variance;  ///< of its observations
+  Vector<D> last_place;   ///< where it was last seen
+  double unseen = 0;      ///< s, since then
+  double seen = 0;        ///< s, in which it was
+  double speed = 0;       ///< the highest of the last observations, fading, in units per s
+  double travel = 0;      ///< how far it may have moved since it was last seen, at its own speed or that of the others
   std::optional<int> observation = {};  ///< in this frame
   std::optional<int> covered_by = {};   ///< the observation that it is taken to be behind
   std::optional<int> neighbour = {};    ///< its number among the rigid neighbours
@@ -65,6 +67,12 @@ struct RosterTarget {
 
   bool on_roster() const { return standing != Standing::newcomer; }
   bool missed() const { return !observation && !covered_by; }
+  /// Whether it may have moved to a place since it was last seen: the search goes no farther, however wide the filter's gate grows
+  /// meanwhile. `slack` is what its place is uncertain by, beside its motion.
+  bool within_reach(const Vector<D>& place, double slack) const {
+    constexpr double kSpeedUp = 1.5;  // times the speed of before
+    return (place - last_place).norm() <= kSpeedUp * travel + slack;
+  }
   /// Whether it may be at a place, as far as is known where it went since it was last seen.
   bool near(const Vector<D>& place) const {
     constexpr double kSigmas = 4;
@@ -81,7 +89,7 @@ class RosterLikelihood {
 
   double width_of(const Observation<D>& observation) const {
     if constexpr (D == 2) {
-      if (observation.box) return std::sqrt(observation.box->area());
+      if (observation.box && !observation.box->empty()) return std::sqrt(observation.box->area());
     }
     return options_.marker_width;
   }

@@ -121,12 +121,13 @@ class RosterTracker final : public Tracker<D> {
     check_time(now, now_);
     dt_ = seconds_to(now);
     now_ = now;
+    const double others = speed_of_seen();
     for (Target& target : targets_) {
-      // A lost target goes on as it went; where that leads out of the picture it is waited for.
+      target.travel += std::min(std::max(target.speed, others), options_.max_speed) * dt_;
       if (target.unseen == 0) {
         target.filter.predict(dt_);
       } else if (coasts(target)) {
-        target.filter.predict_unseen(dt_);
+        coast(target);
       }
       for (auto& doubt : target.doubt) {
         doubt.filter.predict_unseen(dt_);
@@ -137,6 +138,18 @@ class RosterTracker final : public Tracker<D> {
       target.covered_by.reset();
       target.crowded = false;
     }
+  }
+
+  /// The speed that most of the targets that were just seen stay below: one that is hidden moves as they do, if not as it did.
+  double speed_of_seen() {
+    speeds_.clear();
+    for (const Target& target : targets_) {
+      if (target.on_roster() && target.unseen == 0) speeds_.push_back(target.speed);
+    }
+    if (speeds_.empty()) return 0;
+    const auto most = speeds_.begin() + static_cast<std::ptrdiff_t>(kMostOfThem * static_cast<double>(speeds_.size() - 1));
+    std::nth_element(speeds_.begin(), most, speeds_.end());
+    return *most;
   }
 
   /// Targets that took a doubtful point and are missed right afterwards are what they were before. Whether there are any.
@@ -169,16 +182,29 @@ class RosterTracker final : public Tracker<D> {
 
   bool coasts(const Target& target) const {
     if (target.predicted_variance > 0) return true;
-    if constexpr (D == 2) {
-      const Vector<2>& place = target.filter.position();
-      const auto& picture = options_.picture;
-      if (picture) {
-        return place.x() > picture->left && place.x() < picture->right() && place.y() > picture->top &&
-               place.y() < picture->bottom();
-      }
-      return target.unseen < kLongCoast;
-    }
+    if constexpr (D == 2) return options_.picture || target.unseen < kLongCoast;
     return target.unseen < kCoast;
+  }
+
+  bool in_picture(const Vector<D>& place) const {
+    if constexpr (D == 3) return true;
+    const auto& picture = options_.picture;
+    return !picture ||
+           (place.x() > picture->left && place.x() < picture->right() && place.y() > picture->top && place.y() < picture->bottom());
+  }
+
+  /// A lost target goes on as it went, up to the border of the image.
+  void coast(Target& target) const {
+    if constexpr (D == 3) return target.filter.predict_unseen(dt_);
+    filter::AnyFilter<D> ahead = target.filter;
+    ahead.predict_unseen(dt_);
+    if (in_picture(ahead.position())) target.filter = std::move(ahead);
+  }
+
+  /// Whether its place is known: that of a target that is not seen in an image only while it cannot have gone far.
+  bool is_placed(const Target& target) const {
+    if (D == 3 || !target.missed()) return true;
+    return target.travel <= kKnownWithin * target.width && in_picture(target.filter.position());
   }
 
   /// A target that vanished behind an edge was seen in part before: its filter is begun again from what was seen of it whole.
@@ -260,8 +286,9 @@ class RosterTracker final : public Tracker<D> {
         target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
         target.usual_variance += kVarianceMemory * (likelihood_.variance_of(point) - target.usual_variance);
       }
+      target.speed = std::max(target.filter.velocity().norm(), target.speed * std::exp(-dt_ / kSpeedMemory));
       target.last_place = point.value;
-      target.unseen = 0;
+      target.unseen = target.travel = 0;
       target.seen += dt_;
       likelihood_.widen_scene(point.value);
     }
@@ -269,6 +296,7 @@ class RosterTracker final : public Tracker<D> {
       if (!target.covered_by) continue;
       target.last_place = target.filter.position();  // it is seen, though not apart
       target.unseen = std::min(target.unseen, kCoast / 2);
+      target.travel = std::min(target.travel, target.speed * target.unseen);
     }
   }
 
@@ -281,7 +309,8 @@ class RosterTracker final : public Tracker<D> {
       if (target.standing == Standing::established) continue;
       if (!target.observation && !target.covered_by) target.score -= kMissPenalty;
       const bool proven = target.score >= options_.confirm;
-      const bool stayed = neighbours_.used() && target.seen > kProof;  // and no target that is missed can be it
+      // No target that is missed can be it: in an image one within whose reach it is was given it before.
+      const bool stayed = !neighbours_.used() || target.seen > kProof;
       if (proven && (target.standing == Standing::provisional || all_there || stayed)) {
         if (!target.on_roster()) neighbours_.confirm(target);
         target.standing = Standing::established;
@@ -318,7 +347,7 @@ class RosterTracker final : public Tracker<D> {
     }
   }
 
-  static Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, typename Track<D>::State state) {
+  Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, typename Track<D>::State state) const {
     Track<D> track;
     track.id = target.id;
     track.label = target.label;
@@ -328,7 +357,7 @@ class RosterTracker final : public Tracker<D> {
     track.covariance.diagonal().array() += target.predicted_variance;
     track.state = state;
     if (state == Track<D>::State::observed) track.observation = target.observation;
-    track.confirmed = target.on_roster();
+    track.confirmed = target.on_roster() && is_placed(target);
     if constexpr (D == 2) track.box = Box::from_centre(track.position, target.width, target.width);
     return track;
   }
@@ -337,6 +366,9 @@ class RosterTracker final : public Tracker<D> {
 
   static constexpr double kCoast = 0.5;            // s that a lost target drifts on in space
   static constexpr double kLongCoast = 3;          // s that it does in an image of unknown size
+  static constexpr double kMostOfThem = 0.75;      // of the targets
+  static constexpr double kSpeedMemory = 0.5;      // s
+  static constexpr double kKnownWithin = 3;        // marker widths that it may have gone
   static constexpr double kLongGap = 0.2;          // s, before which nothing is remembered
   static constexpr double kDoubted = 4;            // the same below which what was before is kept
   static constexpr double kBelieved = 8;           // and of all points since, from which it is no more
@@ -368,6 +400,7 @@ class RosterTracker final : public Tracker<D> {
   std::vector<ObservationMatch> matches_;
   Decision<D> decision_;
   std::vector<char> taken_, wanted_;
+  std::vector<double> speeds_;
 };
 
 }  // namespace

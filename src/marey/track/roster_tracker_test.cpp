@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -109,6 +111,84 @@ TEST(RosterTracker, ASharpCornerAtSpeedLosesNobody) {
     tracks = tracker->step(time_at_30_hz(i), at({place}));
     ASSERT_EQ(tracks.size(), 1u);
     ASSERT_TRUE(tracks[0].observation) << "frame " << i;
+  }
+}
+
+TEST(RosterTracker, KeepsAPredictedMarkerInTheImageAndFromFarDetections) {
+  RosterTrackerOptions options;
+  options.picture = Box{-0.5, -0.5, 640, 480};
+  const auto tracker = make_roster_tracker<2>(options);
+  std::map<TrackId, Vector<2>> last;
+  std::set<TrackId> ids;
+  for (int i = 0; i < 120; ++i) {
+    Places places{{300, 300 + 2.0 * (i % 20 < 10 ? i % 10 : 10 - i % 10)}};
+    if (i < 30) places.emplace_back(400 + 4.0 * i, 100);  // leaves towards the right border, which it would reach at frame 60
+    if (i >= 70) places.emplace_back(60 + 2.0 * (i - 70), 380);  // too far away to be it
+    const auto seen = at(places);
+    std::map<TrackId, Vector<2>> now;
+    for (const Track<2>& track : tracker->step(time_at_30_hz(i), seen)) {
+      if (!track.confirmed) continue;
+      ids.insert(track.id);
+      now[track.id] = track.position;
+      EXPECT_TRUE(track.position.x() > -0.5 && track.position.x() < 639.5) << "frame " << i << ", x " << track.position.x();
+      const double step = last.contains(track.id) ? (last[track.id] - track.position).norm() : 0;
+      EXPECT_LT(step, 30) << "frame " << i;
+    }
+    last = std::move(now);
+  }
+  EXPECT_EQ(ids.size(), 3u) << "two and one that came";
+  EXPECT_EQ(last.size(), 2u) << "the one that is gone is not reported for good";
+}
+
+TEST(RosterTracker, BringsBackAMarkerWithoutASize) {
+  const auto tracker = make_roster_tracker<2>({});
+  std::set<TrackId> ids;
+  for (int i = 0; i < 60; ++i) {
+    Places places{{400, 300}};
+    if (i < 20 || i >= 30) places.emplace_back(100 + 3.0 * std::min(i, 45 - std::min(i, 30)), 100);  // turns back unseen
+    auto seen = at(places);
+    for (Observation<2>& point : seen) point.box = Box::from_centre(point.value, 0, 0);
+    for (const Track<2>& track : tracker->step(time_at_30_hz(i), seen)) {
+      if (track.confirmed && track.observation) ids.insert(track.id);
+    }
+  }
+  EXPECT_EQ(ids.size(), 2u);
+}
+
+RosterTrackerOptions in_space() {
+  RosterTrackerOptions options;
+  options.filter = filter::KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5};
+  options.max_speed = 15;
+  options.marker_width = 0.02;
+  options.place_noise = 1e-4;
+  options.rigid_neighbours = true;
+  return options;
+}
+
+/// Every motion turns back within one frame, as an impact or images that are played backwards make it.
+TEST(RosterTracker, KeepsIdsInSpaceWhenEveryMotionTurnsBack) {
+  for (const double rate : {25.0, 60.0, 240.0}) {
+    const auto tracker = make_roster_tracker<3>(in_space());
+    std::set<TrackId> ids;
+    int measured = 0;
+    const int turn = static_cast<int>(rate), frames = 4 * turn;
+    for (int i = 0; i < frames; ++i) {
+      const double t = (i / turn % 2 == 0 ? i % turn : turn - i % turn) / rate;
+      std::vector<Observation<3>> seen;
+      for (int m = 0; m < 12; ++m) {  // up to 1.1 m/s, each its own way
+        auto& point = seen.emplace_back();
+        const double way = 2.4 * m;
+        point.value = Vector<3>(0.4 * (m % 4), 0.4 * (m / 4), 1) + 0.1 * m * t * Vector<3>(std::cos(way), std::sin(way), 0.3);
+        point.covariance = 1e-8 * Matrix<3>::Identity();
+      }
+      for (const Track<3>& track : tracker->step(timestamp_from_seconds(i / rate), seen)) {
+        if (!track.confirmed || !track.observation) continue;
+        ids.insert(track.id);
+        ++measured;
+      }
+    }
+    EXPECT_EQ(ids.size(), 12u) << rate << " Hz";
+    EXPECT_GT(measured, 0.98 * 12 * frames) << rate << " Hz";
   }
 }
 
