@@ -6,6 +6,7 @@
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
 #include "marey/core/rig_sources.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/track_ground.h"
@@ -17,8 +18,6 @@
 
 namespace marey::cli {
 namespace {
-
-constexpr double kBodyMetres = 1.75;
 
 pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
   pipeline::GroundOutput output{
@@ -64,7 +63,7 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.live = command.live;
   options.steady = people.steady;
   options.learn.walk = command.filter.empty();
-  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
+  if (!command.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(command.filter);
   options.tracker.associate =
       flags.associate.empty() ? usual_association(command.live) : track::ground::ground_association_named(flags.associate);
   options.learn.association = flags.associate.empty() && !has_pictures(rig);
