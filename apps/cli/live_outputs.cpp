@@ -74,6 +74,7 @@ void LiveOutputs::report(const pipeline::LiveStatus& status) {
                             .steps = {},
                             .unsaved = handles_.desk->has_changed(),
                             .notes = status.troubles};
+  report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
   for (const pipeline::LiveStatus::Camera& camera : status.cameras) {
     report.cameras.push_back(camera_of(camera, report.cameras.size()));
     if (!camera.trouble.empty()) report.notes.push_back(camera.trouble);

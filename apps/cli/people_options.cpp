@@ -1,6 +1,7 @@
 #include "people_options.h"
 
 #include "marey/core/error.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/geometry/bspline.h"
 
 #include "command_line.h"
@@ -61,9 +62,7 @@ detect::DetectorOptions detector_options(const PeopleFlags& flags) {
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
   pipeline::PeopleInPictureOptions options;
   options.detector = detector_options(flags);
-  if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
-    options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyPixels);
-  }
+  if (!filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(filter);
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;
   options.steady = flags.steady;

@@ -5,6 +5,7 @@
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
 #include "marey/core/rig_sources.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/track_ground.h"
@@ -15,8 +16,6 @@
 
 namespace marey::cli {
 namespace {
-
-constexpr double kBodyMetres = 1.75;
 
 pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
   pipeline::GroundOutput output{
@@ -49,7 +48,7 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.rate_hz = command.rate_hz;
   options.steady = people.steady;
   options.learn.walk = command.filter.empty();
-  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
+  if (!command.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(command.filter);
   apply(flags.where, rig, command.rig, command.live, options);
   if (flags.ball && command.live)
     throw WrongUsage("{}", "--ball looks at the whole recording before it tells where the ball was; leave out --live or --ball");

@@ -339,6 +339,11 @@ Feed Feed::again() const {
   throw Error("{}", said_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
 }
 
+std::function<Feed()> Feed::opener() const {
+  if (!can_rewind()) return {};
+  return [camera = camera_, id = id_, options = options_] { return Feed(camera, id, options); };
+}
+
 std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) const {
   if (!can_rewind()) return {};
   FeedOptions options = options_;

@@ -81,6 +81,8 @@ class Feed {
   bool can_rewind() const;
   /// The same camera from its beginning, without a detector. Throws Error where it cannot be read twice.
   Feed again() const;
+  /// Makes what `again` does, later and often; empty where that cannot be read twice. The feed need not be there any more.
+  std::function<Feed()> opener() const;
   /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is. None where it cannot be
   /// read twice. Throws Stopped.
   std::vector<Frame> sample(int count, double seconds, int most_frames) const;

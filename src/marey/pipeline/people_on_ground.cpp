@@ -14,6 +14,7 @@
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
 #include "marey/pipeline/live_teams.h"
+#include "marey/pipeline/nobody_found.h"
 #include "marey/track/view_log.h"
 
 namespace marey::pipeline {
@@ -93,6 +94,21 @@ class GroundStage final : public PeopleOnGround {
   void want_boxes() override { wants_boxes_ = true; }
   const std::vector<analyse::Teams::Team>& teams() const override { return teams_.teams; }
 
+  std::vector<std::shared_ptr<StandingPeople>> standing() const override {
+    std::vector<std::shared_ptr<StandingPeople>> all;
+    for (const GroundCamera& camera : cameras_) all.push_back(camera.standing());
+    return all;
+  }
+
+  std::vector<std::string> news() override {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < cameras_.size() && options_.live; ++i) {
+      if (cameras_[i].standing() == nullptr) continue;
+      for (const std::string& sentence : cameras_[i].standing()->news()) all.push_back(said_of(rig_.cameras[i], sentence));
+    }
+    return all;
+  }
+
   std::span<const Instant> step(const FrameSet& frames) override {
     const auto seen = observe(frames, run_ ? run_->expected(frames.time) : tracker_->expected(frames.time));
     for (std::size_t i = 0; i < logs_.size() && wants_boxes_; ++i) {
@@ -127,6 +143,7 @@ class GroundStage final : public PeopleOnGround {
     if (!options_.live) summary.figures["joins"] = static_cast<double>(joins_);
     if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
+    if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
     for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
     for (const Summary::Camera& camera : summary.cameras) {
       if (camera.frames > 0) continue;
@@ -198,6 +215,7 @@ class GroundStage final : public PeopleOnGround {
       const GroundCameraOptions how{.detector = options_.detector,
                                     .prime = !options_.live,
                                     .turning = turning_of(options_.turning, feeds[i].id()),
+                                    .without = i < options_.without.size() ? options_.without[i] : nullptr,
                                     .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};
       opened[i].emplace(feeds[i], views_, area_, how);
     });

@@ -102,6 +102,22 @@ class AdaptiveBackground final : public Background {
     return {mask_, covered_};
   }
 
+  Picture scene() const override {
+    if (size_.empty()) return {};
+    if (!colour_) return Picture(luma_.picture());
+    return {luma_.picture(), cb_.picture(), cr_.picture(), black_ > 0 ? Picture::Range::limited : Picture::Range::full};
+  }
+
+  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
+    const FramePlanes planes = planes_of(picture);
+    if (planes.luma.size() != size_) return;
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        if (mask.at<std::uint8_t>(y, x) != 0) believe(planes, y + corner.y, x + corner.x);
+      }
+    }
+  }
+
  private:
   static int black_of(const Picture& picture) { return picture.range() == Picture::Range::limited ? 16 : 0; }
 
@@ -334,12 +350,14 @@ class AdaptiveBackground final : public Background {
     mark_held(held, y, y, held_row_);
     const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
     second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
-    for (const int x : taken_) {
-      luma_.believe(y, x, pixels[x]);
-      if (!colour_) continue;
-      cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
-      cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
-    }
+    for (const int x : taken_) believe(planes, y, x);
+  }
+
+  void believe(const FramePlanes& planes, int y, int x) {
+    luma_.believe(y, x, planes.luma.at<std::uint8_t>(y, x));
+    if (!colour_) return;
+    cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
+    cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
   }
 
   AdaptiveOptions options_;

@@ -80,6 +80,12 @@ void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed,
   renew_bands(0, mean_.rows);
 }
 
+cv::Mat ScenePlane::picture() const {
+  cv::Mat levels;
+  mean_.convertTo(levels, CV_8U, 1 / 128.0);
+  return levels;
+}
+
 void ScenePlane::renew_bands(int first, int last) {
   const int bottom = mean_.rows - 1;
   for (int row = first; row < last; ++row) {

@@ -59,6 +59,8 @@ class ScenePlane {
   std::uint8_t level(int row, int column) const {
     return static_cast<std::uint8_t>((mean_.at<std::int16_t>(row, column) + 64) >> 7);
   }
+  /// The means' levels, CV_8UC1.
+  cv::Mat picture() const;
   const std::int16_t* mean(int row) const { return mean_.ptr<std::int16_t>(row); }
   const std::uint8_t* low(int row) const { return low_.ptr<std::uint8_t>(row); }
   const std::uint8_t* high(int row) const { return high_.ptr<std::uint8_t>(row); }

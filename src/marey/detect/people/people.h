@@ -54,6 +54,10 @@ class PeopleDetector final : public Detector {
   DetectorTraits traits() const override { return {.toe_m = 0.1, .has_foreground = true, .knows_body_size = true}; }
   DetectionCounts detection_counts() const override { return {counts_.noise, counts_.misfits}; }
   std::optional<Box> body_at(const Vector<2>& foot) const override;
+  Picture scene() const override { return background_->scene(); }
+  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
+    background_->believe(picture, mask, corner);
+  }
 
   const Counts& counts() const { return counts_; }
   /// How large a person is whose feet are at (x, y), px: as it was given, or as it was learned so far.
