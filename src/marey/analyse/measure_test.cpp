@@ -163,6 +163,95 @@ TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
   EXPECT_NEAR(measure(recording).people.at(0).top_mps, 4, 1e-6);
 }
 
+/// Strolls at 1.5 m/s; from second 4 to second 5.6 nobody sees him, and whoever followed him has him dash 10 m to the side and
+/// back.
+Recording with_a_predicted_dash(bool smoothed) {
+  Recording recording(on_the_ground());
+  recording.header.smoothed = smoothed;
+  for (int i = 0; i <= 250; ++i) {
+    const double t = i / 25.0, s = std::clamp((t - 4) / 1.6, 0.0, 1.0);
+    Sample sample = sample_at(3, {1.5 * t, 10 + 5 * (1 - std::cos(2 * M_PI * s))});
+    sample.velocity = Vector<3>(1.5, 5 * 2 * M_PI / 1.6 * std::sin(2 * M_PI * s), 0);
+    if (s > 0 && s < 1) sample.provenance = i % 2 == 0 ? Provenance::predicted : Provenance::filled;
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(t);
+    instant.samples = {sample};
+    recording.add(instant);
+  }
+  return recording;
+}
+
+TEST(Measure, SpeedsAreOfWhatWasMeasured) {
+  for (const bool smoothed : {false, true}) {
+    const PersonMeasure person = measure(with_a_predicted_dash(smoothed)).people.at(0);
+    EXPECT_LT(person.top_mps, 4) << (smoothed ? "smoothed" : "not smoothed");
+    EXPECT_EQ(person.sprints, 0);
+    EXPECT_NEAR(person.seen_s, 8.4, 0.3);
+    EXPECT_NEAR(person.seconds, 10, 0.05);
+    EXPECT_NEAR(person.zone_s.back(), 0, 1e-9);
+    EXPECT_TRUE(person.impossible.empty()) << "what nobody measured says nothing";
+  }
+}
+
+TEST(Measure, WhoWasNeverMeasuredHasNoRow) {
+  Recording recording = one_person(25, 4, running, 0);
+  for (int i = 0; i < 50; ++i) {
+    Sample sample = sample_at(9, {0.3 * i, 20});
+    sample.provenance = Provenance::predicted;
+    TrackColumns ghost({TrackId{9}, "", ""}, 2);
+    if (recording.find(TrackId{9}) != nullptr) ghost = *recording.find(TrackId{9});
+    ghost.add(i, sample);
+    recording.put(std::move(ghost));
+  }
+  const auto people = measure(recording).people;
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, 7);
+}
+
+/// Walks at 1.5 m/s; at second 5 the places go over to somebody who walks 3 m beside him, within a third of a second.
+Vector<2> slid(double t) {
+  return {1.5 * t, 20 + 3 * std::clamp((t - 5) / 0.33, 0.0, 1.0)};
+}
+
+TEST(Measure, WhatNobodyCanHaveDoneDoesNotCountAndIsTold) {
+  const PersonMeasure person = measure(one_person(25, 10, slid, 0.05)).people.at(0);
+  ASSERT_EQ(person.impossible.size(), 1u);
+  EXPECT_NEAR(person.impossible[0].begin_s, 5, 0.4);
+  EXPECT_NEAR(person.impossible[0].end_s, 5.33, 0.4);
+  EXPECT_FALSE(person.impossible[0].one_person);
+  EXPECT_LT(person.top_mps, 3);
+  EXPECT_EQ(person.paths.size(), 2u) << "another person's path begins";
+  EXPECT_TRUE(measure(one_person(25, 10, running, 0.1)).people.at(0).impossible.empty());
+}
+
+TEST(Measure, ATopSpeedSaysHowSureItIs) {
+  // 60 people at a known speed: two deviations hold the truth nearly always, and are not absurdly wide.
+  int held = 0;
+  double widest = 0;
+  for (int seed = 0; seed < 60; ++seed) {
+    Recording recording(on_the_ground());
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::normal_distribution<double> off;
+    const Matrix<2> P = 0.2 * 0.2 * Matrix<2>::Identity();
+    for (int i = 0; i <= 250; ++i) {
+      const double dx = 0.2 * off(random), dy = 0.2 * off(random);
+      Sample sample = sample_at(1, Vector<2>(0.2 * i + dx, 10 + dy));
+      sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = P;
+      Instant instant;
+      instant.index = i;
+      instant.time = timestamp_from_seconds(i / 25.0);
+      instant.samples = {sample};
+      recording.add(instant);
+    }
+    const PersonMeasure person = measure(recording).people.at(0);
+    held += std::abs(person.top_mps - 5) < 2 * person.top_sigma_mps ? 1 : 0;
+    widest = std::max(widest, person.top_sigma_mps);
+  }
+  EXPECT_GE(held, 57);
+  EXPECT_LT(widest, 1);
+}
+
 TEST(Measure, PixelsAndSpaceAreRefused) {
   for (const auto kind : {FrameOfReference::Kind::image, FrameOfReference::Kind::space}) {
     RecordingHeader header = on_the_ground();
