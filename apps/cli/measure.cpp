@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,10 @@ Json ball_json(const analyse::BallMeasure& ball) {
           {"teams", teams},          {"passes", passes},      {"possession", spells}};
 }
 
+Json json_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json impossible_json(const std::vector<analyse::ImpossibleStretch>& stretches) {
   Json all = Json::array();
   for (const analyse::ImpossibleStretch& one : stretches)
@@ -70,8 +75,8 @@ void report_json(const analyse::Measurement& measured) {
                       {"seconds", person.seconds},
                       {"distance_m", person.distance_m},
                       {"mean_mps", person.mean_mps},
-                      {"top_mps", person.top_mps},
-                      {"top_sigma_mps", person.top_sigma_mps},
+                      {"top_mps", json_or_null(person.top_mps)},
+                      {"top_sigma_mps", json_or_null(person.top_sigma_mps)},
                       {"seen_s", person.seen_s},
                       {"impossible", impossible_json(person.impossible)},
                       {"sprints", person.sprints},
@@ -107,12 +112,16 @@ void print_impossible(const analyse::Measurement& measured) {
   if (told > most) fmt::print("not counted: {} more such stretches (--json lists all)\n", told - most);
 }
 
+std::string shown_speed(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : std::string("-");
+}
+
 void print_table(const analyse::Measurement& measured) {
-  fmt::print("{:>5} {:<12} {:<10} {:>11} {:>10} {:>9} {:>6} {:>8}\n", "id", "label", "team", "distance, m", "mean, m/s",
-             "top, m/s", "±", "sprints");
+  fmt::print("{:>5} {:<12} {:<10} {:>11} {:>10} {:>9} {:>6} {:>8}\n", "id", "label", "team", "distance, m", "mean, m/s", "top, m/s",
+             "±", "sprints");
   for (const analyse::PersonMeasure& person : measured.people) {
-    fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9.2f} {:>6.2f} {:>8}\n", person.id, person.label, person.team, person.distance_m,
-               person.mean_mps, person.top_mps, person.top_sigma_mps, person.sprints);
+    fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9} {:>6} {:>8}\n", person.id, person.label, person.team,
+               person.distance_m, person.mean_mps, shown_speed(person.top_mps), shown_speed(person.top_sigma_mps), person.sprints);
   }
   print_impossible(measured);
   if (!measured.ball) return;

