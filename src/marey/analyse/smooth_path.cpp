@@ -262,6 +262,20 @@ std::vector<Path> pieces_of(std::span<const Row> rows, const std::vector<bool>& 
   return paths;
 }
 
+/// A place that was not measured is known no better than the measured ones before and after it.
+void doubt_unmeasured(std::vector<Row>& rows) {
+  const auto doubt = [](auto from, auto to) {
+    const Row* last = nullptr;
+    for (auto row = from; row != to; ++row) {
+      if (row->measured) last = &*row;
+      if (!row->measured && last != nullptr && last->covariance.trace() > row->covariance.trace())
+        row->covariance = last->covariance;
+    }
+  };
+  doubt(rows.begin(), rows.end());
+  doubt(rows.rbegin(), rows.rend());
+}
+
 /// Puts rows that were not measured straight between those that were, and leaves out those before the first and after the last:
 /// whatever followed the person there, smoothing would carry it into the speeds beside.
 void bridge_unmeasured(std::vector<Row>& rows) {
@@ -317,6 +331,7 @@ PersonPaths paths_of(const Recording& recording, const TrackColumns& track, cons
   }
   PersonPaths person;
   person.measured = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.measured; });
+  doubt_unmeasured(rows);
   if (!smoothed) bridge_unmeasured(rows);
   std::vector<bool> cut;
   person.impossible = leave_impossible_out(rows, cut);
