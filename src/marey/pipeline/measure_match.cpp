@@ -50,6 +50,7 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
     page.paths.push_back(path.place);
+    page.seen.push_back(path.seen);
     auto& speeds = page.speeds.emplace_back();
     for (std::size_t i = 0; i < path.velocity.size(); ++i)
       speeds.emplace_back(path.start_s + path.step_s * static_cast<double>(i), path.velocity[i].norm());
