@@ -23,7 +23,7 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
 }
 
 /// Empty where it is not known.
-std::string known(const std::optional<double>& value, int decimals) {
+std::string shown_if_known(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string();
 }
 
@@ -43,10 +43,10 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   page.name = person.label;
   page.team = person.team;
   page.appearance = shirt_of(person.team);
-  page.cells = {
-      fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps), known(person.top_mps, 1),
-      known(person.top_sigma_mps, 1),           std::to_string(person.sprints),         std::to_string(person.accelerations),
-      std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
+  page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
+                shown_if_known(person.top_mps, 1),        shown_if_known(person.top_sigma_mps, 1),
+                std::to_string(person.sprints),           std::to_string(person.accelerations),
+                std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
     page.paths.push_back(path.place);
@@ -72,8 +72,8 @@ std::string measurement_csv(const analyse::Measurement& measured, const analyse:
   for (const analyse::PersonMeasure& person : measured.people) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{},{},{:.2f},{},{},{:.2f},{:.2f},{},{:.2f},{}", person.id,
                    format::quoted_field(person.label), format::quoted_field(person.team), person.distance_m, person.mean_mps,
-                   known(person.top_mps, 3), person.sprints, person.seconds, person.accelerations, person.decelerations,
-                   person.average_place.x(), person.average_place.y(), known(person.top_sigma_mps, 3), person.seen_s,
+                   shown_if_known(person.top_mps, 3), person.sprints, person.seconds, person.accelerations, person.decelerations,
+                   person.average_place.x(), person.average_place.y(), shown_if_known(person.top_sigma_mps, 3), person.seen_s,
                    person.impossible.size());
     for (const auto* zones : {&person.zone_s, &person.zone_m}) {
       for (const double value : *zones) fmt::format_to(std::back_inserter(text), ",{:.2f}", value);
