@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 
 #include "support/files.h"
@@ -78,7 +79,10 @@ TEST(GroundFile, HowWellPlacesAreKnownIsKept) {
     instant.time = timestamp_from_seconds(0.04 * i);
     instant.samples = {sample_of(1, {10.0 + i, 20}, {3, 0}, 0, true)};
     if (i > 0) instant.samples[0].covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() << 0.04, -0.01, -0.01, 0.25;
-    if (i == 2) instant.named = {{TrackId{2}, std::string(kBallLabel), ""}};
+    if (i == 2) {
+      instant.named.push_back({TrackId{2}, std::string(kBallLabel), ""});
+      instant.samples.push_back(sample_of(2, {11, 20}, {0, 0}, 0, true));
+    }
     recording.add(instant);
   }
   const test::TemporaryFolder folder;
