@@ -29,8 +29,8 @@ class Background {
   /// The empty scene as it is believed to be now; empty where the model does not tell.
   virtual Picture scene() const { return {}; }
 
-  /// What the picture shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the picture) is not 0 is the scene: something
-  /// that was taken for a part of it has gone. A model that does not tell its scene need not know.
+  /// What the picture shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the picture) is not 0 is the scene:
+  /// something that was taken for a part of it has gone. A model that does not tell its scene need not know.
   virtual void believe(const Picture& /*picture*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
 };
 
