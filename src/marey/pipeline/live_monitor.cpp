@@ -97,6 +97,9 @@ LiveStatus LiveMonitor::status() const {
   }
   status.recording = recording_ && recording_();
   status.troubles = sinks_->troubles();
+  for (const Feed& feed : clock_->feeds()) {
+    if (std::string warning = feed.rate_warning(); !warning.empty()) status.troubles.push_back(std::move(warning));
+  }
   return status;
 }
 
