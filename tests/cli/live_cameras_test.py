@@ -252,6 +252,23 @@ class LiveCameras(unittest.TestCase):
         wrong = self.marey("live", "room/live.toml", "cam2=sim://room?cameras=3&rate=30&size=640x480&camera=1", "--for", 1, code=1)
         self.assertIn("cam2", wrong.stderr)
 
+    def test_a_rate_that_is_not_the_cameras_own_is_warned_of(self):
+        self.marey("simulate", "room", "-o", "room", "--cameras", 2, "--frames", 5, "-q")
+        rig = (self.folder / "room/rig.toml").read_text()
+        for number in (1, 2):
+            source = f'name = "cam{number}"\nsource = "sim://room?cameras=2&rate=20&markers=5&blobs&size=1280x1024&camera={number}"'
+            rig = rig.replace(f'name = "cam{number}"', source)
+        for rate, warned in ((40, True), (20, False)):
+            lines = [line if not line.startswith("rate") else f"rate = {rate}" for line in rig.splitlines()]
+            (self.folder / "room/live.toml").write_text("\n".join(lines))
+            said = self.marey("live", "room/live.toml", "--for", 1).stderr
+            for number in (1, 2):
+                words = f'camera "cam{number}": the rig says rate = {rate}, the camera 20 frames per second'
+                (self.assertIn if warned else self.assertNotIn)(words, said)
+            if warned:
+                self.assertIn("set rate = 20 in the rig, or remove it", said)
+                self.assertLess(said.index("the rig says rate"), said.index("instants in"), "at the beginning, not after hours")
+
     def test_ctrl_c_ends_it_whole(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen([MAREY, "live", ROOM, "-o", "take.marey", "--json", "-q"], cwd=self.folder, stdout=subprocess.PIPE,

@@ -89,6 +89,8 @@ class Feed {
   /// What a detector learns the empty scene from: thirty frames of thirty seconds, of which 300 frames are read at most.
   std::vector<Frame> sample_beginning() const { return sample(30, 30, 300); }
 
+  /// Of a live camera: what to do if the rig's rate is not the camera's own; empty if it is.
+  std::string rate_warning() const;
   /// What went wrong so far without stopping it, one sentence each, with the camera's name where it has one.
   std::vector<std::string> warnings() const;
 

@@ -107,6 +107,9 @@ LiveStatus LiveMonitor::status() const {
   status.troubles = sinks_->troubles();
   status.news = news_;
   status.news_count = news_count_;
+  for (const Feed& feed : clock_->feeds()) {
+    if (std::string warning = feed.rate_warning(); !warning.empty()) status.troubles.push_back(std::move(warning));
+  }
   return status;
 }
 

@@ -7,6 +7,7 @@
 
 #include "marey/simulate/room/body.h"
 #include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/to_and_fro.h"
 
 namespace marey::simulate::room {
 namespace {
@@ -250,6 +251,25 @@ TEST(RoomFilm, SpotsTakeAFiftiethOfThePicture) {
   const RoomSpots spots(scene, 0);
   const RoomSpots::Drawn drawn = spots.draw(0, scene.seen_by(0, 0, 0), 0);
   EXPECT_LT(drawn.pixels.size() + drawn.places.size() * sizeof(cv::Rect), static_cast<std::size_t>(options.picture.area()) / 50);
+}
+
+TEST(ToAndFro, TurnsWithoutAJerk) {
+  for (const double length : {0.3, 1.0, 2.0, 7.0}) {
+    const double ramp = std::min(0.5, length / 2), step = 1e-3;
+    EXPECT_EQ(to_and_fro(0, length), 0);
+    EXPECT_NEAR(to_and_fro(length, length), length - ramp, 1e-9);
+    EXPECT_NEAR(to_and_fro(2 * length, length), 0, 1e-9);
+    double before = 0;
+    for (double t = -length; t < 5 * length; t += step) {
+      const double velocity = (to_and_fro(t + step, length) - to_and_fro(t, length)) / step;
+      EXPECT_LE(std::abs(velocity), 1 + 1e-9);
+      if (t > -length) {
+        ASSERT_LE(std::abs(velocity - before), 1.01 * step / ramp) << length << " s, at " << t;
+      }
+      before = velocity;
+    }
+    EXPECT_NEAR(to_and_fro(1.3 * length, length), to_and_fro(0.7 * length, length), 1e-9) << "back as it came";
+  }
 }
 
 TEST(Room, ABumpMovesOneCameraFromThenOn) {
