@@ -8,6 +8,7 @@
 #include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/picture_doubts.h"
 #include "marey/pipeline/steady_camera.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
@@ -106,7 +107,7 @@ class LiveRest final : public InstantSource {
 class PeopleInPicture final : public Stage {
  public:
   PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
-      : options_(options), tracker_(track::make_tracker(tracker_options(feed, options))) {
+      : options_(options), camera_(feed.camera()), tracker_(track::make_tracker(tracker_options(feed, options))) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.made_by.program = "marey track";
@@ -134,6 +135,7 @@ class PeopleInPicture final : public Stage {
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
     const detect::Detections seen = detect(given);
+    if (detector_) doubts_.add(given.frame, seen);
     if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
     const auto tracks = follow(given.frame, seen);
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
@@ -165,8 +167,9 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
-    if (shaking_) summary.warnings.push_back(*shaking_);
     if (detector_ == nullptr) return;
+    for (std::string& doubt : doubts_.warnings(camera_, shaking_, options_.steady))
+      summary.warnings.push_back(std::move(doubt));
     const detect::DetectionCounts counts = detector_->detection_counts();
     if (counts.noise) summary.left_out["noise"] = *counts.noise;
     if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
@@ -176,7 +179,7 @@ class PeopleInPicture final : public Stage {
   void prime(const Feed& feed) {
     const std::vector<Frame> samples = feed.sample_beginning();
     detector_->prime(samples);
-    shaking_ = shaking(feed.camera(), samples);
+    if (!options_.steady) shaking_ = shaking(samples);
   }
 
   detect::Detections detect(const CameraFrame& given) {
@@ -206,6 +209,7 @@ class PeopleInPicture final : public Stage {
   }
 
   PeopleInPictureOptions options_;
+  RigCamera camera_;
   RecordingHeader header_;
   std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
   std::unique_ptr<track::Tracker<2>> tracker_;
@@ -218,6 +222,7 @@ class PeopleInPicture final : public Stage {
   std::vector<Instant> due_;
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;
+  PictureDoubts doubts_;
   std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 
