@@ -19,8 +19,9 @@ from steady_test import scene, window, write_pictures
 
 MAREY = ""
 ROOT = pathlib.Path()
-# When somebody is in clips/walk_in_room.mp4: frames in which 2 % of the picture differ from the empty room.
-VISITS = ((61, 201), (228, 451), (503, 702), (746, 872), (922, 1205), (1235, 1365))
+# When somebody is in clips/walk_in_room.mp4, six people one after another: frames in which 2 % of the picture, a fifth of a person, differ by 60
+# levels from the empty room, as no shadow does.
+VISITS = ((61, 195), (228, 445), (503, 695), (746, 865), (922, 1196), (1236, 1357))
 
 
 def run(*arguments):
@@ -108,11 +109,11 @@ class Room(unittest.TestCase):
                         at_once[int(row["frame"])] = at_once.get(int(row["frame"]), 0) + 1
                         frames_of.setdefault(row["id"], set()).add(int(row["frame"]))
                 self.assertLessEqual(max(at_once.values()), 2)
-                self.assertLessEqual(len(frames_of), len(VISITS) + 2)
+                self.assertLessEqual(len(frames_of), len(VISITS) + 1)
                 for begin, end in VISITS:
                     covered = max(len(frames & set(range(begin, end + 1))) for frames in frames_of.values()) / (end + 1 - begin)
                     print(f"{' '.join(options):9} frames {begin:4} to {end:4}: {covered:.1%}")
-                    self.assertGreaterEqual(covered, 0.9)
+                    self.assertGreaterEqual(covered, 0.9 if options == ("--live",) else 0.95)
 
 
 if __name__ == "__main__":
