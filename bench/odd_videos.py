@@ -3,7 +3,7 @@
 video (cuts every one to three seconds), a screen recording with scrolling text, a time lapse, rain at night, and a security video of 8
 frames a second, which is to work. Each must end in a warning that names the cause, or in at most one false track in ten seconds.
 
-Usage: bench/odd_videos.py MAREY DATA [--folder FOLDER] [--only NAMES] [--options ...]. Needs FFmpeg's program, numpy, and Debian's opencv-doc.
+Usage: bench/odd_videos.py MAREY DATA [--folder FOLDER] [--only NAMES] [--live] [--make]. Needs FFmpeg's program, numpy, and Debian's opencv-doc.
 """
 
 import argparse

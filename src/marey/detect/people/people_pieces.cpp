@@ -4,7 +4,6 @@ namespace marey::detect::people {
 namespace {
 
 constexpr double kOwnGapAcross = 0.05, kOwnGapDown = 0.15;  // of the larger region's height, while that is all that is known
-constexpr double kLeastGapAcross = 1, kLeastGapDown = 2;    // px
 constexpr int kOwnRounds = 3;
 constexpr double kWithin = 0.6;  // of a region's box, within that of someone expected: his, while no size is known
 
@@ -24,8 +23,8 @@ assign::DisjointSets pieces_by_their_own_size(const std::vector<Region>& regions
         if (first == second) continue;
         const Box &a = hulls[static_cast<std::size_t>(first)], &b = hulls[static_cast<std::size_t>(second)];
         const double tall = std::max(a.height, b.height);
-        if (gap(a.left, a.right(), b.left, b.right()) > std::max(kLeastGapAcross, kOwnGapAcross * tall)) continue;
-        if (gap(a.top, a.bottom(), b.top, b.bottom()) > std::max(kLeastGapDown, kOwnGapDown * tall)) continue;
+        if (gap(a.left, a.right(), b.left, b.right()) > kOwnGapAcross * tall) continue;
+        if (gap(a.top, a.bottom(), b.top, b.bottom()) > kOwnGapDown * tall) continue;
         const Box hull = geometry::hull(a, b);
         pieces.join(first, second);
         hulls[static_cast<std::size_t>(pieces.find(first))] = hull;

@@ -87,7 +87,7 @@ cv::Mat in_pieces(cv::Size image, double height, int i) {
   const double x = image.width * (0.2 + 0.02 * i), foot = std::max(image.height * (1.15 - 0.012 * i), 0.06 * image.height + height);
   bodies::draw(mask, bodies::person(x, foot, height), 0.3 + 0.4 * (i % 2));
   for (int stripe = 0; stripe < 3; ++stripe) {
-    const int row = static_cast<int>(foot - height * (0.25 + 0.22 * stripe)), tall = std::max(2, static_cast<int>(0.03 * height));
+    const int row = static_cast<int>(foot - height * (0.25 + 0.22 * stripe)), tall = std::max(1, static_cast<int>(0.03 * height));
     if (row > 0 && row + tall < image.height) mask.rowRange(row, row + tall).setTo(0);
   }
   return mask;
