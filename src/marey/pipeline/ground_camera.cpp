@@ -177,7 +177,7 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   if (detector_ != nullptr && !turning_) standing_ = std::make_shared<StandingPeople>(Picture());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  if (!turning_) shaking_ = shaking(camera_, samples);
+  if (!turning_) shaking_ = shaking(samples);
   if (ball_) ball_->prime(samples);
   for (Frame& frame : samples) {
     frame.picture = looked_at(frame.picture);
@@ -278,7 +278,7 @@ void GroundCamera::report(Summary& summary) const {
   counts.frames = frames_;
   counts.missed = summary.frames - frames_;
   counts.detections = detections_;
-  if (shaking_) summary.warnings.push_back(*shaking_);
+  if (shaking_) summary.warnings.push_back(said_of(camera_, *shaking_));
   counts.outside = outside_;
   summary.detections += detections_;
   if (!detector_) return;

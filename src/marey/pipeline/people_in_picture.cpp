@@ -12,6 +12,7 @@
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
 #include "marey/pipeline/nobody_found.h"
+#include "marey/pipeline/picture_doubts.h"
 #include "marey/pipeline/standing_people.h"
 #include "marey/pipeline/steady_camera.h"
 #include "marey/track/live_tracks.h"
@@ -111,7 +112,10 @@ class LiveRest final : public InstantSource {
 class PeopleInPicture final : public Stage {
  public:
   PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
-      : options_(options), tracking_(tracker_options(feed, options)), tracker_(track::make_tracker(tracking_)) {
+      : options_(options),
+        camera_(feed.camera()),
+        tracking_(tracker_options(feed, options)),
+        tracker_(track::make_tracker(tracking_)) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.made_by.program = "marey track";
@@ -140,6 +144,7 @@ class PeopleInPicture final : public Stage {
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
     const detect::Detections seen = detect(given);
+    if (detector_) doubts_.add(given.frame, seen);
     const auto tracks = follow(given.frame, seen);
     const bool stood = standing_ && standing_->see(given.frame, tracks, *detector_);
     if (live_) {
@@ -182,7 +187,6 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
-    if (shaking_) summary.warnings.push_back(*shaking_);
     report_standing(summary);
     report_counts(summary);
     if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
@@ -197,6 +201,7 @@ class PeopleInPicture final : public Stage {
 
   void report_counts(Summary& summary) const {
     if (detector_ == nullptr) return;
+    for (std::string& doubt : doubts_.warnings(camera_, shaking_, options_.steady)) summary.warnings.push_back(std::move(doubt));
     const detect::DetectionCounts counts = detector_->detection_counts();
     if (counts.noise) summary.left_out["noise"] = *counts.noise;
     if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
@@ -276,7 +281,7 @@ class PeopleInPicture final : public Stage {
     const std::vector<Frame> samples = feed.sample_beginning();
     detector_->prime(samples);
     if (!samples.empty()) open_again_ = feed.opener();
-    shaking_ = shaking(feed.camera(), samples);
+    if (!options_.steady) shaking_ = shaking(samples);
   }
 
   detect::Detections detect(const CameraFrame& given) {
@@ -308,6 +313,7 @@ class PeopleInPicture final : public Stage {
   }
 
   PeopleInPictureOptions options_;
+  RigCamera camera_;
   track::TrackerOptions tracking_;
   RecordingHeader header_;
   std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
@@ -326,6 +332,7 @@ class PeopleInPicture final : public Stage {
   int added_ = 0;                           // people who are in the results because of that
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;
+  PictureDoubts doubts_;
   std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 

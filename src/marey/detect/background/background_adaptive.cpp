@@ -33,6 +33,7 @@
 #include "marey/detect/background/background_light.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/background/background_regions.h"
+#include "marey/detect/background/background_returning.h"
 #include "marey/detect/background/background_samples.h"
 #include "marey/detect/background/background_second.h"
 #include "marey/detect/background/background_shadow.h"
@@ -62,10 +63,12 @@ class AdaptiveBackground final : public Background {
 
   void prime(std::span<const Frame> samples) override {
     std::vector<cv::Mat> luma, cb, cr;
+    std::vector<FramePlanes> kept;
     for (const Frame& sample : samples) {
       if (sample.picture.empty() || (!luma.empty() && sample.picture.size() != luma.front().size())) continue;
       const FramePlanes planes = planes_of(sample.picture);
       if (!luma.empty() && planes.cb.empty() != cb.empty()) continue;
+      kept.push_back(planes);
       luma.push_back(planes.luma);
       if (!planes.cb.empty()) {
         cb.push_back(planes.cb);
@@ -79,6 +82,7 @@ class AdaptiveBackground final : public Background {
       cb_.begin(cb);
       cr_.begin(cr);
     }
+    believe_what_returns(kept, {&luma_, cb.empty() ? nullptr : &cb_, cb.empty() ? nullptr : &cr_});
     make_room(luma.front().size(), !cb.empty(), true);
     age_s_ = std::max(0.0, seconds(samples.back().time - samples.front().time));
   }

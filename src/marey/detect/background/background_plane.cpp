@@ -86,6 +86,18 @@ cv::Mat ScenePlane::picture() const {
   return levels;
 }
 
+void ScenePlane::replace(const cv::Mat& levels, const cv::Mat& spreads, const cv::Mat& where) {
+  for (int y = 0; y < mean_.rows; ++y) {
+    const auto* marked = where.ptr<std::uint8_t>(y);
+    for (int x = 0; x < mean_.cols; ++x) {
+      if (marked[x] == 0) continue;
+      believe(y, x, levels.at<std::uint8_t>(y, x));
+      spread_.at<std::uint8_t>(y, x) = spreads.at<std::uint8_t>(y, x);
+    }
+  }
+  renew_bands(0, mean_.rows);
+}
+
 void ScenePlane::renew_bands(int first, int last) {
   const int bottom = mean_.rows - 1;
   for (int row = first; row < last; ++row) {

@@ -29,6 +29,9 @@ class ScenePlane {
   /// them agree with one another as with the scene, they are the scene. `doubted` (likewise) marks where that may be.
   void correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& doubted);
 
+  /// Takes levels and spreads (1/8 levels), both CV_8UC1 of this plane's size, for the scene's where `where` is not 0.
+  void replace(const cv::Mat& levels, const cv::Mat& spreads, const cv::Mat& where);
+
   /// Learns rows [first, last) of `picture` at the rate 2^-shift; `frozen(row)` gives the row's pixels to leave alone.
   template <typename Frozen>
   void learn(const cv::Mat& picture, int first, int last, int shift, Frozen&& frozen) {
