@@ -36,7 +36,7 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
       .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,
-             "of each outline (default: as many as its silhouette needs, at most 24)")
+             "of each outline (default: as many as its silhouette needs, at most 40)")
       .needs(outline);
   command.whole("--order", flags.order, "N", 2, geometry::SplineWeights::max_order, "of the spline, degree + 1 (default: 4, cubic)")
       .needs(outline);
