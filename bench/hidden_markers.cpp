@@ -1,8 +1,9 @@
 // Three in ten markers hidden for half a second, once a second, at random, on recordings of many kinds: how far the solved angles
-// step and how far they are from the solution with all markers. A row for each recording, in turn (as while cameras see), offline and
-// with --smooth: windows in which an angle that a marker determines steps by more than 10° beyond that solution, the largest such step,
-// windows after which it is more than 2° off from 0.1 s after the markers' return on (angles that all markers determine), and the
-// largest of these. Usage: hidden_markers [SEEDS] [WORD: only recordings whose name has it] [-v: every such window]
+// step and how far they are from the solution with all markers. A row for each recording, in turn (as while cameras see), offline
+// and with --smooth: windows in which an angle that a marker determines steps by more than 10° beyond that solution, the largest
+// such step, windows after which it is more than 2° off from 0.1 s after the markers' return on (angles that all markers
+// determine), and the largest of these. Usage: hidden_markers [SEEDS] [WORD: only recordings whose name has it] [-v: every such
+// window]
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -142,8 +143,8 @@ struct Found {
   double worst_jump = 0, worst_off = 0;
 };
 
-void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, const SolvedSequence& all, const SolvedSequence& hidden, const std::vector<Hidden>& windows,
-             double rate_hz, bool verbose, Found& found) {
+void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, const SolvedSequence& all,
+             const SolvedSequence& hidden, const std::vector<Hidden>& windows, double rate_hz, bool verbose, Found& found) {
   const auto after = static_cast<std::size_t>(std::lround(0.1 * rate_hz));
   for (const Hidden& window : windows) {
     double jump = 0, off = 0;
@@ -156,16 +157,15 @@ void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, c
         found.unseen += all.observed[f][c] && !hidden.observed[f][c] ? 1 : 0;
         found.angles += all.observed[f][c] ? 1 : 0;
         if (all.observed[f][c] && hidden.observed[f][c] && hidden.observed[f - 1][c] && all.observed[f - 1][c]) {
-          const double step = kDegrees * (std::abs(hidden.rows[f][c] - hidden.rows[f - 1][c]) -
-                                          std::abs(all.rows[f][c] - all.rows[f - 1][c]));
+          const double step =
+              kDegrees * (std::abs(hidden.rows[f][c] - hidden.rows[f - 1][c]) - std::abs(all.rows[f][c] - all.rows[f - 1][c]));
           if (step > jump) {
             jump = step;
             jumped = fmt::format("{} frame {}", skeleton.coordinates[c].name, f);
           }
         }
         if (f >= window.end + after && all.observed[f][c]) {
-          const double here =
-              kDegrees * std::abs(std::remainder(hidden.rows[f][c] - all.rows[f][c], 2 * std::numbers::pi));
+          const double here = kDegrees * std::abs(std::remainder(hidden.rows[f][c] - all.rows[f][c], 2 * std::numbers::pi));
           if (here > off) {
             off = here;
             was_off = fmt::format("{} frame {}", skeleton.coordinates[c].name, f);
@@ -182,12 +182,12 @@ void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, c
     if (verbose && jump > 10) fmt::print(std::cout, "  frames {}-{}: {} steps {:.1f}\n", window.begin, window.end, jumped, jump);
     if (verbose && off > 2) {
       solve::skeleton::PoseSolver solver(skeleton);
-      solver.set_noise(0.01);
+      solver.learn_noise_of(all.rows, frames);
       const auto cost = [&](const SolvedSequence& solved) {
         return solver.cost_of(solver.articulation().state_of(solved.rows[off_at]), frames[off_at]);
       };
-      fmt::print(std::cout, "  frames {}-{}: {} is {:.1f} off, cost {:.1f}, with all markers {:.1f}\n", window.begin, window.end, was_off, off,
-                 cost(hidden), cost(all));
+      fmt::print(std::cout, "  frames {}-{}: {} is {:.1f} off, cost {:.1f}, with all markers {:.1f}\n", window.begin, window.end,
+                 was_off, off, cost(hidden), cost(all));
     }
   }
 }
@@ -220,7 +220,8 @@ int main(int argc, char** argv) {
     const std::vector<SeenMarkers> frames = read_frames(c, skeleton, rate_hz);
     for (const std::string way : {"in turn", "offline", "smooth"}) {
       const auto solve = [&](const std::vector<SeenMarkers>& seen) {
-        return solve::skeleton::solve_sequence(skeleton, seen, rate_hz, {.pose = {}, .whole = way != "in turn", .smooth = way == "smooth"});
+        return solve::skeleton::solve_sequence(skeleton, seen, rate_hz,
+                                               {.pose = {}, .whole = way != "in turn", .smooth = way == "smooth"});
       };
       const SolvedSequence all = solve(frames);
       Found found;
@@ -229,9 +230,8 @@ int main(int argc, char** argv) {
         const std::vector<Hidden> windows = hide(seen, rate_hz, static_cast<std::uint32_t>(seed));
         compare(skeleton, frames, all, solve(seen), windows, rate_hz, verbose, found);
       }
-      fmt::print(std::cout, "{}, {}, {:.2f}, {}, {}, {:.1f}, {}, {:.2f}, {:.1f}\n", c.name, way, rms_mm(all),
-                 found.windows, found.jumps, found.worst_jump, found.off, found.worst_off,
-                 100.0 * found.unseen / std::max(1, found.angles));
+      fmt::print(std::cout, "{}, {}, {:.2f}, {}, {}, {:.1f}, {}, {:.2f}, {:.1f}\n", c.name, way, rms_mm(all), found.windows,
+                 found.jumps, found.worst_jump, found.off, found.worst_off, 100.0 * found.unseen / std::max(1, found.angles));
       std::cout.flush();
     }
   }

@@ -8,7 +8,9 @@ Usage: skeleton_rates.py MAREY MODEL.osim RUN.trc [--seconds S of the recording]
 """
 
 import argparse
+import contextlib
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -35,6 +37,21 @@ def write_trc(path, rate, names, values):
         out.write("\t".join(f"X{i + 1}\tY{i + 1}\tZ{i + 1}" for i in range(len(names))) + "\n\n")
         for f, row in enumerate(values):
             out.write(f"{f + 1}\t{f / rate:.6f}\t" + "\t".join(f"{x:.5f}" for x in row.reshape(-1)) + "\n")
+
+
+@contextlib.contextmanager
+def quietly(folder):
+    """OpenSim writes opensim.log where it is started, and the model's counts to standard output."""
+    here, out = os.getcwd(), os.dup(1)
+    os.chdir(folder)
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        try:
+            yield
+        finally:
+            os.dup2(out, 1)
+            os.close(out)
+            os.chdir(here)
 
 
 def opensim_rms(model, trc, folder):
@@ -93,6 +110,7 @@ def main():
     parser.add_argument("--without-peer", action="store_true")
     parser.add_argument("--smooth", action="store_true")
     given = parser.parse_args()
+    model = os.path.abspath(given.model)
     rate, names, values = read_trc(given.run)
     seen = [i for i in range(len(names)) if not numpy.isnan(values[:, i]).any()]
     spline = CubicSpline(numpy.arange(len(values)) / rate, values[:, seen])
@@ -103,9 +121,12 @@ def main():
             with tempfile.TemporaryDirectory() as name:
                 folder = pathlib.Path(name)
                 write_trc(folder / "run.trc", to, [names[i] for i in seen], spline(times))
-                own, step = solved(given.marey, given.model, folder / "run.trc", folder)
-                smooth = solved(given.marey, given.model, folder / "run.trc", folder, "--smooth")[0] if given.smooth else float("nan")
-                peer = None if given.without_peer else opensim_rms(given.model, folder / "run.trc", folder)
+                own, step = solved(given.marey, model, folder / "run.trc", folder)
+                smooth = solved(given.marey, model, folder / "run.trc", folder, "--smooth")[0] if given.smooth else float("nan")
+                peer = None
+                if not given.without_peer:
+                    with quietly(folder):
+                        peer = opensim_rms(pathlib.Path(model), folder / "run.trc", folder)
                 print(f"{clock:g} {to:g} {len(times)} {own:.2f} {smooth:.2f} {peer or 0:.2f} {own / peer if peer else 0:.3f} {step:.1f}", flush=True)
 
 

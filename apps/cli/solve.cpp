@@ -76,7 +76,8 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
     if (coordinate.observed < 0.5) {
       hidden.push_back(coordinate.name);
     } else if (coordinate.observed < 1) {
-      at_times.push_back(fmt::format("{} ({:.0f} % of the frames)", coordinate.name, std::max(1.0, 100 * (1 - coordinate.observed))));
+      at_times.push_back(
+          fmt::format("{} ({:.0f} % of the frames)", coordinate.name, std::max(1.0, 100 * (1 - coordinate.observed))));
     }
   }
   if (!hidden.empty()) fmt::print(stderr, "not observed, no marker shows them to 10°: {}\n", joined(hidden, 12));
@@ -200,9 +201,7 @@ void add_solve(Command& program) {
       "beside --static: the same person moving hips, knees and elbows through their range; says where the joints are");
   command.flag("--calibrate", options->options.calibrate,
                "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
-  command.flag(
-      "--smooth", options->options.smooth,
-      "a second pass over the whole motion: what was hidden is bent to both ends");
+  command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
   command.output_file("--write-skeleton", options->options.write_skeleton, "skeleton.toml of the skeleton that was used")
       .ends_in({".toml"});
   command

@@ -123,6 +123,7 @@ void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::See
   if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, seen, rate_hz);
   counts.begin_anew();
   solve::skeleton::PoseSolver judge(solved.skeleton, options.pose);
+  judge.learn_noise_of(solved.motion.rows, seen);
   for (std::size_t f = 0; f < seen.size(); ++f) {
     const auto& pose = judge.look_at(solved.motion.rows[f], seen[f]);
     counts.add(pose);

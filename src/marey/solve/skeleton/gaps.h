@@ -12,14 +12,14 @@
 
 namespace marey::solve::skeleton {
 
-/// For one frame: the nearest frames at or before and at or after it in which a segment's markers were all seen that are seen around
-/// it at all.
+/// For one frame: the nearest frames at or before and at or after it in which a segment's markers were all seen that are seen
+/// around it at all.
 struct WholeFrames {
   std::optional<std::size_t> before, after;
 };
 
-/// By segment and frame. A segment's markers are its own, its parent's and its children's; one that is away for longer than `hidden`
-/// frames, or since the beginning, is not missed.
+/// By segment and frame. A segment's markers are its own, its parent's and its children's; one that is away for longer than
+/// `hidden` frames, or since the beginning, is not missed.
 std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std::span<const SeenMarkers> frames,
                                                    std::size_t hidden);
 

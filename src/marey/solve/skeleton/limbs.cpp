@@ -37,7 +37,8 @@ void PoseSolver::find_limbs() {
       if (std::abs(*bends.lowest + *bends.highest) < kOneWay * (*bends.highest - *bends.lowest)) continue;
       const Vector<3> along = above.joint.joint_from_segment * segment.joint.parent_from_joint.translation;
       if (along.norm() < 1e-3) continue;
-      Limb limb{.ball = b, .hinge = *hinge.coordinate, .beside = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
+      Limb limb{
+          .ball = b, .hinge = *hinge.coordinate, .beside = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
       for (const JointAxis& axis : std::span(segment.joint.axes).subspan(1)) {
         if (axis.turns && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
           limb.beside.push_back(*axis.coordinate);
@@ -45,7 +46,8 @@ void PoseSolver::find_limbs() {
       const auto hinge_at = &segment - skeleton.segments.data();
       for (std::size_t s = 0; s < skeleton.segments.size(); ++s) {
         const auto parent = skeleton.segments[s].parent;
-        limb.near.push_back(static_cast<int>(s) == upper || above.parent == static_cast<int>(s) || parent == upper || parent == hinge_at);
+        limb.near.push_back(static_cast<int>(s) == upper || above.parent == static_cast<int>(s) || parent == upper ||
+                            parent == hinge_at);
       }
       limbs_.push_back(std::move(limb));
     }
@@ -169,7 +171,8 @@ void PoseSolver::try_as_it_was(const std::vector<bool>& returned, Seen seen) {
     if (!near(s)) continue;
     for (const JointAxis& axis : segments[s].joint.axes) {
       if (axis.coordinate)
-        state_.coordinates[static_cast<std::size_t>(*axis.coordinate)] = whole_.coordinates[static_cast<std::size_t>(*axis.coordinate)];
+        state_.coordinates[static_cast<std::size_t>(*axis.coordinate)] =
+            whole_.coordinates[static_cast<std::size_t>(*axis.coordinate)];
     }
     for (std::size_t b = 0; b < state_.balls.size(); ++b) {
       if (articulation_.balls()[b].segment == static_cast<int>(s)) state_.balls[b] = whole_.balls[b];
@@ -231,7 +234,8 @@ void PoseSolver::shift_markers(double seconds, Seen seen) {
   for (std::size_t s = 0; s < missed_s_.size(); ++s) missed_s_[s] = beside_[s] ? missed_s_[s] + seconds : 0;
   for (std::size_t j = 0; j < shifts_.size(); ++j) {
     const double missed = missed_s_[static_cast<std::size_t>(markers[j].segment)];
-    shifts_[j] = missed > 0 && missed < options_.shift_s ? (1 - missed / options_.shift_s) * found_[j] : Vector<3>(Vector<3>::Zero());
+    shifts_[j] =
+        missed > 0 && missed < options_.shift_s ? (1 - missed / options_.shift_s) * found_[j] : Vector<3>(Vector<3>::Zero());
   }
 }
 

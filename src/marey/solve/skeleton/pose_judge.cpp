@@ -12,8 +12,9 @@ namespace marey::solve::skeleton {
 namespace {
 
 constexpr double kSmallestSigmaM = 1e-4, kLargestSigmaM = 0.03;
-constexpr double kRobust = 10;  // σ: a misfit of the model is nothing to be discarded, a marker of another name is
-constexpr double kWeakest = 1;  // 1/rad²: what is not seen at all deviates by a radian
+constexpr double kRobust = 10;     // σ: a misfit of the model is nothing to be discarded, a marker of another name is
+constexpr double kStrangeM = 0.1;  // a marker so far off is not this one
+constexpr double kWeakest = 1;     // 1/rad²: what is not seen at all deviates by a radian
 
 }  // namespace
 
@@ -60,8 +61,24 @@ void PoseSolver::learn_noise(Seen seen, double seconds) {
   robust_m_ = std::max(options_.robust_m, kRobust * sigma_m_);
 }
 
-void PoseSolver::set_noise(double sigma_m) {
-  sigma_m_ = std::clamp(sigma_m, kSmallestSigmaM, kLargestSigmaM);
+void PoseSolver::learn_noise_of(std::span<const std::vector<double>> rows,
+                                std::span<const std::vector<std::optional<Vector<3>>>> frames) {
+  double sum = 0, count = 0;
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    SkeletonState there = articulation_.state_of(rows[f]);
+    std::swap(state_, there);
+    rms_of(frames[f]);
+    std::swap(state_, there);
+    double own = 0;
+    for (const auto& off : pose_.residuals) {
+      if (!off || *off > kStrangeM) continue;
+      sum += *off * *off;
+      own += 3;
+    }
+    count += std::max(0.0, own - articulation_.dofs());
+  }
+  if (count < 3) return;
+  sigma_m_ = std::clamp(std::sqrt(sum / count), kSmallestSigmaM, kLargestSigmaM);
   robust_m_ = std::max(options_.robust_m, kRobust * sigma_m_);
 }
 

@@ -34,7 +34,7 @@ struct PoseOptions {
   double marker_sigma_m = 0.005;          ///< of a marker, at first; then as the residuals are
   double robust_m = 0.05;                 ///< residuals beyond count less and less; at least 10 σ
   double memory_s = 0.02;                 ///< what is hardly observed follows its markers within it
-  double velocity_s = 0.03;               ///< over which speeds are averaged
+  double velocity_s = 0.01;               ///< over which speeds are averaged
   double noise_s = 0.1;                   ///< over which the markers' σ is
   double away_s = 0.05, hidden_s = 2;     ///< a marker that returns after so long, and not later, has the poses looked at again
   double shift_s = 1;                     ///< within which markers beside hidden ones go back to where the skeleton has them
@@ -97,8 +97,8 @@ class PoseSolver {
   double cost_of(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
   /// Of each marker: how far it sits from where the skeleton has it, m, on its segment; until frames are solved in turn.
   std::span<Vector<3>> shifts() { return shifts_; }
-  /// σ of a marker's coordinate, until frames are solved in turn.
-  void set_noise(double sigma_m);
+  /// σ of a marker's coordinate, as all frames of a solved recording together have it; until frames are solved in turn.
+  void learn_noise_of(std::span<const std::vector<double>> rows, std::span<const std::vector<std::optional<Vector<3>>>> frames);
   /// Of a pose, in units of what just counts as not observed: the identity in directions that no marker shows, near 0 in others:
   /// (1 + H)⁻². Valid until the next call.
   const Eigen::MatrixXd& openness(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
@@ -183,8 +183,8 @@ class PoseSolver {
   bool returned_ = false;
   std::vector<std::vector<std::size_t>> near_;  // of each segment: itself, its parent and its children
   std::vector<bool> beside_;
-  std::vector<double> missed_s_;                // of each segment: since when one of the markers near it is hidden
-  std::vector<Vector<3>> found_, shifts_;       // of each marker: where it sat, from where the skeleton has it, and is taken to sit
+  std::vector<double> missed_s_;           // of each segment: since when one of the markers near it is hidden
+  std::vector<Vector<3>> found_, shifts_;  // of each marker: where it sat, from where the skeleton has it, and is taken to sit
   PoseEquations equations_;
   Eigen::MatrixXd damped_, covariance_;
   Eigen::LDLT<Eigen::MatrixXd> solver_;

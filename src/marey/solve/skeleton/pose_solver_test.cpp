@@ -170,7 +170,8 @@ TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
   const std::vector<double> centre = pose_near_rest(skeleton, random, 0.3);
   const auto truth_at = [&](double time) {
     std::vector<double> truth = centre;
-    for (std::size_t c = 0; c < truth.size(); ++c) truth[c] += (skeleton.coordinates[c].turns ? 0.6 : 0.1) * std::sin(40 * time + static_cast<double>(c));
+    for (std::size_t c = 0; c < truth.size(); ++c)
+      truth[c] += (skeleton.coordinates[c].turns ? 0.6 : 0.1) * std::sin(40 * time + static_cast<double>(c));
     truth[0] += 9 * time;
     skeleton.couple(truth);
     return truth;
@@ -190,7 +191,8 @@ TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
     if (at_the_end.empty()) at_the_end = solver.pose().coordinates;
     for (std::size_t c = 0; c < at_the_end.size(); ++c) {
       if (!skeleton.coordinates[c].turns) continue;
-      EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)), 0.02) << rate << " Hz";
+      EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)), 0.02)
+          << rate << " Hz";
     }
   }
 }

@@ -18,6 +18,7 @@ SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const SeenMark
   if (!options.whole && !options.smooth) return solved;
   if (options.whole) settle_folds(skeleton, solved.rows, frames, rate_hz, options.pose);
   if (options.smooth) solved.rows = smooth(skeleton, solved.rows, frames, rate_hz);
+  solver.learn_noise_of(solved.rows, frames);
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const SolvedPose& pose = solver.look_at(solved.rows[f], frames[f]);
     solved.observed[f] = pose.observed;

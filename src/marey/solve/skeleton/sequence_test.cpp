@@ -20,10 +20,10 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 Skeleton walker() {
   std::vector<StandingSegment> segments = {{"pelvis", {Matrix<3>::Identity(), {0, 0, 1}}, {}},
                                            {"trunk", {Matrix<3>::Identity(), {0, 0, 1.1}}, {}}};
-  std::vector<StandingMarker> markers = {
-      {"LASI", "pelvis", {0.1, 0.12, 1.02}},  {"RASI", "pelvis", {0.1, -0.12, 1.02}}, {"SACR", "pelvis", {-0.1, 0, 1.03}},
-      {"C7", "trunk", {-0.08, 0, 1.5}},       {"T10", "trunk", {-0.1, 0, 1.25}},      {"CLAV", "trunk", {0.06, 0, 1.45}},
-      {"STRN", "trunk", {0.1, 0, 1.3}}};
+  std::vector<StandingMarker> markers = {{"LASI", "pelvis", {0.1, 0.12, 1.02}}, {"RASI", "pelvis", {0.1, -0.12, 1.02}},
+                                         {"SACR", "pelvis", {-0.1, 0, 1.03}},   {"C7", "trunk", {-0.08, 0, 1.5}},
+                                         {"T10", "trunk", {-0.1, 0, 1.25}},     {"CLAV", "trunk", {0.06, 0, 1.45}},
+                                         {"STRN", "trunk", {0.1, 0, 1.3}}};
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "left_" : "right_", letter = side > 0 ? "L" : "R";
     const auto add = [&](const std::string& segment, const Vector<3>& place) {
@@ -85,8 +85,10 @@ std::vector<SeenMarkers> walking(const Skeleton& skeleton, int frames, std::mt19
     SeenMarkers& seen = all.emplace_back();
     for (std::size_t j = 0; j < skeleton.markers.size(); ++j) {
       const SkeletonMarker& marker = skeleton.markers[j];
-      const Vector<3> on = marker.position + misfit[j] + std::sin(2 * std::numbers::pi * 0.9 * f / 120.0 + static_cast<double>(j)) * slide[j];
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * on + Vector<3>(noise(0.0005), noise(0.0005), noise(0.0005)));
+      const Vector<3> on =
+          marker.position + misfit[j] + std::sin(2 * std::numbers::pi * 0.9 * f / 120.0 + static_cast<double>(j)) * slide[j];
+      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * on +
+                        Vector<3>(noise(0.0005), noise(0.0005), noise(0.0005)));
     }
   }
   return all;
@@ -119,7 +121,8 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
     for (const bool smooth : {false, true}) {
       SCOPED_TRACE(smooth ? "smooth" : "in turn");
       const SequenceOptions options{.pose = {}, .whole = smooth, .smooth = smooth};
-      const SolvedSequence all = solve_sequence(skeleton, frames, 120, options), hidden = solve_sequence(skeleton, seen, 120, options);
+      const SolvedSequence all = solve_sequence(skeleton, frames, 120, options),
+                           hidden = solve_sequence(skeleton, seen, 120, options);
       for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
         if (!skeleton.coordinates[c].turns) continue;
         double step = 0, off = 0;
@@ -128,7 +131,8 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
             if (!all.observed[f][c]) continue;
             if (f >= begin + 72) off = std::max(off, std::abs(hidden.rows[f][c] - all.rows[f][c]));
             if (hidden.observed[f][c] && hidden.observed[f - 1][c])
-              step = std::max(step, std::abs(hidden.rows[f][c] - hidden.rows[f - 1][c]) - std::abs(all.rows[f][c] - all.rows[f - 1][c]));
+              step = std::max(step,
+                              std::abs(hidden.rows[f][c] - hidden.rows[f - 1][c]) - std::abs(all.rows[f][c] - all.rows[f - 1][c]));
           }
         }
         EXPECT_LT(off * kDegrees, 2) << skeleton.coordinates[c].name;

@@ -12,8 +12,8 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kOtherM = 0.1;  // a marker so far off is not this one
-constexpr double kHeld = 1e-3;  // 1/rad², 1/m²: what nothing determines stays where it is
+constexpr double kOtherM = 0.1;  // a marker so far off is another
+constexpr double kHeld = 1e-3;   // 1/rad², 1/m²: what nothing determines stays where it is
 
 /// A symmetric system of n × n blocks with two beside the diagonal: L D Lᵀ, block by block.
 class BandedSystem {
@@ -86,8 +86,8 @@ class Smoother {
       weight_[d] = rate_hz * rate_hz / (turns ? options.acceleration_rad_s2 : options.acceleration_m_s2);
     }
     for (const std::vector<double>& row : rows) states_.push_back(solver_.articulation().state_of(row));
+    solver_.learn_noise_of(rows, frames);
     find_offsets();
-    learn_noise();
     guide();
   }
 
@@ -112,29 +112,10 @@ class Smoother {
       solver_.articulation().place(states_[f]);
       for (std::size_t j = 0; j < skeleton_.markers.size(); ++j) {
         if (!frames_[f][j]) continue;
-        const Rigid3& world_from = solver_.articulation().world_from_segment()[static_cast<std::size_t>(skeleton_.markers[j].segment)];
-        offsets_[f][j] = world_from.inverse() * *frames_[f][j] - skeleton_.markers[j].position;
-      }
-    }
-  }
-
-  /// As the first pass does it, over all frames. What is farther off than it believes is another's label.
-  void learn_noise() {
-    double sum = 0, count = 0;
-    for (std::size_t f = 0; f < frames_.size(); ++f) {
-      double own = 0;
-      for (std::size_t j = 0; j < frames_[f].size(); ++j) {
-        if (!frames_[f][j] || offsets_[f][j].norm() > kOtherM) continue;
-        sum += offsets_[f][j].squaredNorm();
-        own += 3;
-      }
-      count += std::max(0.0, own - solver_.articulation().dofs());
-    }
-    if (count < 3) return;
-    solver_.set_noise(std::max(options_.marker_sigma_m, std::sqrt(sum / count)));
-    for (auto& frame : offsets_) {
-      for (Vector<3>& offset : frame) {
-        if (offset.norm() > kOtherM) offset.setZero();
+        const Rigid3& world_from =
+            solver_.articulation().world_from_segment()[static_cast<std::size_t>(skeleton_.markers[j].segment)];
+        const Vector<3> offset = world_from.inverse() * *frames_[f][j] - skeleton_.markers[j].position;
+        if (offset.norm() < kOtherM) offsets_[f][j] = offset;
       }
     }
   }

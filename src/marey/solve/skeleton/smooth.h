@@ -6,9 +6,9 @@
 // on the mean in between, and angles that no marker shows start on the way from one end to the other.
 //
 // Minimises Σ_t markers(x_t) + Σ_t d_tᵀ W_t d_t, d_t = x_{t+1} − 2 x_t + x_{t−1}, by Gauss–Newton. W is (a Δt²)⁻² in the directions
-// that no marker shows and falls with what the markers say, as the prediction of the PoseSolver does: both terms grow alike with the
-// frame rate, and no speed biases what is observed. The system has blocks beside its diagonal only; it is eliminated frame by frame,
-// so that the cost is linear in the frames. Long motions are taken in windows that overlap.
+// that no marker shows and falls with what the markers say, as the prediction of the PoseSolver does: both terms grow alike with
+// the frame rate, and no speed biases what is observed. The system has blocks beside its diagonal only; it is eliminated frame by
+// frame, so that the cost is linear in the frames. Long motions are taken in windows that overlap.
 #pragma once
 
 #include <span>
@@ -21,9 +21,8 @@ namespace marey::solve::skeleton {
 
 struct SmoothOptions {
   double acceleration_rad_s2 = 50;  ///< a joint's, one standard deviation
-  double acceleration_m_s2 = 7.5;    ///< a shift's
-  double marker_sigma_m = 0.001;     ///< at least; else as the residuals of the first pass are
-  double hidden_s = 2;  ///< a marker that is away for longer is gone: it is no gap
+  double acceleration_m_s2 = 7.5;   ///< a shift's
+  double hidden_s = 2;              ///< a marker that is away for longer is gone: it is no gap
   int rounds = 4;
   int window = 800, overlap = 150;  ///< frames
 };

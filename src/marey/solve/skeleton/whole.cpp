@@ -12,15 +12,13 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kSameRad = 0.035;   // 2°: two poses are one
-constexpr double kOtherRad = 0.35;   // 20°: they are two
-constexpr double kHiddenS = 2;       // markers that are away for longer are gone
-constexpr double kLookS = 0.1;       // between frames in which limbs are turned about
+constexpr double kSameRad = 0.035;  // 2°: two poses are one
+constexpr double kOtherRad = 0.35;  // 20°: they are two
+constexpr double kHiddenS = 2;      // markers that are away for longer are gone
+constexpr double kLookS = 0.1;      // between frames in which limbs are turned about
 constexpr std::size_t kMostLooks = 150;
-constexpr int kMostTurns = 4;        // a limb
-constexpr double kClear = 10;        // σ² of a marker, in sum: less decides nothing
-constexpr double kLeastNoiseM = 1e-3;
-constexpr double kStrangeM = 0.1;  // a marker so far off is not this one
+constexpr int kMostTurns = 4;  // a limb
+constexpr double kClear = 10;  // σ² of a marker, in sum: less decides nothing
 
 /// The motion from one frame to another.
 struct Stretch {
@@ -40,7 +38,8 @@ class FoldSettler {
         frames_(frames),
         rate_hz_(rate_hz),
         changed_(rows.size(), false) {
-    learn_noise();
+    solver_.learn_noise_of(rows, frames);  // one for all frames, so that their costs can be added
+    for (std::size_t f = 0; f < rows.size(); ++f) observed_.push_back(solver_.look_at(rows[f], frames[f]).observed);
     find_gaps();
     for (std::size_t f = 0; f < rows.size(); ++f) costs_.push_back(cost(rows[f], f));
   }
@@ -70,22 +69,6 @@ class FoldSettler {
     for (const auto& of_segment : whole_frames(skeleton_, frames_, hidden)) {
       for (std::size_t f = 0; f < frames_.size(); ++f) gap_[f] = gap_[f] || of_segment[f].before != f;
     }
-  }
-
-  /// One σ for all frames, so that their costs can be added.
-  void learn_noise() {
-    double sum = 0, count = 0;
-    for (std::size_t f = 0; f < rows_.size(); ++f) {
-      double own = 0;
-      for (const auto& off : solver_.look_at(rows_[f], frames_[f]).residuals) {
-        if (!off || *off > kStrangeM) continue;
-        sum += *off * *off;
-        own += 3;
-      }
-      count += std::max(0.0, own - solver_.articulation().dofs());
-    }
-    if (count >= 3) solver_.set_noise(std::max(kLeastNoiseM, std::sqrt(sum / count)));
-    for (std::size_t f = 0; f < rows_.size(); ++f) observed_.push_back(solver_.look_at(rows_[f], frames_[f]).observed);
   }
 
   /// How far two rows are apart, rad, in angles that the frame's markers show.
@@ -154,8 +137,7 @@ class FoldSettler {
   }
 
   void try_turned(std::size_t limb) {
-    const std::size_t step =
-        std::max(static_cast<std::size_t>(std::max(1.0, kLookS * rate_hz_)), rows_.size() / kMostLooks + 1);
+    const std::size_t step = std::max(static_cast<std::size_t>(std::max(1.0, kLookS * rate_hz_)), rows_.size() / kMostLooks + 1);
     std::vector<std::pair<double, std::size_t>> looks;
     for (std::size_t f = step / 2; f < rows_.size(); f += step) {
       if (const double gain = turned(limb, f).second; gain > 0) looks.emplace_back(gain, f);
@@ -166,7 +148,8 @@ class FoldSettler {
     for (const auto& [gain, f] : looks) {
       if (tried[f] || turns++ >= kMostTurns) continue;
       const Stretch other = from_turned(limb, f);
-      std::fill(tried.begin() + static_cast<std::ptrdiff_t>(other.begin), tried.begin() + static_cast<std::ptrdiff_t>(other.end), true);
+      std::fill(tried.begin() + static_cast<std::ptrdiff_t>(other.begin), tried.begin() + static_cast<std::ptrdiff_t>(other.end),
+                true);
       if (other.gain > kClear) take(other);
     }
   }

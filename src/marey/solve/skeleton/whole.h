@@ -16,8 +16,8 @@
 
 namespace marey::solve::skeleton {
 
-/// `rows` are the coordinates of a first pass, one for each of `frames`, at an even rate: where others fit better they are replaced.
-/// Says for each frame whether it was.
+/// `rows` are the coordinates of a first pass, one for each of `frames`, at an even rate: where others fit better they are
+/// replaced. Says for each frame whether it was.
 std::vector<bool> settle_folds(const Skeleton& skeleton, std::span<std::vector<double>> rows, std::span<const SeenMarkers> frames,
                                double rate_hz, const PoseOptions& options = {});
 
