@@ -166,7 +166,7 @@ TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
   std::mt19937 random(seed);
   const Skeleton skeleton = body(random);
   Skeleton person = skeleton;
-  for (SkeletonMarker& marker : person.markers) marker.position += anywhere(random, 0.02);
+  for (SkeletonMarker& marker : person.markers) marker.position += anywhere(random, 0.02 + 0.5 * solver.pose().deviations[c]);
   const std::vector<double> centre = pose_near_rest(skeleton, random, 0.3);
   const auto truth_at = [&](double time) {
     std::vector<double> truth = centre;
