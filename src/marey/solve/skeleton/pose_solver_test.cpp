@@ -166,7 +166,7 @@ TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
   std::mt19937 random(seed);
   const Skeleton skeleton = body(random);
   Skeleton person = skeleton;
-  for (SkeletonMarker& marker : person.markers) marker.position += anywhere(random, 0.02 + 0.5 * solver.pose().deviations[c]);
+  for (SkeletonMarker& marker : person.markers) marker.position += anywhere(random, 0.02);
   const std::vector<double> centre = pose_near_rest(skeleton, random, 0.3);
   const auto truth_at = [&](double time) {
     std::vector<double> truth = centre;
@@ -191,7 +191,9 @@ TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
     if (at_the_end.empty()) at_the_end = solver.pose().coordinates;
     for (std::size_t c = 0; c < at_the_end.size(); ++c) {
       if (!skeleton.coordinates[c].turns) continue;
-      EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)), 0.02)
+      // Near what the markers themselves leave open of the angle.
+      EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)),
+                0.02 + 0.5 * solver.pose().deviations[c])
           << rate << " Hz";
     }
   }
