@@ -177,10 +177,20 @@ async function list() {
   await eventually("nobody comes back", async () => (await there()) > 3);
 }
 
+/** The name button of the track that was seen most among those that are there and are not called `name`: it will be seen on. */
+async function steadiest(name) {
+  const id = await page.evaluate((other) => {
+    const rows = [...document.querySelectorAll(".row:not(.gone)")].filter((row) => row.querySelector(".name").textContent !== other);
+    const seen = (row) => parseFloat(row.querySelector(".percent").textContent) || 0;
+    return rows.sort((a, b) => seen(b) - seen(a))[0].dataset.id;
+  }, name);
+  return page.locator(`.row[data-id="${id}"] .name`);
+}
+
 async function names() {
   const name = phone ? "head" : "left knee";
   await eventually("there are no markers", async () => (await page.locator(".row .name").count()) > 2);
-  await page.locator(".row .name").first().click();
+  await (await steadiest("")).click();
   await page.keyboard.press("n");
   await page.fill("#name_field", name);
   await shot("name");
@@ -189,7 +199,7 @@ async function names() {
   assert.match(await text("#naming label"), new RegExp(name));
   await page.keyboard.press("Escape");
   await until("the field stays", () => document.querySelector("#naming").hidden);
-  await page.locator(".row .name", { hasNotText: name }).first().click();
+  await (await steadiest(name)).click();
   await page.fill("#name_field", name);
   await page.keyboard.press("Enter");
   await eventually("two have one name", async () => new RegExp(`is called ${name} and is seen now`).test(await text("#said")));
