@@ -58,6 +58,13 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
   return tracker;
 }
 
+/// A network without a background model is shown only the frames that it searches.
+detect::DetectorOptions searching_every_frame(detect::DetectorOptions options) {
+  auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
+  if (network != nullptr && !network->background) network->every = 1;
+  return options;
+}
+
 void leave_out_unseen(Instant& instant) {
   std::erase_if(instant.samples, [](const Sample& sample) { return !sample.measured(); });
 }
@@ -115,7 +122,7 @@ class PeopleInPicture final : public Stage {
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
-      detector_ = detect::make_detector(options.detector);
+      detector_ = detect::make_detector(searching_every_frame(options.detector));
       if (!options.live) prime(feed);
     }
     if (!options.masks.empty()) {
@@ -133,6 +140,7 @@ class PeopleInPicture final : public Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
+    if (skips_frame(given)) return pass_over(given.frame);
     const detect::Detections seen = detect(given);
     if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
     const auto tracks = follow(given.frame, seen);
@@ -184,6 +192,22 @@ class PeopleInPicture final : public Stage {
     return detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
   }
 
+  /// Whether this is a frame between those that a network without a background model searches.
+  bool skips_frame(const CameraFrame& given) {
+    const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options_.detector);
+    return detector_ != nullptr && !given.detections && network != nullptr && !network->background &&
+           frames_++ % network->every != 0;
+  }
+
+  /// A frame that was not searched: targets are where they are expected, and what nobody saw counts against none of them.
+  std::span<const Instant> pass_over(const Frame& frame) {
+    if (live_) return told(frame, tracker_->expected(frame.time));
+    recording_.add(std::ssize(moments_), frame.time, {});
+    if (outlines_) outlines_->add(std::ssize(moments_), {});
+    moments_.push_back({frame.index, frame.time});
+    return {};
+  }
+
   /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
   std::span<const Track<2>> follow(const Frame& frame, const detect::Detections& seen) {
     std::vector<Observation<2>> observations = observations_of(seen.detections, frame.camera);
@@ -217,7 +241,7 @@ class PeopleInPicture final : public Stage {
   std::optional<track::LiveTracks> live_;
   std::vector<Instant> due_;
   std::set<TrackId> begun_, believed_;
-  std::int64_t detections_ = 0;
+  std::int64_t detections_ = 0, frames_ = 0;
   std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 
