@@ -1,8 +1,11 @@
 // How well gaps in markers' paths are filled: holes cut into what was seen of real walks, filled with the method that is chosen by
-// itself, with a polynomial alone and with rigid neighbours alone; medians over holes of the RMS error, and how much of the truth
-// lies within two of the deviations that were told.
+// itself, with a polynomial alone and with rigid neighbours alone; medians over holes of the RMS error, of what it was expected to
+// be in the middle, how much of the truth lies within two of the deviations that were told, and how many holes the limits of
+// "fill all" leave open.
 //
-//   gap_filling FILE.c3d ... [--labels A,B,C] [--holes N]       N holes of each length in each file; seeded, the same every time
+//   gap_filling FILE ... [--labels A,B,C|all] [--holes N] [--seconds S]
+//
+// N holes of each length in each file; seeded, the same every time. With --seconds only so much of each file, out of its middle.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -30,11 +33,11 @@ const std::set<std::string> kMarkers{"LFHD", "RFHD", "LBHD", "RBHD", "C7",   "T1
                                      "LUPA", "LELB", "LFRM", "LWRA", "LWRB", "LFIN", "RSHO", "RUPA", "RELB", "RFRM",
                                      "RWRA", "RWRB", "RFIN", "LASI", "RASI", "LPSI", "RPSI", "SACR", "LTHI", "LKNE",
                                      "LTIB", "LANK", "LHEE", "LTOE", "RTHI", "RKNE", "RTIB", "RANK", "RHEE", "RTOE"};
-constexpr double kLengths_s[] = {0.1, 0.25, 0.5, 1.0};
+constexpr double kLengths_s[] = {0.1, 0.25, 0.5, 1.0, 2.0};
 
 struct Score {
-  std::vector<double> rms;  // of each hole, m
-  int covered = 0, places = 0;
+  std::vector<double> rms, expected;  // of each hole, m
+  int covered = 0, places = 0, open = 0, holes = 0;
 };
 
 double median(std::vector<double> values) {
@@ -44,10 +47,29 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+bool is_marker(const std::string& label, const std::set<std::string>& labels) {
+  return labels.contains("all") ? !label.empty() : labels.contains(label);
+}
+
+/// The middle of a recording.
+Recording middle_of(const Recording& recording, double seconds) {
+  const auto frames = static_cast<std::size_t>(seconds * recording.header.rate_hz);
+  if (frames >= recording.instants().size()) return recording;
+  const std::size_t begin = (recording.instants().size() - frames) / 2;
+  Recording middle(recording.header);
+  for (const TrackColumns& track : recording.tracks()) middle.set_name(track.name);
+  InstantsOf instants(recording);
+  for (std::size_t i = 0; i < begin + frames; ++i) {
+    const auto instant = instants.next();
+    if (instant && i >= begin) middle.add(*instant);
+  }
+  return middle;
+}
+
 Tracks tracks_of(const Recording& recording, const std::set<std::string>& labels) {
   std::vector<TrackName> names;
   for (const TrackColumns& track : recording.tracks()) {
-    if (labels.contains(track.name.label)) names.push_back(track.name);
+    if (is_marker(track.name.label, labels)) names.push_back(track.name);
   }
   return Tracks(recording.instants(), names, [&recording](TrackId track) { return *recording.find(track); });
 }
@@ -57,8 +79,11 @@ void try_hole(const Recording& recording, const std::set<std::string>& labels, T
               std::optional<FillMethod> method, Score& score) {
   Tracks tracks = tracks_of(recording, labels);
   tracks.apply({.kind = edit::Operation::Kind::remove, .tracks = {marker}, .frames = hole});
-  const auto fills = edit::decide_fills(tracks, marker, hole, {.method = method, .longest_s = 2, .within_m = 1000});
+  const auto fills = edit::decide_fills(tracks, marker, hole, {.method = method, .longest_s = 3, .within_m = 1000});
+  ++score.holes;
+  score.open += fills.empty() || fills.front().expected_m > edit::FillOptions{}.within_m;
   if (fills.empty()) return;
+  score.expected.push_back(fills.front().expected_m);
   const TrackColumns& truth = *recording.find(marker);
   double squares = 0;
   const Tracks::Rows rows = edit::rows_in_gap(tracks, fills.front());
@@ -81,7 +106,7 @@ std::optional<Place> somewhere(const Recording& recording, const std::set<std::s
                                std::mt19937& random) {
   std::vector<const TrackColumns*> tracks;
   for (const TrackColumns& track : recording.tracks()) {
-    if (labels.contains(track.name.label) && track.size() > length + 20) tracks.push_back(&track);
+    if (is_marker(track.name.label, labels) && track.size() > length + 20) tracks.push_back(&track);
   }
   for (int attempt = 0; attempt < 200 && !tracks.empty(); ++attempt) {
     const TrackColumns& track = *tracks[random() % tracks.size()];
@@ -93,15 +118,16 @@ std::optional<Place> somewhere(const Recording& recording, const std::set<std::s
   return std::nullopt;
 }
 
-int run(const std::vector<std::string>& files, const std::set<std::string>& labels, int holes) {
+int run(const std::vector<std::string>& files, const std::set<std::string>& labels, int holes, double seconds) {
   constexpr std::pair<const char*, std::optional<FillMethod>> kMethods[] = {
       {"chosen", std::nullopt}, {"spline", FillMethod::spline}, {"rigid", FillMethod::rigid}, {"pattern", FillMethod::pattern}};
-  std::printf("%-8s %-8s %8s %10s %10s %8s\n", "gap", "method", "holes", "median mm", "90 %  mm", "in 2 sd");
+  std::printf("%-8s %-8s %8s %10s %10s %12s %8s %8s\n", "gap", "method", "holes", "median mm", "90 %  mm", "expected mm", "in 2 sd",
+              "open");
   for (const double length_s : kLengths_s) {
     Score scores[4];
     std::mt19937 random(1);
     for (const std::string& file : files) {
-      const Recording recording = read_all(*format::open_recording(file));
+      const Recording recording = middle_of(read_all(*format::open_recording(file)), seconds);
       const auto length = static_cast<std::size_t>(std::lround(length_s * recording.header.rate_hz));
       for (int i = 0; i < holes; ++i) {
         const auto place = somewhere(recording, labels, length, random);
@@ -114,8 +140,9 @@ int run(const std::vector<std::string>& files, const std::set<std::string>& labe
       Score& score = scores[method];
       std::sort(score.rms.begin(), score.rms.end());
       if (score.rms.empty()) continue;
-      std::printf("%-8g %-8s %8zu %10.2f %10.2f %7.1f%%\n", length_s, kMethods[method].first, score.rms.size(),
-                  1e3 * median(score.rms), 1e3 * score.rms[score.rms.size() * 9 / 10], 100.0 * score.covered / score.places);
+      std::printf("%-8g %-8s %8d %10.2f %10.2f %12.2f %7.1f%% %7.1f%%\n", length_s, kMethods[method].first, score.holes,
+                  1e3 * median(score.rms), 1e3 * score.rms[score.rms.size() * 9 / 10], 1e3 * median(score.expected),
+                  100.0 * score.covered / score.places, 100.0 * score.open / score.holes);
     }
   }
   return 0;
@@ -127,10 +154,13 @@ int main(int argc, char** argv) {
   std::vector<std::string> files;
   std::set<std::string> labels = kMarkers;
   int holes = 40;
+  double seconds = 1e9;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--holes" && i + 1 < argc) {
       holes = std::atoi(argv[++i]);
+    } else if (argument == "--seconds" && i + 1 < argc) {
+      seconds = std::atof(argv[++i]);
     } else if (argument == "--labels" && i + 1 < argc) {
       labels.clear();
       std::string_view list = argv[++i];
@@ -143,7 +173,7 @@ int main(int argc, char** argv) {
     }
   }
   try {
-    return run(files, labels, holes);
+    return run(files, labels, holes, seconds);
   } catch (const Error& error) {
     std::fprintf(stderr, "gap_filling: %s\n", error.what());
     return 1;

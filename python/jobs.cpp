@@ -5,6 +5,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/pipeline/live.h"
 #include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/markers_in_picture.h"
@@ -17,8 +18,6 @@
 
 namespace marey::python {
 namespace {
-
-constexpr double kBodyPixels = 100, kBodyMetres = 1.75;
 
 /// One camera: a path, frames of Python's, or another program's detections.
 struct OneCamera {
@@ -69,12 +68,13 @@ nb::tuple in_picture(const Options& options, Make make) {
   }));
 }
 
-/// The filter that was asked for: one of Python's own as it is, a named one in units of which the job's has `unit`; else `usual`.
-filter::FilterOptions filter_of(const Options& options, const filter::FilterOptions& usual, double unit = 1) {
+/// The filter that was asked for: one of Python's own as it is, a named one as `named` makes it for the job; else `usual`.
+filter::FilterOptions filter_of(const Options& options, const filter::FilterOptions& usual,
+                                filter::FilterOptions (*named)(std::string_view) = filter::filter_named) {
   if (const auto own = options.object("own_filter")) return filter_of(own);
   const auto name = options.find<std::string>("filter");
   if (!name) return usual;
-  return filter::scaled(filter::filter_named(*name), unit);
+  return named(*name);
 }
 
 detect::DetectorOptions people_detector(const Options& options) {
@@ -88,8 +88,7 @@ nb::tuple track_people(nb::dict given) {
   const Options options(std::move(given));
   pipeline::PeopleInPictureOptions how;
   how.detector = people_detector(options);
-  const filter::FilterOptions filter = filter_of(options, how.tracker.filter, 1 / kBodyPixels);
-  if (filter.index() != how.tracker.filter.index()) how.tracker.filter = filter;  // the usual one has its own parameters
+  how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_in_picture);
   if (options.get("outline", false)) how.outlines.emplace();
   how.live = options.get("live", false);
   how.delay = options.get("delay", 0.0);
@@ -120,7 +119,7 @@ nb::tuple track_ground(nb::dict given) {
   how.live = options.get("live", false);
   how.margin = options.get("margin", how.margin);
   if (const auto teams = options.find<std::string>("teams")) how.teams.names = analyse::parse_teams(*teams);
-  how.tracker.filter = filter_of(options, how.tracker.filter, kBodyMetres / kBodyPixels);
+  how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_on_ground);
   const auto has_source = [](const RigCamera& camera) { return !camera.source.empty(); };
   const bool pictures = std::any_of(rig.cameras.begin(), rig.cameras.end(), has_source);
   how.tracker.associate =

@@ -68,20 +68,24 @@ void do_edits(const EditCommand& command) {
   if (!command.script.empty()) requests = pipeline::read_edit_script(command.script);
   for (const std::string& edit : command.edits) requests.push_back({.text = edit, .where = fmt::format("\"{}\"", edit)});
   if (requests.empty()) throw Error("{}: holds no edit", command.script);
-  const auto done =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::edit_take(command.take, requests, hooks); });
+  std::vector<std::string> notes;
+  const auto done = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::edit_take(command.take, requests, hooks, {}, &notes); });
   std::vector<EditLine> lines = pipeline::lines_of(pipeline::edit_history(command.take));
   std::erase_if(lines, [&](const EditLine& line) {
-    return line.id < done.front().edit.id || line.id > done.back().edit.id;  // another program's
+    return done.empty() || line.id < done.front().edit.id || line.id > done.back().edit.id;  // another program's
   });
   if (command.json) {
     Json entries = Json::array();
     for (const EditLine& line : lines) entries.push_back(edit_json(line));
-    print({{"take", command.take}, {"edits", entries}});
+    print({{"take", command.take}, {"edits", entries}, {"notes", notes}});
     return;
   }
   for (const EditLine& line : lines) {
     if (!command.quiet) fmt::print(stderr, "{:4}  {}\n", line.id, line.words);
+  }
+  for (const std::string& note : notes) {
+    if (!command.quiet) fmt::print(stderr, "{}\n", note);
   }
   say_head(command);
 }

@@ -94,8 +94,8 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
 }
 
 Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& summary) {
-  Json json{{"frames", summary.instants}, {"points", summary.points}, {"named", summary.named},      {"renamed", summary.renamed},
-            {"scale", summary.scale},     {"recording", command.out}, {"warnings", summary.warnings}};
+  Json json{{"frames", summary.instants}, {"points", summary.points}, {"named", summary.named},   {"renamed", summary.renamed},
+            {"scale", summary.scale},     {"misfit", summary.misfit}, {"recording", command.out}, {"warnings", summary.warnings}};
   json["markers"] = Json::array();
   for (const auto& marker : summary.health)
     json["markers"].push_back({{"label", marker.label},

@@ -1,5 +1,6 @@
 #include "marey/pipeline/live.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -20,6 +21,7 @@
 #include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
+#include "ground_options.h"
 #include "json_value.h"
 #include "live_outputs.h"
 #include "live_screen.h"
@@ -52,6 +54,7 @@ struct LiveCommand {
   double preroll_s = 5, late_s = 0.05, patience_s = 3;
   detect::markers::MarkerOptions markers;
   PeopleFlags people;
+  GroundAreaFlags where;
   LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
@@ -117,7 +120,7 @@ std::vector<std::string> files_beside_take(const LiveCommand& command) {
   return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
 }
 
-pipeline::LiveOptions options_of(const LiveCommand& command) {
+pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   pipeline::LiveOptions options;
   options.targets = command.targets;
   options.ground = command.ground;
@@ -128,7 +131,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
-  options.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
+  apply(command.where, rig, command.sources.front(), true, options.on_ground);
   options.policy.late_s = command.late_s;
   options.patience_s = command.patience_s;
   options.take = command.out;
@@ -137,6 +140,24 @@ pipeline::LiveOptions options_of(const LiveCommand& command) {
   options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
+}
+
+/// LSL's channels are fixed at its first instant, when targets without given labels have none.
+void tell_of_slots(const LiveCommand& command) {
+  const bool lsl = std::any_of(command.outputs.streams.streams.begin(), command.outputs.streams.streams.end(),
+                               [](const std::string& target) { return target.starts_with("lsl"); });
+  if (!lsl || !command.labels.empty() || !command.skeleton.empty()) return;
+  fmt::print(stderr,
+             "marey: lsl: no labels are given ({}): the outlet has {} slots, each with a track's ID and coordinates, NaN where "
+             "empty\n",
+             command.targets == LiveTargets::markers ? "--labels" : "people have none", command.outputs.streams.unlabelled_slots);
+}
+
+/// The part of the ground that the page shows.
+viewer::LiveGround ground_of(const pipeline::PeopleOnGroundOptions& options) {
+  viewer::LiveGround ground{.pitch = options.pitch, .area = {}};
+  for (const Vector<2>& corner : options.area) ground.area.emplace_back(corner.x(), corner.y(), 0);
+  return ground;
 }
 
 /// Ends by a signal, by a key, or when the time is over.
@@ -150,12 +171,13 @@ void run(const LiveCommand& command) {
     if (const auto refused = ask_for_realtime()) warn({*refused});
   }
   const Rig rig = rig_of_live_sources(command.sources);
-  pipeline::LiveOptions options = options_of(command);
+  pipeline::LiveOptions options = options_of(command, rig);
   options.desk = std::make_shared<pipeline::CameraDesk>(rig, command.markers.threshold);
   options.naming = std::make_shared<pipeline::TrackNaming>();
   LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
-                      command.targets == LiveTargets::markers, command.quiet);
+                      command.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
+  if (!command.quiet) tell_of_slots(command);
   LiveEnd end;
   LiveScreen screen(command.quiet);
   const auto recording = options.recording;
@@ -193,7 +215,8 @@ void add_live(Command& program) {
   Command command = program.subcommand("live", "Track what live cameras see, while they see it");
   add_live_sources(command, options->sources);
   command.choice("--targets", options->targets, kLiveTargets, "what is followed");
-  command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
+  const Option ground = command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
+  add_ground_area_options(command, ground, options->where);
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
   command.also_writes([options] { return files_beside_take(*options); });
@@ -215,6 +238,8 @@ void add_live(Command& program) {
     options->outputs.take = options->out;
     if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
     if (options->ground) options->targets = LiveTargets::people;
+    options->outputs.streams.unlabelled_slots =
+        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->markers.most_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
     run(*options);

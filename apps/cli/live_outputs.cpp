@@ -31,7 +31,8 @@ void add_live_outputs(Command& command, LiveOutputOptions& options) {
   add_stream_options(command, options.streams, "; a page that others can open (--listen) may change cameras and names");
 }
 
-LiveOutputs::LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, bool quiet)
+LiveOutputs::LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, viewer::LiveGround ground,
+                         bool quiet)
     : take_(options.take),
       handles_(std::move(handles)),
       finds_markers_(finds_markers),
@@ -45,7 +46,8 @@ LiveOutputs::LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, 
                                                                          .record = switching(handles_.recording, options.take),
                                                                          .change = changing(options, handles_),
                                                                          .rig_file = options.rig,
-                                                                         .now = [time = handles_.time] { return time->now(); }});
+                                                                         .now = [time = handles_.time] { return time->now(); },
+                                                                         .ground_area = std::move(ground)});
   fmt::print(stderr, "marey: open {} in a browser\n", viewer_->address());
 }
 
@@ -72,6 +74,7 @@ void LiveOutputs::report(const pipeline::LiveStatus& status) {
                             .steps = {},
                             .unsaved = handles_.desk->has_changed(),
                             .notes = status.troubles};
+  report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
   for (const pipeline::LiveStatus::Camera& camera : status.cameras) {
     report.cameras.push_back(camera_of(camera, report.cameras.size()));
     if (!camera.trouble.empty()) report.notes.push_back(camera.trouble);

@@ -34,8 +34,8 @@ void add_live_outputs(Command& command, LiveOutputOptions& options);
 /// The wires and the page of one live run. Their ports are taken, and their addresses told, from the beginning on.
 class LiveOutputs {
  public:
-  /// `finds_markers`: whether cameras' pictures are searched for markers.
-  LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, bool quiet);
+  /// `finds_markers`: whether cameras' pictures are searched for markers. `ground`: of people on it, what the page shows.
+  LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, viewer::LiveGround ground, bool quiet);
 
   std::vector<std::unique_ptr<Sink>> sinks();
   /// What the page says of cameras and losses.

@@ -126,6 +126,9 @@ void LiveScreen::show(const pipeline::LiveStatus& status) {
     troubles_.push_back(trouble.substr(0, trouble.find(':')));
     out_.say("marey: warning: " + trouble);
   }
+  const auto left = std::min<std::int64_t>(status.news_count - news_, std::ssize(status.news));
+  for (auto sentence = status.news.end() - left; sentence != status.news.end(); ++sentence) out_.say(*sentence);
+  news_ = status.news_count;
   out_.show(line_of(status));
 }
 

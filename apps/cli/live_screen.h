@@ -56,6 +56,7 @@ class LiveScreen {
   StatusLine out_;
   std::vector<FeedState> states_;
   std::vector<std::string> troubles_;
+  std::int64_t news_ = 0;  // how many were said
 };
 
 }  // namespace marey::cli

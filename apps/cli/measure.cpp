@@ -2,7 +2,9 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -53,6 +55,17 @@ Json ball_json(const analyse::BallMeasure& ball) {
           {"teams", teams},          {"passes", passes},      {"possession", spells}};
 }
 
+Json json_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json impossible_json(const std::vector<analyse::ImpossibleStretch>& stretches) {
+  Json all = Json::array();
+  for (const analyse::ImpossibleStretch& one : stretches)
+    all.push_back({{"begin_s", one.begin_s}, {"end_s", one.end_s}, {"one_person", one.one_person}});
+  return all;
+}
+
 void report_json(const analyse::Measurement& measured) {
   Json people = Json::array(), teams = Json::array();
   for (const analyse::PersonMeasure& person : measured.people) {
@@ -62,7 +75,10 @@ void report_json(const analyse::Measurement& measured) {
                       {"seconds", person.seconds},
                       {"distance_m", person.distance_m},
                       {"mean_mps", person.mean_mps},
-                      {"top_mps", person.top_mps},
+                      {"top_mps", json_or_null(person.top_mps)},
+                      {"top_sigma_mps", json_or_null(person.top_sigma_mps)},
+                      {"seen_s", person.seen_s},
+                      {"impossible", impossible_json(person.impossible)},
                       {"sprints", person.sprints},
                       {"accelerations", person.accelerations},
                       {"decelerations", person.decelerations},
@@ -82,13 +98,32 @@ void report_json(const analyse::Measurement& measured) {
   print(all);
 }
 
-void print_table(const analyse::Measurement& measured) {
-  fmt::print("{:>5} {:<12} {:<10} {:>11} {:>10} {:>9} {:>8}\n", "id", "label", "team", "distance, m", "mean, m/s", "top, m/s",
-             "sprints");
+/// What was not believed, so that it can be looked at.
+void print_impossible(const analyse::Measurement& measured) {
+  constexpr std::size_t most = 10;
+  std::size_t told = 0;
   for (const analyse::PersonMeasure& person : measured.people) {
-    fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9.2f} {:>8}\n", person.id, person.label, person.team, person.distance_m,
-               person.mean_mps, person.top_mps, person.sprints);
+    for (const analyse::ImpossibleStretch& one : person.impossible) {
+      if (++told > most) continue;
+      fmt::print("not counted: #{} from {:.1f} s to {:.1f} s, for nobody moves like that; {}\n", person.id, one.begin_s, one.end_s,
+                 one.one_person ? "the places are wrong" : "who is there before and after are two people");
+    }
   }
+  if (told > most) fmt::print("not counted: {} more such stretches (--json lists all)\n", told - most);
+}
+
+std::string shown_speed(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : std::string("-");
+}
+
+void print_table(const analyse::Measurement& measured) {
+  fmt::print("{:>5} {:<12} {:<10} {:>11} {:>10} {:>9} {:>6} {:>8}\n", "id", "label", "team", "distance, m", "mean, m/s", "top, m/s",
+             "±", "sprints");
+  for (const analyse::PersonMeasure& person : measured.people) {
+    fmt::print("{:>5} {:<12} {:<10} {:>11.1f} {:>10.2f} {:>9} {:>6} {:>8}\n", person.id, person.label, person.team,
+               person.distance_m, person.mean_mps, shown_speed(person.top_mps), shown_speed(person.top_sigma_mps), person.sprints);
+  }
+  print_impossible(measured);
   if (!measured.ball) return;
   for (const analyse::TeamBall& team : measured.ball->teams)
     fmt::print("ball: {} has it {:.1f} s, passes {}, {} of them to the own team\n", team.team, team.possession_s, team.passes,

@@ -1,6 +1,7 @@
 #include "people_options.h"
 
 #include "marey/core/error.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/geometry/bspline.h"
 
 #include "command_line.h"
@@ -38,7 +39,7 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
       .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,
-             "of each outline (default: as many as its silhouette needs, at most 24)")
+             "of each outline (default: as many as its silhouette needs, at most 40)")
       .needs(outline);
   command.whole("--order", flags.order, "N", 2, geometry::SplineWeights::max_order, "of the spline, degree + 1 (default: 4, cubic)")
       .needs(outline);
@@ -64,9 +65,7 @@ detect::DetectorOptions detector_options(const PeopleFlags& flags) {
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
   pipeline::PeopleInPictureOptions options;
   options.detector = detector_options(flags);
-  if (!filter.empty() && filter::filter_named(filter).index() != options.tracker.filter.index()) {
-    options.tracker.filter = filter::scaled(filter::filter_named(filter), 1 / kBodyPixels);
-  }
+  if (!filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(filter);
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;
   options.steady = flags.steady;

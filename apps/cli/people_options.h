@@ -9,9 +9,6 @@
 
 namespace marey::cli {
 
-/// The filters' own parameters are in pixels, for things that move as people do who are this high.
-constexpr double kBodyPixels = 100;
-
 /// What `marey track --targets people` understands beyond what every target needs.
 struct PeopleFlags {
   std::string background = std::string(detect::background::AdaptiveOptions::name);

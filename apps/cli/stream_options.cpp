@@ -17,7 +17,9 @@ void add_stream_options(Command& command, StreamArguments& arguments, const std:
 }
 
 stream::Streams open_streams(const StreamArguments& arguments, bool quiet, std::function<bool(bool on)> record) {
-  stream::Streams streams(arguments.streams, {.allow_control = arguments.allow_control, .record = std::move(record)});
+  stream::Streams streams(
+      arguments.streams,
+      {.allow_control = arguments.allow_control, .record = std::move(record), .unlabelled_slots = arguments.unlabelled_slots});
   if (quiet) return streams;
   for (const stream::WireReport& report : streams.reports())
     fmt::print(stderr, "marey: {} {} {}\n", report.wire, report.listens ? "at" : "to", report.where);

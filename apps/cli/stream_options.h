@@ -14,6 +14,7 @@ namespace marey::cli {
 struct StreamArguments {
   std::vector<std::string> streams;
   bool allow_control = false;
+  std::size_t unlabelled_slots = stream::kMaxUnlabelledSlots;  ///< of LSL
 };
 
 /// `--stream` and `--allow-control`, for every command whose results others may listen to; `control` is what the latter allows

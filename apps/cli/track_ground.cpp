@@ -1,24 +1,21 @@
 #include "track_ground.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
 #include "marey/core/rig_sources.h"
+#include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/track_ground.h"
 
 #include "command_line.h"
 #include "ground_summary.h"
-#include "pitch_size.h"
 #include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
-
-constexpr double kBodyMetres = 1.75;
 
 pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
   pipeline::GroundOutput output{
@@ -44,43 +41,15 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
   return output;
 }
 
-/// Hypotheses are decided later, and live nobody waits for that.
-track::ground::GroundAssociation usual_association(bool live) {
-  return live ? track::ground::GroundAssociation::gnn : track::ground::GroundAssociation::mht;
-}
-
-/// Beside decoding and looking at pictures hypotheses cost little; boxes come too fast for them.
-bool has_pictures(const Rig& rig) {
-  return std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
-}
-
-/// A rig that was calibrated over a pitch has one; any other has none unless it is told.
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
                                            const Rig& rig) {
   pipeline::PeopleOnGroundOptions options;
   options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;
-  if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
-  options.live = command.live;
   options.steady = people.steady;
   options.learn.walk = command.filter.empty();
-  if (!command.filter.empty()) options.tracker.filter = scaled(filter::filter_named(command.filter), kBodyMetres / kBodyPixels);
-  options.tracker.associate =
-      flags.associate.empty() ? usual_association(command.live) : track::ground::ground_association_named(flags.associate);
-  options.learn.association = flags.associate.empty() && !has_pictures(rig);
-  const bool over_pitch = rig.calibration && rig.calibration->method == "pitch";
-  if (!flags.area.empty()) {
-    options.area = parse_area(flags.area);
-  } else if (!flags.size.empty()) {
-    options.pitch = parse_pitch_or_rectangle(flags.size);
-    if (!options.pitch) options.area = parse_area(flags.size);
-  } else if (over_pitch) {
-    options.pitch.emplace();
-  }
-  if (flags.margin && !options.pitch && options.area.empty())
-    throw WrongUsage("--margin is counted from the edge of a pitch or an area, and {} tells of none; give its --size or --area",
-                     command.rig);
-  options.margin = flags.margin.value_or(options.margin);
+  if (!command.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(command.filter);
+  apply(flags.where, rig, command.rig, command.live, options);
   if (flags.ball && command.live)
     throw WrongUsage("{}", "--ball looks at the whole recording before it tells where the ball was; leave out --live or --ball");
   if (flags.ball) options.ball.emplace();
@@ -94,29 +63,7 @@ void add_ground_options(Command& command, GroundFlags& flags) {
   const Option ground =
       command.flag("--ground", flags.ground, "INPUT is a rig file: follow people on the ground its cameras look at");
   command.input_files("SOURCES", flags.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
-  command
-      .text("--size", flags.size,
-            "of the pitch, or of any other rectangle from the origin on, LENGTHxWIDTH in m (default: 105x68 where the rig was "
-            "calibrated over a pitch, else people count everywhere)")
-      .needs(ground)
-      .check(parse_pitch_or_rectangle);
-  command
-      .text("--area", flags.area,
-            "where people count, in place of a pitch: its corners in order, \"x,y x,y x,y\" in m, or LENGTHxWIDTH")
-      .needs(ground)
-      .check(parse_area);
-  command
-      .number("--margin", flags.margin, "m", closed(0, 1000), "round the pitch or the area where people still count (default: 2)")
-      .needs(ground);
-  command.text("--teams", flags.teams, "the teams' colours, \"white,blue\", or what they are called, \"City=white,United=blue\"")
-      .needs(ground)
-      .check(analyse::parse_teams);
-  command
-      .text("--associate", flags.associate,
-            "how observations are associated with tracks: gnn, jpda or mht (default: mht; gnn with --live, and for boxes where "
-            "cameras agree); or bramble, which looks at pictures by particles, without detections")
-      .needs(ground)
-      .check(track::ground::ground_association_named);
+  add_ground_area_options(command, ground, flags.where);
   command.flag("--ball", flags.ball, "follow the ball too: a track named \"ball\", with its height").needs(ground);
   command.text("--camera", flags.camera, "with --format mot: in whose view").needs(ground);
   command.output_file("--pitch-view", flags.pitch_view, "a film of the ground from above, with everybody's trail: FILE.mp4")
@@ -136,7 +83,7 @@ std::vector<std::string> ground_files(const GroundCommand& command, const Ground
 }
 
 void track_on_ground(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people) {
-  if (flags.associate == "bramble" && (!people.detector.empty() || !command.filter.empty() || !flags.teams.empty()))
+  if (flags.where.association == "bramble" && (!people.detector.empty() || !command.filter.empty() || !flags.where.teams.empty()))
     throw WrongUsage("--associate bramble has a likelihood and a motion of its own and sees no clothes; leave out --{}",
                      !people.detector.empty()  ? "detector"
                      : !command.filter.empty() ? "filter"

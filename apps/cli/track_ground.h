@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ground_options.h"
 #include "people_options.h"
 
 namespace marey::cli {
@@ -12,10 +13,7 @@ namespace marey::cli {
 struct GroundFlags {
   bool ground = false;
   std::vector<std::string> sources;
-  std::string size, area;
-  std::optional<double> margin;
-  std::string teams;
-  std::string associate;
+  GroundAreaFlags where;
   std::string camera;
   std::string pitch_view;
   bool ball = false;

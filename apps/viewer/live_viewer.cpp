@@ -17,6 +17,7 @@
 
 #include "access.h"
 #include "json_value.h"
+#include "live_tracks.h"
 #include "page_files.h"
 #include "page_words.h"
 #include "scene.h"
@@ -108,7 +109,8 @@ class LiveViewer::Core {
   void publish_picture(const Instant& instant, int camera, int width);
 
   void keep_for_pictures(const Instant& instant);
-  void name_tracks(const Instant& instant);
+  std::optional<Extent> extent() const;
+  void list_tracks(const Instant& instant);
 
   LiveViewOptions options_;
   std::atomic<std::uint32_t> written_ = 0;
@@ -119,7 +121,7 @@ class LiveViewer::Core {
   std::mutex mutex_;  // for what follows
   std::condition_variable changed_;
   RecordingHeader header_;
-  std::map<TrackId, TrackName> names_;
+  LiveTracks tracks_;
   Watched widths_;  // of all pages, the widest of each camera
   std::shared_ptr<const Instant> newest_;
   std::string status_ = "status {}", recording_ = "recording off", wand_;
@@ -155,14 +157,14 @@ void LiveViewer::Core::begin(const RecordingHeader& header) {
   {
     const std::lock_guard lock(mutex_);
     header_ = header;
-    names_.clear();
+    tracks_.clear();
   }
   columns_ = wire_columns(header);
   server_->publish(text_message(kLiveScene, "scene"));
 }
 
 void LiveViewer::Core::write(const Instant& instant) {
-  name_tracks(instant);
+  list_tracks(instant);
   const std::uint32_t sequence = written_++;
   if (server_->count().pages == 0) return;
   keep_for_pictures(instant);
@@ -174,11 +176,10 @@ void LiveViewer::Core::write(const Instant& instant) {
                    [this](PageId page) { return !asleep_.contains(page); });
 }
 
-void LiveViewer::Core::name_tracks(const Instant& instant) {
-  if (instant.named.empty()) return;
+void LiveViewer::Core::list_tracks(const Instant& instant) {
   {
     const std::lock_guard lock(mutex_);
-    for (const TrackName& name : instant.named) names_[name.id] = name;
+    if (!tracks_.add(instant)) return;
   }
   server_->publish(text_message(kLiveScene, "scene"));
 }
@@ -273,13 +274,25 @@ WebAnswer LiveViewer::Core::get(std::string_view target) {
   if (path != "/scene")
     return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};
   const std::lock_guard lock(mutex_);
-  LiveScene live{.names = {},
+  LiveScene live{.names = tracks_.names(),
+                 .ground = {.pitch = options_.ground_area.pitch},
+                 .extent = extent(),
                  .can_record = options_.record != nullptr,
                  .can_change = options_.change != nullptr,
                  .rig_file = options_.change ? options_.rig_file : "",
                  .job = options_.job};
-  for (const auto& [id, name] : names_) live.names.push_back(name);
   return {.status = 200, .type = "application/json", .body = bytes_of(scene_text(header_, live))};
+}
+
+/// Of the area and of everything that was measured so far.
+std::optional<Extent> LiveViewer::Core::extent() const {
+  std::optional<Extent> extent = tracks_.extent();
+  for (const Vector<3>& corner : options_.ground_area.area) {
+    if (!extent) extent = Extent{corner, corner};
+    extent->low = extent->low.cwiseMin(corner);
+    extent->high = extent->high.cwiseMax(corner);
+  }
+  return extent;
 }
 
 void LiveViewer::Core::joined(PageId page) {

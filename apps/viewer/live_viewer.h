@@ -10,6 +10,7 @@
 #include "marey/core/frame_set.h"
 #include "marey/core/mask.h"
 #include "marey/core/sink.h"
+#include "marey/geometry/pitch.h"
 
 #include "page_command.h"
 #include "web_server.h"
@@ -47,6 +48,12 @@ struct LiveReport {
   std::vector<std::string> notes;  ///< sentences to the user; the page shows them until the next report
 };
 
+/// The part of the ground that the page shows of people on it, before any of them is seen; none: where they are.
+struct LiveGround {
+  std::optional<geometry::PitchSize> pitch = {};
+  std::vector<Vector<3>> area = {};  ///< corners, m, in the coordinates of the run's positions
+};
+
 struct LiveViewOptions {
   WebPlace place;
   /// The page's record button; without it there is none. Called on the server's thread, so it only notes what is wanted. An Error
@@ -64,6 +71,7 @@ struct LiveViewOptions {
   std::function<void()> ground = {};
   /// The time now by the run's clock, so that the page can say how old is what it shows.
   std::function<Timestamp()> now = {};
+  LiveGround ground_area = {};
   double pictures_hz = 10;  ///< of each camera that somebody watches
 };
 

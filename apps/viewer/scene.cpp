@@ -125,6 +125,19 @@ bool is_mirrored(const RecordingHeader& header) {
   return header.rig->ground_from_world->topLeftCorner<2, 2>().determinant() < 0;
 }
 
+void add_extent(Json& scene, const std::optional<Extent>& extent) {
+  if (!extent) return;
+  scene["low"] = json_of(extent->low);
+  scene["high"] = json_of(extent->high);
+}
+
+/// `pitch`: its corner and size, or null.
+void add_ground(Json& scene, const RecordingHeader& header, bool y_down, const Json& pitch) {
+  if (frame_name(header.frame.kind) != std::string_view("ground")) return;
+  scene["pitch"] = pitch;
+  scene["y_down"] = y_down || is_mirrored(header);
+}
+
 }  // namespace
 
 std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground,
@@ -148,14 +161,8 @@ std::string scene_text(const RecordingHeader& header, const RecordingState& stat
   }
   scene["tracks"] = Json::array();
   for (const RecordingState::Course& course : state.tracks) scene["tracks"].push_back(json_of(course));
-  if (state.extent) {
-    scene["low"] = json_of(state.extent->low);
-    scene["high"] = json_of(state.extent->high);
-  }
-  if (frame_name(header.frame.kind) == std::string_view("ground")) {
-    scene["pitch"] = pitch_json(ground, state.extent);
-    scene["y_down"] = ground.y_down || is_mirrored(header);
-  }
+  add_extent(scene, state.extent);
+  add_ground(scene, header, ground.y_down, pitch_json(ground, state.extent));
   return compact(scene);
 }
 
@@ -166,7 +173,9 @@ std::string scene_text(const RecordingHeader& header, const LiveScene& live) {
   scene["can_change"] = live.can_change;
   if (!live.job.empty()) scene["job"] = live.job;
   if (!live.rig_file.empty()) scene["rig_file"] = live.rig_file;
-  scene["y_down"] = is_mirrored(header);
+  add_extent(scene, live.extent);
+  // No pitch is inferred from where people are so far: the view would jump.
+  add_ground(scene, header, live.ground.y_down, live.ground.pitch ? pitch_json(live.ground, live.extent) : Json());
   scene["tracks"] = Json::array();
   for (const TrackName& name : live.names) scene["tracks"].push_back(json_of(name));
   return compact(scene);

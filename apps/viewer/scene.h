@@ -28,9 +28,11 @@ struct SceneCan {
 /// are those that page/src/scene.ts declares.
 std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground, const SceneCan& can);
 
-/// A live one: tracks are named as they come.
+/// A live one: its tracks and their extent so far.
 struct LiveScene {
   std::vector<TrackName> names;
+  GroundChoice ground = {};  ///< of people on it
+  std::optional<Extent> extent = {};
   bool can_record = false;
   bool can_change = false;    ///< cameras and names
   std::string rig_file = {};  ///< that changes can be saved in; empty: there is none

@@ -73,6 +73,10 @@ class Batch(Films):
         self.assertEqual(rows[0]["name"], "day0/clip 0")
         counts = json.loads(self.marey("batch", "run", "plan.tsv", "--json").stdout)
         self.assertEqual(counts, {"done": FILMS, "done_before": 0, "failed": 0})
+        self.marey("batch", "plan", "films", "-o", "imm.tsv", "-q", "--options", "--filter imm --seen-only")
+        self.marey("batch", "run", "imm.tsv", "-q")
+        for tracks in (self.folder / "imm.tsv.results").rglob("*.csv"):
+            self.assertGreater(len(tracks.read_text().splitlines()), 15, f"{tracks}: people in the documentation's own example")
         single = self.folder / "alone.csv"
         self.marey("track", "films/day0/clip 2.mp4", "-o", single, "-q")
         self.assertEqual(self.results()["day0/clip 2.csv"], single.read_bytes())

@@ -109,6 +109,23 @@ class Edit(unittest.TestCase):
         self.assertLess(gap["expected_mm"], 1)
         self.assertEqual(len(self.places("C")), FRAMES)
 
+    def test_a_fill_without_a_gap_is_no_error_and_says_so(self):
+        marey("edit", self.take, "fill C")
+        script = self.folder / "edits.txt"
+        script.write_text("fill all\nrename A knee\nfill all\n")
+        run = marey("edit", self.take, "--script", script)
+        self.assertEqual(run.stderr.count("there is no gap to fill; nothing was filled"), 2, run.stderr)
+        self.assertEqual(len(self.places("knee")), FRAMES)
+        before = self.take.read_bytes()
+        run = marey("edit", self.take, "fill all")
+        self.assertIn("\"fill all\": there is no gap to fill; nothing was filled\n", run.stderr)
+        self.assertEqual(self.take.read_bytes(), before)
+        self.assertEqual(json.loads(marey("edit", self.take, "fill all", "--json").stdout)["edits"], [])
+        marey("edit", self.take, "delete knee 80:95")
+        run = marey("edit", self.take, "fill all longest=0.1")
+        self.assertIn("1 gap stays open: 1 longer than 0.1 s (longest=); nothing was filled\n", run.stderr)
+        self.assertIn("\"fill nobody\": there is no track", marey("edit", self.take, "fill nobody", code=1).stderr)
+
     def test_what_cannot_be_is_a_sentence(self):
         for arguments, sentence in (((self.folder / "walk.csv", "rename A B"), "no take"), ((self.folder / "none.marey",), "no such file"),
                                     ((self.take, "jump A"), "\"jump\" is no edit")):

@@ -64,10 +64,19 @@ class Files(unittest.TestCase):
     def test_files_that_are_cut_off(self):
         for name in ("a.c3d", "a.marey"):
             self.run_marey("convert", self.csv, name)
+            if name == "a.c3d":
+                self.run_marey("convert", name, "whole.csv")
             data = (self.folder / name).read_bytes()
             for share in (0.001, 0.3, 0.9):
                 (self.folder / name).write_bytes(data[: int(len(data) * share)])
-                self.assertIn(name, self.refused("convert", name, "out.csv"))
+                if (name, share) != ("a.c3d", 0.9):
+                    self.assertIn(name, self.refused("convert", name, "out.csv"))
+                    continue
+                said = self.run_marey("convert", name, "part.csv").stderr  # frames that are there are read
+                self.assertIn("a.c3d: is cut off: it names 50 frames and holds ", said)
+                rows = (self.folder / "part.csv").read_text().splitlines()
+                self.assertEqual(rows, (self.folder / "whole.csv").read_text().splitlines()[: len(rows)])
+                self.assertGreater(len(rows), 30)
 
     def test_frames_beyond_what_is_there(self):
         self.run_marey("convert", self.csv, "a.c3d")

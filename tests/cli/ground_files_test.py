@@ -6,6 +6,7 @@ Usage: ground_files_test.py MAREY [unittest options]. Nothing else is needed.
 
 import csv
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -36,13 +37,17 @@ class GroundFiles(unittest.TestCase):
         return said
 
     def write_run(self, name, rate, seconds=20, shift=0.0, columns="frame,time,id,team,x,y"):
-        """One who runs at 8 m/s to and fro, one who walks at 1 m/s."""
+        """One who runs at 8 m/s to and fro, turning as fast as a person can, one who walks at 1 m/s."""
+        ways, self.run_length = [0.0], 0.0
+        for k in range(round(seconds * 1000) + 1):
+            speed = 8 * max(-1.0, min(1.0, 1.5 * math.sin(2 * math.pi * k / 1000 / 10)))
+            ways.append(ways[-1] + speed / 1000)
+            self.run_length += abs(speed) / 1000
         with open(self.folder / name, "w") as out:
             out.write(columns + "\n")
             for i in range(round(seconds * rate) + 1):
                 time = i / rate
-                way = (8 * time) % 80
-                places = {1: (10 + min(way, 80 - way), 20 + shift), 2: (50, 20 + time + shift)}
+                places = {1: (10 + ways[round(1000 * time)], 20 + shift), 2: (50, 20 + time + shift)}
                 for person, (x, y) in places.items():
                     row = {"frame": i, "time": f"{time:.4f}", "id": person, "team": "white" if person == 1 else "blue", "x": f"{x:.3f}",
                            "y": f"{y:.3f}"}
@@ -54,9 +59,28 @@ class GroundFiles(unittest.TestCase):
             self.marey("measure", "run.csv", "-o", "summary.csv", "-q")
             rows = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))
             self.assertAlmostEqual(float(rows[1]["distance_m"]), 20, delta=0.2, msg=f"{rate} Hz")
-            self.assertAlmostEqual(float(rows[0]["distance_m"]), 160, delta=8, msg=f"{rate} Hz")  # turning at once is smoothed
+            self.assertAlmostEqual(float(rows[0]["distance_m"]), self.run_length, delta=8, msg=f"{rate} Hz")
             self.assertAlmostEqual(float(rows[0]["top_mps"]), 8, delta=0.9, msg=f"{rate} Hz")
             self.assertGreaterEqual(int(rows[0]["sprints"]), 2, f"{rate} Hz")
+
+    def test_what_nobody_can_do_is_told_and_not_counted(self):
+        with open(self.folder / "slid.csv", "w") as out:
+            out.write("frame,time,id,x,y,state\n")
+            for i in range(251):  # the first goes over to whoever walks beside him; the second is predicted to dash away and back
+                time = i / 25
+                out.write(f"{i},{time},1,{10 + 1.5 * time:.3f},{20 + 3 * min(1, max(0, (time - 5) * 3)):.3f},observed\n")
+                dash = min(1, max(0, (time - 5) / 1.6))
+                state = "predicted" if 0 < dash < 1 else "observed"
+                out.write(f"{i},{time},2,{10 + 1.5 * time:.3f},{50 + 5 * (1 - math.cos(2 * math.pi * dash)):.3f},{state}\n")
+        told = self.marey("measure", "slid.csv", "-o", "slid_figures.csv").stdout
+        self.assertRegex(told, r"not counted: #1 from 4\.\d s to 5\.\d s, .*two people")
+        self.assertNotIn("not counted: #2", told)
+        rows = list(csv.DictReader((self.folder / "slid_figures.csv").read_text().splitlines()))
+        self.assertEqual([row["impossible"] for row in rows], ["1", "0"])
+        for row in rows:
+            self.assertLess(float(row["top_mps"]), 4, row["id"])
+            self.assertLess(float(row["seen_s"]), 9.7, row["id"])
+            self.assertGreater(float(row["top_sigma_mps"]), 0, row["id"])
 
     def test_another_tools_file_without_teams(self):
         self.write_run("run.csv", 25, columns="id,frame,x,y,time")

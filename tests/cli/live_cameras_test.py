@@ -177,6 +177,15 @@ class LiveCameras(unittest.TestCase):
         (self.folder / "file_pictures").write_text("a file")
         self.assertIn("file_pictures", self.marey("live", room, "--for", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
 
+    def test_pictures_drawn_beforehand_take_little_memory(self):
+        room = "sim://room?cameras=8&rate=240&markers=8&size=1280x1024&drawn=2"  # 5 GB of pictures
+        with open(self.folder / "said.txt", "w+") as said:
+            run = subprocess.Popen([MAREY, "live", room, "--for", "0.5", "-q"], cwd=self.folder, stderr=said)
+            _, status, used = os.wait4(run.pid, 0)
+            run.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(run.returncode, 0, (self.folder / "said.txt").read_text())
+        self.assertLess(used.ru_maxrss, 500_000, "kB")
+
     def test_what_is_played_is_not_recorded_over(self):
         self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--for", 1, "-o", "walk.marey", "--record", "raw")
         pictures = self.folder / "walk_pictures"
@@ -242,6 +251,23 @@ class LiveCameras(unittest.TestCase):
         self.assertIn("run marey live", self.marey("reconstruct", "room/live.toml", "-o", "x.marey", code=1).stderr)
         wrong = self.marey("live", "room/live.toml", "cam2=sim://room?cameras=3&rate=30&size=640x480&camera=1", "--for", 1, code=1)
         self.assertIn("cam2", wrong.stderr)
+
+    def test_a_rate_that_is_not_the_cameras_own_is_warned_of(self):
+        self.marey("simulate", "room", "-o", "room", "--cameras", 2, "--frames", 5, "-q")
+        rig = (self.folder / "room/rig.toml").read_text()
+        for number in (1, 2):
+            source = f'name = "cam{number}"\nsource = "sim://room?cameras=2&rate=20&markers=5&blobs&size=1280x1024&camera={number}"'
+            rig = rig.replace(f'name = "cam{number}"', source)
+        for rate, warned in ((40, True), (20, False)):
+            lines = [line if not line.startswith("rate") else f"rate = {rate}" for line in rig.splitlines()]
+            (self.folder / "room/live.toml").write_text("\n".join(lines))
+            said = self.marey("live", "room/live.toml", "--for", 1).stderr
+            for number in (1, 2):
+                words = f'camera "cam{number}": the rig says rate = {rate}, the camera 20 frames per second'
+                (self.assertIn if warned else self.assertNotIn)(words, said)
+            if warned:
+                self.assertIn("set rate = 20 in the rig, or remove it", said)
+                self.assertLess(said.index("the rig says rate"), said.index("instants in"), "at the beginning, not after hours")
 
     def test_ctrl_c_ends_it_whole(self):
         for number in (signal.SIGINT, signal.SIGTERM):

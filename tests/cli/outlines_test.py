@@ -24,6 +24,43 @@ def commands_of(page):
     return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
 
 
+def basis(order, t):
+    """The values at t of the uniform B-spline of this order: Cox and de Boor's recursion. It is symmetric round 0."""
+    if order == 1:
+        return 1.0 if -0.5 <= t < 0.5 else 0.0
+    half = order / 2
+    return ((half + t) * basis(order - 1, t + 0.5) + (half - t) * basis(order - 1, t - 0.5)) / (order - 1)
+
+
+def curve_of(outline, per_span=4):
+    """Points of the closed curve."""
+    points, order = outline["control_points"], outline["order"]
+    reach = order // 2 + 1
+    curve = []
+    for k in range(per_span * len(points)):
+        u = k / per_span
+        weights = [(i, basis(order, u - i)) for i in range(int(u) - reach, int(u) + reach + 1)]
+        curve.append(tuple(sum(weight * points[i % len(points)][axis] for i, weight in weights) for axis in (0, 1)))
+    return curve
+
+
+def crosses_itself(curve):
+    """Whether two edges of the closed polygon cross that do not follow each other."""
+
+    def side(a, b, p):
+        return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+    edges = list(zip(curve, curve[1:] + curve[:1]))
+    for i, (a, b) in enumerate(edges):
+        left, right = min(a[0], b[0]), max(a[0], b[0])
+        for c, d in edges[i + 2 : len(edges) - (i == 0)]:
+            if min(c[0], d[0]) > right or max(c[0], d[0]) < left:
+                continue
+            if side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0:
+                return True
+    return False
+
+
 class Outlines(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -51,6 +88,12 @@ class Outlines(unittest.TestCase):
                     self.assertGreaterEqual(min(x, y), 0)
                 for name_of_pair in ("centre", "velocity", "centre_deviation", "velocity_deviation"):
                     self.assertEqual(len(outline[name_of_pair]), 2)
+
+    def test_no_curve_crosses_itself(self):
+        for name in ("match.jsonl", "live.jsonl", "quadratic.jsonl"):
+            outlines = [row["outline"] for row in self.rows(name) if "outline" in row]
+            crossed = [outline for outline in outlines[::3] if crosses_itself(curve_of(outline))]
+            self.assertEqual(crossed, [], name)
 
     def test_an_outline_belongs_to_its_box(self):
         near = count = 0

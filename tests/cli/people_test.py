@@ -3,7 +3,9 @@
 Usage: people_test.py MAREY [unittest options].
 """
 
+import csv
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -67,6 +69,40 @@ class People(unittest.TestCase):
         read = [(self.folder / name / "silhouettes.jsonl").read_bytes() for name in "abc"]
         self.assertEqual(read[0], read[1])
         self.assertNotEqual(read[0], read[2])
+
+    def test_every_filter_finds_people_at_a_low_rate(self):
+        self.run_marey("simulate", "people", "-o", "film", "--size", "320", "240", "--height", "40", "--frames", "36", "--rate", "6", "--people", "4",
+                       "--situation", "apart", "-q")
+        there = {line.split(",")[1] for line in (self.folder / "film/truth.txt").read_text().splitlines()}
+        self.assertGreaterEqual(len(there), 2)
+        for name in ("imm", "ekf", "ukf", "condensation", "condensation-velocity", "kalman-acceleration", "kalman-paper", "alpha-beta"):
+            for live in ([], ["--live"]):
+                self.run_marey("track", "film/video.mp4", "--filter", name, "--seen-only", "-o", "t.txt", "-q", *live)
+                people = {line.split(",")[1] for line in (self.folder / "t.txt").read_text().splitlines()}
+                self.assertGreaterEqual(len(people), len(there), f"{name} {live}")
+
+    def test_a_run_that_finds_nobody_says_why(self):
+        self.run_marey("simulate", "people", "-o", "film", *SMALL, "--people", "0")
+        self.assertIn("nobody was found: nothing moved", self.run_marey("track", "film/video.mp4", "-o", "t.txt").stderr)
+        (self.folder / "boxes.txt").write_text("1,-1,10,10,20,40,1\n2,-1,200,10,20,40,1\n9,-1,90,80,20,40,1\n")
+        said = self.run_marey("track", "--detections", "boxes.txt", "--rate", "2", "-o", "t.txt").stderr
+        self.assertIn("nowhere for long enough to be believed", said)
+        self.assertIn("2 frames a second", said)
+
+    def test_who_stands_from_the_beginning_is_on_the_ground_from_the_first_frame(self):
+        self.run_marey("simulate", "people", "-o", "film", "--size", "384", "288", "--height", "44", "--frames", "200", "--rate", "10",
+                       "--people", "6", "--situation", "standing", "--seed", "3", "-q")
+        told = json.loads(self.run_marey("track", "film/rig.toml", "--ground", "-o", "g.csv", "--json", "-q").stdout)
+        self.assertTrue(any("looked at again" in note for note in told["notes"]), told["notes"])
+        with open(self.folder / "film/positions.csv") as truth, open(self.folder / "g.csv") as tracks:
+            places = {(int(row["frame"]), int(row["id"])): (float(row["x"]), float(row["y"])) for row in csv.DictReader(truth)}
+            seen = {}
+            for row in csv.DictReader(tracks):
+                seen.setdefault(int(row["frame"]), []).append((float(row["x"]), float(row["y"])))
+        found = {person: sum(any(math.dist(place, places[frame, person]) < 1 for place in seen.get(frame, [])) for frame in range(80))
+                 for person in (1, 2, 3)}
+        print(f"standing people on the ground, frames of 80 in which they are found: {found}")
+        self.assertGreaterEqual(sum(count > 70 for count in found.values()), 2)
 
     def test_masks_show_the_people(self):
         self.run_marey("simulate", "people", "-o", "film", *SMALL)

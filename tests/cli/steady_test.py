@@ -43,6 +43,7 @@ class Steady(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_steady_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         film = ("--situation", "crowd", "--seed", "5", "--size", "640", "360", "--height", "60", "--frames", "150", "-q")
+        cls.reports = {}
         cls.run_marey("simulate", "people", "-o", "still", *film)
         cls.run_marey("simulate", "people", "-o", "shaken", "--shake", "6", *film)
 
@@ -52,9 +53,21 @@ class Steady(unittest.TestCase):
         assert done.returncode == code, f"{arguments}\n{done.returncode}\n{done.stdout}\n{done.stderr}"
         return done
 
+    def tracked(self, film, *options):
+        """The report of tracking the film, whose tracks are in FILM/tracks_OPTIONS.txt; computed once."""
+        key = (film, *options)
+        if key not in self.reports:
+            self.reports[key] = json.loads(self.run_marey("track", f"{film}/video.mp4", "-o", self.tracks(*key), "--json", *options).stdout)
+        return self.reports[key]
+
+    @staticmethod
+    def tracks(film, *options):
+        return f"{film}/tracks{''.join(options)}.txt"
+
     def idf1(self, film, *options):
-        self.run_marey("track", f"{film}/video.mp4", "-o", f"{film}/tracks.txt", "-q", *options)
-        return json.loads(self.run_marey("evaluate", "--truth", f"{film}/truth.txt", "--tracks", f"{film}/tracks.txt", "--json").stdout)["idf1"]
+        self.tracked(film, *options)
+        score = self.run_marey("evaluate", "--truth", f"{film}/truth.txt", "--tracks", self.tracks(film, *options), "--json")
+        return json.loads(score.stdout)["idf1"]
 
     def test_people_before_a_shaking_camera_are_followed_as_before_one_that_stands(self):
         self.assertEqual((self.folder / "still/truth.txt").read_text(), (self.folder / "shaken/truth.txt").read_text())
@@ -64,19 +77,17 @@ class Steady(unittest.TestCase):
         self.assertLess(still - steadied, 0.1)
 
     def test_it_is_said_how_far_the_camera_moved_and_that_steady_would_help(self):
-        done = self.run_marey("track", "shaken/video.mp4", "-o", "said.txt", "--json")
-        self.assertIn("--steady", "".join(json.loads(done.stdout)["warnings"]))
-        report = json.loads(self.run_marey("track", "shaken/video.mp4", "-o", "said.txt", "--steady", "--json").stdout)
+        self.assertIn("--steady", "".join(self.tracked("shaken")["warnings"]))
+        report = self.tracked("shaken", "--steady")
         self.assertEqual(report["warnings"], [])
         self.assertRegex(report["notes"][0], r"steadied 150 of 150 pictures: the camera moved by \d+\.\d px")
-        report = json.loads(self.run_marey("track", "still/video.mp4", "-o", "said.txt", "--json").stdout)
-        self.assertEqual(report["warnings"], [])
+        self.assertEqual(self.tracked("still")["warnings"], [])
 
     def test_the_same_film_gives_the_same_tracks_and_an_overlay(self):
-        for name in ("a", "b"):
-            self.run_marey("track", "shaken/video.mp4", "--steady", "-o", f"{name}.txt", "--overlay", f"{name}.mp4", "-q")
-        self.assertEqual((self.folder / "a.txt").read_bytes(), (self.folder / "b.txt").read_bytes())
-        self.assertTrue((self.folder / "a.mp4").stat().st_size)
+        self.tracked("shaken", "--steady")
+        self.run_marey("track", "shaken/video.mp4", "--steady", "-o", "again.txt", "--overlay", "again.mp4", "-q")
+        self.assertEqual((self.folder / "again.txt").read_bytes(), (self.folder / self.tracks("shaken", "--steady")).read_bytes())
+        self.assertTrue((self.folder / "again.mp4").stat().st_size)
 
     def test_on_the_ground_and_live(self):
         for name, film, *options in (("still", "still"), ("without", "shaken"), ("with", "shaken", "--steady")):

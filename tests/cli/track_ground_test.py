@@ -15,7 +15,7 @@ import tempfile
 import unittest
 
 MAREY = ""
-HEADER = "frame,time,id,label,team,x,y,vx,vy,state,cameras".split(",")
+HEADER = "frame,time,id,label,team,x,y,vx,vy,state,cameras,xx,xy,yy".split(",")
 
 
 def rows_of(path):

@@ -248,6 +248,39 @@ def pylsl():
     print(f"pylsl: {len(samples)} samples of {len(labels)} channels")
 
 
+def unlabelled():
+    """Live markers without labels: LSL sends them by slot, and the script for Qualisys clients in docs/streams.md prints them."""
+    import pylsl
+    import qtm_rt  # noqa: F401: the script imports it
+
+    streams = ["--stream", "lsl", "--stream", "qtm"]
+    live = subprocess.Popen([MAREY, "live", "sim://room?cameras=4&rate=30&markers=8&blobs", "--most-markers", "12", "--for", "30", *streams],
+                            stderr=subprocess.PIPE, text=True)
+    try:
+        said = [live.stderr.readline() for _ in range(3)]
+        assert any("12 slots, each with a track's ID" in line for line in said), said
+        found = pylsl.resolve_byprop("type", "MoCap", timeout=10)
+        assert found, "no outlet of type MoCap was found"
+        inlet = pylsl.StreamInlet(found[0])
+        info = inlet.info(timeout=10)
+        channel = info.desc().child("channels").child("channel")
+        assert (info.channel_count(), channel.child_value("label"), channel.child_value("type")) == (12 * 4, "slot1_ID", "TrackID")
+        tracks = set()
+        for _ in range(60):
+            values = inlet.pull_sample(timeout=10)[0]
+            slots = [values[i:i + 4] for i in range(0, len(values), 4)]
+            tracks |= {slot[0] for slot in slots if not math.isnan(slot[0])}
+            assert all(math.isnan(slot[0]) == math.isnan(slot[3]) for slot in slots), slots
+        assert len(tracks) >= 4, tracks
+        script = re.search(r"```python\n(import asyncio, qtm_rt.*?)```", (HERE.parents[1] / "docs/streams.md").read_text(), re.S)[1]
+        told = subprocess.run([sys.executable, "-c", script.replace("sleep(5)", "sleep(1)")], capture_output=True, text=True, timeout=60)
+        assert "RT3DMarkerPositionNoLabel" in told.stdout and "Error" not in told.stderr, (told.stdout[-500:], told.stderr[-2000:])
+    finally:
+        live.kill()
+        live.communicate()
+    print(f"unlabelled: {len(tracks)} tracks in 12 slots")
+
+
 class FoxgloveClient:
     """As little of RFC 6455 as it takes."""
 

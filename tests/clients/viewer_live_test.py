@@ -1,6 +1,6 @@
-"""The page of live runs in Chromium: cameras are adjusted and masked, markers named, a wand is waved.
+"""The page of live runs in Chromium: every kind of target is listed, named and fitted, cameras are adjusted and masked, a wand is waved.
 
-    viewer_live_test.py MAREY [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
+    viewer_live_test.py MAREY LIVE_SCENE [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
 
 Screenshots are left in FOLDER.
 """
@@ -89,7 +89,37 @@ def wave(marey, folder, scenario):
     print("the wand:", json.loads(told)["grade"])
 
 
-def main(marey, folder):
+def show_kinds(marey, live_scene, folder):
+    """A page for each kind of target."""
+    def run(*arguments):
+        subprocess.run([marey, *arguments, "-q"], cwd=folder, check=True)
+
+    run("simulate", "people", "--frames", "100", "--size", "320", "180", "--height", "40", "-o", "street")
+    run("simulate", "match", "--cameras", "2", "--stand", "football", "--seconds", "1", "--size", "640", "360", "--render", "-o", "match")
+    run("simulate", "room", "--motion", "walk", "--markers", "50", "--frames", "600", "-o", "walk")
+    run("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--labels", "walk/labels.csv", "-o", "walk.marey")
+    run("body", "define", "walk/truth.csv", "--markers", "head1,head2,head3", "--name", "head", "-o", "head.toml")
+    run("body", "follow", "walk.marey", "head.toml", "-o", "bodies.marey")
+    match = ["match/rig.toml", "left=play:match/left.mp4?loop", "right=play:match/right.mp4?loop", "--ground"]
+    for scenario, *arguments in (
+        ("image_markers", "sim://room?cameras=1&rate=20&markers=8&size=320x240&blobs"),
+        ("image_people", "play:street/video.mp4?loop", "--targets", "people"),
+        ("space_markers", "sim://room?cameras=4&rate=30&markers=8&blobs"),
+        ("space_skeleton", "play:walk.marey?loop", "--skeleton", "walk/skeleton.toml"),
+        ("ground_pitch", *match, "--size", "105x68"),
+        ("ground_anywhere", *match),
+    ):
+        shown, address = begun([marey, "live", *arguments, "--view", "--port", "0", "--for", "280"], folder)
+        try:
+            look("viewer_kinds.mjs", folder, scenario, address)
+        finally:
+            shown.send_signal(signal.SIGINT)
+            shown.communicate(timeout=60)
+    viewer_test.look_at([live_scene, "bodies.marey", "60"], folder, "space_bodies", "viewer_kinds.mjs")
+
+
+def main(marey, live_scene, folder):
+    show_kinds(marey, live_scene, folder)
     change_cameras(marey, folder)
     name_markers(marey, folder)
     wave(marey, folder, "wand")
@@ -99,6 +129,6 @@ def main(marey, folder):
 if __name__ == "__main__":
     viewer_test.skip_where_absent()
     with tempfile.TemporaryDirectory() as temporary:
-        chosen = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
+        chosen = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else temporary)
         chosen.mkdir(exist_ok=True)
-        main(pathlib.Path(sys.argv[1]).resolve(), chosen.resolve())
+        main(*(pathlib.Path(path).resolve() for path in sys.argv[1:3]), chosen.resolve())

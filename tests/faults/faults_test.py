@@ -105,7 +105,15 @@ class Faults:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_faults_"))
         self.found, self.counts = [], collections.Counter()
         self.make_inputs()
-        self.commands = [self.reference(*each) for each in commands if each[0] != "gait" or (self.folder / "walk.c3d").exists()]
+        self.commands = [self.reference(*each) for each in self.runnable(commands)]
+
+    def runnable(self, commands):
+        """The commands without those whose input is missing, with a message for each."""
+        missing = [name for name in GAIT if not (self.folder / name).exists()]
+        if missing and any(command[0] == "gait" for command in commands):
+            print(f"gait is skipped: {', '.join(GAIT[name] for name in missing)} not found; MAREY_DATA sets the folder of the test data")
+            return [command for command in commands if command[0] != "gait"]
+        return list(commands)
 
     def make_inputs(self):
         def write(name, text):

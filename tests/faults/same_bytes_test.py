@@ -13,7 +13,7 @@ import faults_test
 def main():
     faults = faults_test.Faults(os.path.abspath(sys.argv[1]), None, seed=1, commands=())
     differ = []
-    commands = [command for command in faults_test.COMMANDS if command[0] != "completion"]  # computes nothing, and takes no --threads
+    commands = [command for command in faults.runnable(faults_test.COMMANDS) if command[0] != "completion"]  # computes nothing, and takes no --threads
     for name, arguments, outputs in commands:
         first = None
         for threads in ("1", "1", "2", "4"):

@@ -1,5 +1,5 @@
-"""The documentation is a site without a link that leads nowhere, the gallery's commands make its pictures, and every command line in the new pages is one
-that the program takes.
+"""The documentation is a site without a link that leads nowhere, its images are in the checkout, and every command line in the new pages is one that the
+program takes. (`script/test --part gallery` makes the gallery's images again by its commands.)
 
 Usage: docs_test.py ROOT MAREY.
 """
@@ -41,7 +41,7 @@ class Docs(unittest.TestCase):
         self.assertLessEqual({"gallery.html", "not_done.html", "examples/match.html", "examples/street_video.html", "examples/wand_to_c3d.html"}, found)
         shown = re.findall(r'src="(gallery/[^"]*)"', (site / "gallery.html").read_text())
         self.assertGreaterEqual(len(shown), 8)
-        for picture in shown:  # script/gallery made them, and looked at them
+        for picture in shown:
             self.assertIsNone(gallery().shows_nothing(site / picture), picture)
 
     def test_a_picture_that_shows_nothing(self):
@@ -65,7 +65,7 @@ class Docs(unittest.TestCase):
     def test_links_within_the_checkout(self):
         for page in [ROOT / "README.md", ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]:
             for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text()):
-                if "://" not in target and not target.startswith("gallery/"):  # those script/docs makes
+                if "://" not in target:
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target} is not there")
 
     def test_options_are_known(self):

@@ -45,7 +45,9 @@ void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& pe
   const auto fast = [&](std::size_t i) { return path.velocity[i].norm(); };
   for (std::size_t i = 0; i < path.place.size(); ++i) {
     const double speed = fast(i);
-    person.top_mps = std::max(person.top_mps, speed);
+    // The fastest of which that is sure: else the least certain of many speeds would be the greatest.
+    if (path.seen[i] && (!person.top_mps || speed - path.speed_sigma[i] > *person.top_mps - *person.top_sigma_mps))
+      person.top_mps = speed, person.top_sigma_mps = path.speed_sigma[i];
     person.average_place += path.place[i] * path.step_s;
     const int column = static_cast<int>(std::floor(path.place[i].x() / options.cell_m));
     const int row = static_cast<int>(std::floor(path.place[i].y() / options.cell_m));
@@ -55,22 +57,24 @@ void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& pe
     const double step = (path.place[i] - path.place[i - 1]).norm();
     const auto zone =
         std::upper_bound(options.zones.begin(), options.zones.end(), (speed + fast(i - 1)) / 2) - options.zones.begin();
+    person.distance_m += step;
+    if (!path.seen[i]) continue;
+    person.seen_s += path.step_s;
     person.zone_s[static_cast<std::size_t>(zone)] += path.step_s;
     person.zone_m[static_cast<std::size_t>(zone)] += step;
-    person.distance_m += step;
   }
   person.seconds += path.seconds();
   const std::size_t count = path.place.size();
   const auto time = [&](std::size_t i) { return path.start_s + path.step_s * static_cast<double>(i); };
   for (const auto& [first, end] :
-       bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return fast(i) >= options.sprint_mps; }))
+       bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return path.seen[i] && fast(i) >= options.sprint_mps; }))
     person.sprint_times.emplace_back(time(first), time(end - 1));
   person.sprints = static_cast<int>(person.sprint_times.size());
   const double effort = options.effort_s / path.step_s;
   const auto change = [&](std::size_t i) { return along(path.acceleration[i], path.velocity[i]); };
   const auto count_of = [&](const auto& fast_enough) { return static_cast<int>(bouts(count, effort, fast_enough).size()); };
-  person.accelerations += count_of([&](std::size_t i) { return change(i) >= options.effort_mps2; });
-  person.decelerations += count_of([&](std::size_t i) { return change(i) <= -options.effort_mps2; });
+  person.accelerations += count_of([&](std::size_t i) { return path.seen[i] && change(i) >= options.effort_mps2; });
+  person.decelerations += count_of([&](std::size_t i) { return path.seen[i] && change(i) <= -options.effort_mps2; });
 }
 
 /// Area of the convex hull (Andrew's monotone chain), m².
@@ -154,13 +158,14 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
     person.zone_s.assign(options.zones.size() + 1, 0);
     person.zone_m = person.zone_s;
     person.heat = empty_map(options);
-    person.paths = paths_of(recording, track, options.path);
+    PersonPaths found = paths_of(recording, track, options.path);
+    person.paths = std::move(found.paths), person.impossible = std::move(found.impossible);
     double weight = 0;
     for (const Path& path : person.paths) {
       add_path(path, options, person);
       weight += path.step_s * static_cast<double>(path.place.size());
     }
-    if (person.paths.empty()) continue;
+    if (person.paths.empty() || !found.measured) continue;
     person.average_place /= weight;
     person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
     result.people.push_back(std::move(person));

@@ -37,9 +37,11 @@ struct PersonMeasure {
   int id = 0;
   std::string label, team;
   double seconds = 0;  ///< on some path
+  double seen_s = 0;   ///< of them, those in which measured places tell the speed: all below that is of speed is of these alone
   double distance_m = 0;
   double mean_mps = 0;
-  double top_mps = 0;
+  std::optional<double> top_mps,
+      top_sigma_mps;  ///< the fastest of which that is sure, and its standard deviation; none seen: nothing
   int sprints = 0;
   std::vector<std::pair<double, double>> sprint_times;  ///< s: when each began and ended
   int accelerations = 0, decelerations = 0;
@@ -47,6 +49,7 @@ struct PersonMeasure {
   Vector<2> average_place = Vector<2>::Zero();
   HeatMap heat;
   std::vector<Path> paths;
+  std::vector<ImpossibleStretch> impossible;  ///< what nobody can have done; none of it counts
 };
 
 /// How a team stood, averaged over the instants at which at least three of its people are known.
@@ -61,7 +64,7 @@ struct TeamMeasure {
 };
 
 struct Measurement {
-  std::vector<PersonMeasure> people;  ///< by id; those without two places are left out
+  std::vector<PersonMeasure> people;  ///< by id; those without two places, or of whom nothing was measured, are left out
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
   std::optional<BallMeasure> ball;    ///< where the recording has one, which is none of the people
 };

@@ -3,22 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include <Eigen/LU>
 
 #include "marey/core/error.h"
+#include "marey/filter/human_motion.h"
 #include "marey/geometry/butterworth.h"
 #include "marey/geometry/decompositions.h"
 
 namespace marey::analyse {
 namespace {
 
+constexpr double kTold = 0.2;  // s before and after: measured places within tell a speed; smoothing reaches about so far
+
+constexpr double kSureSpeed = 0.75;  // m/s, standard deviation: half of the narrowest of the usual zones. What is less sure is none
+
 struct Row {
   double time = 0;  // s
   Vector<2> place;
+  Matrix<2> covariance;  // m²
   std::optional<Vector<2>> velocity = {};
+  bool measured = true;
 };
+
+bool is_measured(const Row& nearest, double time, double step_s) {
+  return nearest.measured && std::abs(nearest.time - time) <= step_s;
+}
 
 /// The places of one piece at an even rate: the median of its steps. Velocities likewise, where all are known.
 Path evenly(std::span<const Row> piece) {
@@ -40,8 +53,25 @@ Path evenly(std::span<const Row> piece) {
     const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
     path.place.emplace_back(a.place + share * (b.place - a.place));
     if (moving) path.velocity.emplace_back(*a.velocity + share * (*b.velocity - *a.velocity));
+    path.seen.push_back(is_measured(share < 0.5 ? a : b, time, path.step_s));
   }
   return path;
+}
+
+/// Half of the instants round each, at least, are measured: one missed look does not take a speed away, and one look in a gap gives
+/// none. At its ends a path is not seen from both sides: `ends` tells whether they are known all the same.
+std::vector<bool> told_by_measured(const std::vector<bool>& measured, double step_s, bool ends) {
+  const auto reach = static_cast<std::ptrdiff_t>(std::floor(kTold / step_s + 1e-9));
+  const auto count = std::ssize(measured);
+  std::vector<std::ptrdiff_t> until(measured.size() + 1, 0);
+  for (std::size_t i = 0; i < measured.size(); ++i) until[i + 1] = until[i] + (measured[i] ? 1 : 0);
+  std::vector<bool> told(measured.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const auto from = std::max<std::ptrdiff_t>(0, i - reach), to = std::min(count, i + reach + 1);
+    const auto seen = until[static_cast<std::size_t>(to)] - until[static_cast<std::size_t>(from)];
+    told[static_cast<std::size_t>(i)] = 2 * seen >= to - from && (ends || to - from == 2 * reach + 1);
+  }
+  return told;
 }
 
 /// Central differences; one-sided at the ends.
@@ -155,21 +185,115 @@ void smooth(Path& path, const PathOptions& options) {
   }
 }
 
-/// Pieces without a long gap, each with what it has no smoother of its own for: differences.
-std::vector<Path> pieces_of(std::span<const Row> rows, const PathOptions& options, bool smoothed) {
+/// By which a speed's deviation is a place's, 1/s. What is left after smoothing are errors slower than the cut-off; of errors whose
+/// power is even up to there the derivative has 2π/√3 times the cut-off. Where nothing is smoothed, differences have it all.
+double speed_per_place(const PathOptions& options, double step_s, bool smoothed) {
+  if (!smoothed && options.method == PathOptions::Method::raw) return 1 / (std::numbers::sqrt2 * step_s);
+  const double cutoff = !smoothed && options.method == PathOptions::Method::lowpass ? options.cutoff_hz : PathOptions().cutoff_hz;
+  return 2 * std::numbers::pi * cutoff / std::numbers::sqrt3;
+}
+
+/// Of each instant, by the covariance of the row that is nearest, along the way.
+std::vector<double> speed_sigmas(const Path& path, std::span<const Row> piece, double per_place) {
+  std::vector<double> sigmas;
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < path.place.size(); ++i) {
+    const double time = path.start_s + path.step_s * static_cast<double>(i);
+    while (near + 1 < piece.size() && std::abs(piece[near + 1].time - time) <= std::abs(piece[near].time - time)) ++near;
+    const Matrix<2>& P = piece[near].covariance;
+    const double speed = path.velocity[i].norm();
+    const Vector<2> ahead = path.velocity[i] / speed;
+    sigmas.push_back(per_place * std::sqrt(speed > 1e-9 ? ahead.dot(P * ahead) : P.trace() / 2));
+  }
+  return sigmas;
+}
+
+/// A piece without a gap, with what it has no smoother of its own for: differences.
+Path path_of(std::span<const Row> piece, const PathOptions& options, bool smoothed) {
+  Path path = evenly(piece);
+  if (!smoothed) smooth(path, options);
+  if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
+  if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
+  path.seen = told_by_measured(path.seen, path.step_s, smoothed);
+  path.speed_sigma = speed_sigmas(path, piece, speed_per_place(options, path.step_s, smoothed));
+  const bool raw = !smoothed && options.method == PathOptions::Method::raw;  // asked for as it is
+  for (std::size_t i = 0; i < path.seen.size() && !raw; ++i) path.seen[i] = path.seen[i] && path.speed_sigma[i] <= kSureSpeed;
+  return path;
+}
+
+/// Takes rows in which somebody did what nobody can out. `cut`: the rows, of those left, before which another person begins.
+std::vector<ImpossibleStretch> leave_impossible_out(std::vector<Row>& rows, std::vector<bool>& cut) {
+  std::vector<filter::TimedPlace> places;
+  std::vector<std::size_t> row_of;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].measured) continue;
+    places.push_back({rows[i].time, rows[i].place, rows[i].covariance});
+    row_of.push_back(i);
+  }
+  std::vector<ImpossibleStretch> impossible;
+  std::vector<bool> out(rows.size(), false), begins(rows.size(), false);
+  for (const filter::ImpossiblePiece& piece : filter::impossible_pieces(places)) {
+    impossible.push_back({places[piece.first].time, places[piece.last].time, piece.one_person});
+    for (std::size_t i = row_of[piece.first]; i <= row_of[piece.last]; ++i) out[i] = true;
+    if (!piece.one_person) begins[row_of[piece.last]] = true;
+  }
+  cut.clear();
+  bool other = false;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    other = other || begins[i];
+    if (out[i]) continue;
+    cut.push_back(std::exchange(other, false));
+    rows[kept++] = rows[i];
+  }
+  rows.resize(kept);
+  return impossible;
+}
+
+/// Pieces without a long gap, and without a cut before any but their first row.
+std::vector<Path> pieces_of(std::span<const Row> rows, const std::vector<bool>& cut, const PathOptions& options, bool smoothed) {
   std::vector<Path> paths;
   for (std::size_t begin = 0; begin < rows.size();) {
     std::size_t end = begin + 1;
-    while (end < rows.size() && rows[end].time - rows[end - 1].time <= options.longest_gap_s) ++end;
-    if (end - begin >= 2) {
-      Path& path = paths.emplace_back(evenly(rows.subspan(begin, end - begin)));
-      if (!smoothed) smooth(path, options);
-      if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
-      if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
-    }
+    while (end < rows.size() && !cut[end] && rows[end].time - rows[end - 1].time <= options.longest_gap_s) ++end;
+    if (end - begin >= 2) paths.push_back(path_of(rows.subspan(begin, end - begin), options, smoothed));
     begin = end;
   }
   return paths;
+}
+
+/// A place that was not measured is known no better than the measured ones before and after it.
+void doubt_unmeasured(std::vector<Row>& rows) {
+  const auto doubt = [](auto from, auto to) {
+    const Row* last = nullptr;
+    for (auto row = from; row != to; ++row) {
+      if (row->measured) last = &*row;
+      if (!row->measured && last != nullptr && last->covariance.trace() > row->covariance.trace())
+        row->covariance = last->covariance;
+    }
+  };
+  doubt(rows.begin(), rows.end());
+  doubt(rows.rbegin(), rows.rend());
+}
+
+/// Puts rows that were not measured straight between those that were, and leaves out those before the first and after the last:
+/// whatever followed the person there, smoothing would carry it into the speeds beside.
+void bridge_unmeasured(std::vector<Row>& rows) {
+  const auto measured = [](const Row& row) { return row.measured; };
+  rows.erase(std::find_if(rows.rbegin(), rows.rend(), measured).base(), rows.end());
+  rows.erase(rows.begin(), std::find_if(rows.begin(), rows.end(), measured));
+  std::size_t next = 0;  // measured, behind the row at hand
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].measured) continue;
+    for (next = std::max(next, i); !rows[next].measured; ++next) {
+    }
+    const Row &before = rows[i - 1], &after = rows[next];
+    rows[i].place = before.place + (rows[i].time - before.time) / (after.time - before.time) * (after.place - before.place);
+  }
+}
+
+Matrix<2> usual_covariance(const PathOptions& options) {
+  return options.place_sigma * options.place_sigma * Matrix<2>::Identity();
 }
 
 }  // namespace
@@ -187,23 +311,32 @@ std::vector<Path> smooth_paths(std::span<const double> times, std::span<const do
   std::vector<Row> rows;
   rows.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}});
+    if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}, usual_covariance(options)});
   }
-  return pieces_of(rows, options, false);
+  return pieces_of(rows, std::vector<bool>(rows.size(), false), options, false);
 }
 
-std::vector<Path> paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options) {
+PersonPaths paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options) {
   const bool smoothed = recording.header.smoothed;
   std::vector<Row> rows;
   rows.reserve(track.size());
   for (std::size_t i = 0; i < track.size(); ++i) {
     const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[i]));
     if (!rows.empty() && time <= rows.back().time) continue;
-    rows.push_back({time, track.place(i)});
-    const auto velocity = smoothed ? track.velocity(i) : std::nullopt;
-    if (velocity) rows.back().velocity = velocity->head<2>();
+    const Sample sample = track.sample(i);
+    Row& row = rows.emplace_back(Row{time, track.place(i), usual_covariance(options)});
+    if (sample.covariance) row.covariance = sample.covariance->topLeftCorner<2, 2>();
+    row.measured = sample.provenance == Provenance::measured;
+    if (smoothed && sample.velocity) row.velocity = sample.velocity->head<2>();
   }
-  return pieces_of(rows, options, smoothed);
+  PersonPaths person;
+  person.measured = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.measured; });
+  doubt_unmeasured(rows);
+  if (!smoothed) bridge_unmeasured(rows);
+  std::vector<bool> cut;
+  person.impossible = leave_impossible_out(rows, cut);
+  person.paths = pieces_of(rows, cut, options, smoothed);
+  return person;
 }
 
 }  // namespace marey::analyse

@@ -7,6 +7,9 @@
 //   kalman   constant velocity with noise in the acceleration, smoothed from both ends (Rauch, Tung & Striebel 1965)
 //   raw      as measured; velocities are differences
 // Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
+// What nobody can have done (filter/human_motion.h) is left out before: it is bridged where one person can have gone over it, else
+// the path is cut there. Places that were not measured lie straight between those that were, and speeds are believed where measured
+// places tell them: not where a tracker filled a gap or ran on blindly.
 // References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
@@ -28,6 +31,7 @@ struct PathOptions {
   double place_noise = 0.3;   ///< kalman: m, of a measured place
   double acceleration = 1.5;  ///< kalman: m/s^1.5
   double longest_gap_s = 1;   ///< a person missing for longer is on another path afterwards
+  double place_sigma = 0.15;  ///< m, of a measured place of which the recording does not say it, once it is smoothed
 };
 
 /// Throws Error, naming what is valid, for a name that is none.
@@ -40,17 +44,32 @@ struct Path {
   std::vector<Vector<2>> place;         ///< m
   std::vector<Vector<2>> velocity;      ///< m/s
   std::vector<Vector<2>> acceleration;  ///< m/s²
+  std::vector<bool> seen;               ///< measured places tell the speed there, to 0.75 m/s: only such speeds are believed
+  std::vector<double> speed_sigma;      ///< m/s, standard deviation of the speed
 
   double seconds() const { return step_s * static_cast<double>(place.empty() ? 0 : place.size() - 1); }
 };
 
+/// A stretch of time in which somebody is told to have done what nobody can.
+struct ImpossibleStretch {
+  double begin_s = 0, end_s = 0;
+  bool one_person = true;  ///< places are wrong; else who is there afterwards is somebody else
+};
+
+/// What is left of somebody's rows, and what was not believed.
+struct PersonPaths {
+  std::vector<Path> paths;
+  std::vector<ImpossibleStretch> impossible;
+  bool measured = false;  ///< at some instant
+};
+
 /// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over,
-/// pieces of fewer than two places left out.
+/// pieces of fewer than two places left out. All are taken for measured.
 std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
                                const PathOptions& options = {});
 
 /// The same of a track of a recording in m. Where the recording is smoothed already it is not smoothed again: places and velocities
 /// are those that it has (velocities that are missing are differences), so that who measures finds the speeds that were recorded.
-std::vector<Path> paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options = {});
+PersonPaths paths_of(const Recording& recording, const TrackColumns& track, const PathOptions& options = {});
 
 }  // namespace marey::analyse

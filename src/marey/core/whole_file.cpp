@@ -116,6 +116,10 @@ UnfinishedFile::~UnfinishedFile() {
   fs::remove(temporary_path_, ignored);
 }
 
+std::string UnfinishedFile::further_temporary_path() const {
+  return temporary_name(target_);
+}
+
 void UnfinishedFile::finish() {
   std::error_code error;
   fs::rename(temporary_path_, target_, error);

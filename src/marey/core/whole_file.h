@@ -25,6 +25,11 @@ class UnfinishedFile {
 
   /// PATH.HOST-PID-RANDOM.part: no other writer's, of this host or another that shares the folder. It need not exist yet.
   const std::string& temporary_path() const { return temporary_path_; }
+  /// Another such name for a writer that needs two files. The caller removes or renames it; one that a killed run leaves goes away
+  /// as temporary files do.
+  std::string further_temporary_path() const;
+  /// What `finish` renames the temporary file to: the name, or the file that a link of that name leads to.
+  const std::string& target_path() const { return target_; }
 
   /// Call it when the temporary file is closed. Throws Error where the file cannot get its name.
   void finish();

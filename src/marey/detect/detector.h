@@ -56,6 +56,12 @@ class Detector {
   /// For the summary of a run.
   virtual DetectionCounts detection_counts() const { return {}; }
 
+  /// The empty scene as a background model has it; empty where there is none that tells.
+  virtual Picture scene() const { return {}; }
+
+  /// The picture shows the scene where `mask` (CV_8UC1, its upper left pixel at `corner`) is not 0: what was taken for it has gone.
+  virtual void believe(const Picture& /*picture*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
+
   /// The box, px, of a person whose feet are at this pixel; nothing where that is not known.
   virtual std::optional<Box> body_at(const Vector<2>& /*foot*/) const { return std::nullopt; }
 };

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/core/text_safety.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/svg.h"
 
@@ -205,9 +206,12 @@ class ReportPage {
   void draw_speeds(const MatchReport::Person& person) {
     constexpr double width = 105, height = 68, left = 8, bottom = 8;
     double begin = 1e300, end = -1e300, fastest = 8;
-    for (const auto& path : person.speeds) {
-      for (const auto& [time, speed] : path)
-        begin = std::min(begin, time), end = std::max(end, time), fastest = std::max(fastest, speed);
+    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
+      for (std::size_t i = 0; i < person.speeds[p].size(); ++i) {
+        const auto& [time, speed] = person.speeds[p][i];
+        begin = std::min(begin, time), end = std::max(end, time);
+        if (person.seen[p][i]) fastest = std::max(fastest, speed);
+      }
     }
     if (!(end > begin)) return;
     const auto place = [&](double time, double speed) {
@@ -220,7 +224,7 @@ class ReportPage {
       svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
       svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
-    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s; {} sprints are marked", end - begin, person.sprints.size()),
+    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s, where it is known; {} sprints are marked", end - begin, person.sprints.size()),
              {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;
@@ -228,10 +232,18 @@ class ReportPage {
       svg.rect({x, 0, std::max(narrowest, place(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
           .add("title", {}, fmt::format("{:.1f} s to {:.1f} s", from, to));
     }
-    for (const auto& path : person.speeds) {
+    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
+      const auto& path = person.speeds[p];
       std::vector<Vector<2>> points;
-      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) points.push_back(place(path[i].first, path[i].second));
-      svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
+      const auto draw = [&] {
+        if (points.size() > 1) svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
+        points.clear();
+      };
+      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
+        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
+        if (!person.seen[p][i]) draw();
+      }
+      draw();
     }
     text_ += svg.str();
   }

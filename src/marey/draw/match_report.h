@@ -22,6 +22,7 @@ struct MatchReport {
     std::vector<std::string> cells;                              ///< of its row, after number, name and team
     std::vector<std::vector<Vector<2>>> paths;                   ///< m on the pitch
     std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a path, as many as that has places
+    std::vector<std::vector<bool>> seen;                         ///< of each of them whether it is known: else it is not drawn
     std::vector<std::pair<double, double>> sprints;              ///< s: when each began and ended
     int heat_columns = 0, heat_rows = 0;                         ///< cells along x and y
     double heat_cell_m = 2;

@@ -9,11 +9,10 @@
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
 #include "marey/core/time.h"
-#include "marey/core/whole_file.h"
+#include "marey/draw/mp4_file.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/opt.h>
 }
 
@@ -25,16 +24,11 @@ namespace fs = std::filesystem;
 using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>>;
 using FramePtr = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
 using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
-struct CloseFormat {
-  void operator()(AVFormatContext* format) const {
-    avio_closep(&format->pb);
-    avformat_free_context(format);
-  }
-};
 
 constexpr AVRational kTick{1, 90'000};
 constexpr int kSilent = AV_LOG_TRACE;        // the host program's log gets nothing of ours
-constexpr int kThreads = 4;                  // x264 writes other bytes for another number
+constexpr int kThreads = 4;                  // x264 writes other bytes for another number, and holds a frame back for each
+constexpr double kSlow = 10;                 // Hz: a recording of fewer frames is encoded by one thread, which holds none back
 constexpr int kSecondsBetweenKeyFrames = 2;  // a player seeks to these
 
 std::string reason(int code) {
@@ -47,16 +41,13 @@ std::string reason(int code) {
 
 struct MovieWriter::Parts {
   std::string path;
-  std::optional<UnfinishedFile> file;
-  std::unique_ptr<AVFormatContext, CloseFormat> format;
   CodecPtr codec;
-  AVStream* stream = nullptr;
+  std::optional<Mp4File> file;
   PacketPtr packet{av_packet_alloc()};
   std::int64_t last_tick = -1;
   std::int64_t ticks_a_frame = 0;
 
   void open_codec(cv::Size size, double rate, Quality quality);
-  void open_file();
   void encode(const AVFrame* frame);
   void check(int code) const {
     if (code < 0) throw Error("{}: cannot be written ({})", path, reason(code));
@@ -76,7 +67,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   codec->time_base = kTick;
   codec->framerate = av_d2q(rate, 1'000'000);
   codec->gop_size = std::max(1, static_cast<int>(std::lround(kSecondsBetweenKeyFrames * rate)));
-  codec->thread_count = kThreads;
+  codec->thread_count = quality == Quality::to_record && rate < kSlow ? 1 : kThreads;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   // Fast enough that the film is not what one waits for.
   av_opt_set(codec->priv_data, "preset", quality == Quality::to_record ? "ultrafast" : "superfast", 0);
@@ -87,19 +78,6 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   }
 }
 
-void MovieWriter::Parts::open_file() {
-  AVFormatContext* opened = nullptr;
-  check(avformat_alloc_output_context2(&opened, nullptr, "mp4", ("file:" + file->temporary_path()).c_str()));
-  format.reset(opened);
-  stream = avformat_new_stream(opened, nullptr);
-  check(avcodec_parameters_from_context(stream->codecpar, codec.get()));
-  stream->time_base = kTick;
-  stream->avg_frame_rate = codec->framerate;
-  check(avio_open(&opened->pb, opened->url, AVIO_FLAG_WRITE));
-  av_opt_set(opened->priv_data, "movflags", "+faststart", 0);
-  check(avformat_write_header(opened, nullptr));
-}
-
 /// A null frame asks for what the encoder still holds.
 void MovieWriter::Parts::encode(const AVFrame* frame) {
   check(avcodec_send_frame(codec.get(), frame));
@@ -107,24 +85,21 @@ void MovieWriter::Parts::encode(const AVFrame* frame) {
     const int code = avcodec_receive_packet(codec.get(), packet.get());
     if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
     check(code);
-    packet->stream_index = stream->index;
     packet->duration = ticks_a_frame;
-    av_packet_rescale_ts(packet.get(), kTick, stream->time_base);
-    check(av_interleaved_write_frame(format.get(), packet.get()));
-    check(format->pb->error);
+    file->write(*packet);
+    av_packet_unref(packet.get());
   }
 }
 
-MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality)
+MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality, Keep keep)
     : parts_(std::make_unique<Parts>()) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
   parts_->path = path;
-  parts_->file.emplace(path);
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   parts_->open_codec(size, rate, quality);
-  parts_->open_file();
+  parts_->file.emplace(path, *parts_->codec, keep);
 }
 
 MovieWriter::~MovieWriter() = default;
@@ -152,11 +127,6 @@ void MovieWriter::write(const Picture& picture, Timestamp time) {
 void MovieWriter::finish() {
   Parts& p = *parts_;
   p.encode(nullptr);
-  p.check(av_write_trailer(p.format.get()));
-  avio_flush(p.format->pb);
-  p.check(p.format->pb->error);
-  p.check(avio_closep(&p.format->pb));
-  p.format.reset();
   p.file->finish();
 }
 

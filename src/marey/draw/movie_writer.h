@@ -11,8 +11,8 @@
 
 namespace marey::draw {
 
-/// Writes a film that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. It is written beside its name and gets
-/// its name in `finish`: the file is there whole or not at all.
+/// Writes a film that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. Until `finish` it is an MP4 of fragments, so
+/// that what a killed program wrote can be read.
 class MovieWriter {
  public:
   enum class Quality {
@@ -21,10 +21,16 @@ class MovieWriter {
     to_record,   ///< the same in less than half the time, in larger files: while cameras are live
   };
 
+  enum class Keep {
+    when_finished,  ///< it is written beside its name and gets it in `finish`: whole or not at all, unless the program is killed
+    always,         ///< under its name from the first frame on, in place of an older file: of what cannot be recorded again
+  };
+
   /// `rate_hz` is what most frames follow each other at; each is shown at its own time all the same.
   /// Throws Error where the file cannot be written or no H.264 encoder is installed.
-  MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality = Quality::to_view);
-  /// Without `finish`, nothing is left behind.
+  MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality = Quality::to_view,
+              Keep keep = Keep::when_finished);
+  /// Without `finish`, nothing is left behind, or with Keep::always what was written.
   ~MovieWriter();
   MovieWriter(const MovieWriter&) = delete;
   MovieWriter& operator=(const MovieWriter&) = delete;

@@ -1,5 +1,7 @@
 #include "marey/draw/movie_writer.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -62,6 +64,78 @@ TEST(MovieWriter, LeavesNothingBehindUnlessFinished) {
   }
   EXPECT_EQ(test::read_file(folder / "film.mp4"), "the old one");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+/// The times of the frames that a player shows of a file that was copied as a kill would leave it, its first `bytes` alone.
+std::string times_of_torn(const test::TemporaryFolder& folder, const std::string& path, std::size_t bytes) {
+  const std::string torn = folder / "torn.mp4", times = folder / "times.txt";
+  test::write_file(torn, test::read_file(path).substr(0, bytes));
+  const std::string command = "ffprobe -v quiet -select_streams v -show_entries frame=pts_time -of default=nk=1:nw=1 " + torn +
+                              " | "
+                              "grep [0-9] > " +
+                              times;
+  EXPECT_EQ(std::system(command.c_str()), 0) << bytes;
+  return test::read_file(times);
+}
+
+std::ptrdiff_t lines_of(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+TEST(MovieWriter, FramesWrittenBeforeAKillCanBeRead) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "film.mp4";
+  MovieWriter writer(path, {64, 48}, 20, MovieWriter::Quality::to_record, MovieWriter::Keep::always);
+  for (int i = 0; i < 60; ++i) writer.write(shade({64, 48}, 4 * i), timestamp_from_seconds(0.05 * i));
+  const std::size_t size = std::filesystem::file_size(path);
+  const std::string times = times_of_torn(folder, path, size);
+  EXPECT_GE(lines_of(times), 50) << "half a second is the most that is lost";
+  EXPECT_EQ(times.substr(0, 27), "0.000000\n0.050000\n0.100000\n");
+  std::ptrdiff_t before = 0;
+  for (const double share : {0.5, 0.7, 0.9}) {
+    const std::ptrdiff_t lines = lines_of(times_of_torn(folder, path, static_cast<std::size_t>(share * static_cast<double>(size))));
+    EXPECT_GE(lines, before + 5) << share;
+    before = lines;
+  }
+}
+
+TEST(MovieWriter, AFilmThatIsAlwaysKeptEndsAsAnyOther) {
+  const test::TemporaryFolder folder;
+  for (const auto keep : {MovieWriter::Keep::when_finished, MovieWriter::Keep::always}) {
+    MovieWriter writer(folder / (keep == MovieWriter::Keep::always ? "kept.mp4" : "film.mp4"), {64, 48}, 20,
+                       MovieWriter::Quality::to_view, keep);
+    for (int i = 0; i < 60; ++i) writer.write(shade({64, 48}, 4 * i), timestamp_from_seconds(0.05 * i));
+    writer.finish();
+  }
+  EXPECT_EQ(test::read_file(folder / "kept.mp4"), test::read_file(folder / "film.mp4"));
+  const std::string bytes = test::read_file(folder / "kept.mp4");
+  EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
+  EXPECT_EQ(bytes.find("moof"), std::string::npos);
+  EXPECT_EQ(probe(folder, folder / "kept.mp4", "stream=nb_frames,duration"), "3.000000,60\n");
+  EXPECT_EQ(lines_of(times_of_torn(folder, folder / "kept.mp4", bytes.size())), 60);
+}
+
+TEST(MovieWriter, WhatIsAlwaysKeptStaysWithoutFinish) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "film.mp4";
+  test::write_file(path, "the old one");
+  {
+    MovieWriter writer(path, {64, 48}, 10, MovieWriter::Quality::to_record, MovieWriter::Keep::always);
+    for (int i = 0; i < 20; ++i) writer.write(shade({64, 48}, 10 * i), timestamp_from_seconds(0.1 * i));
+    EXPECT_THROW(MovieWriter(path, {64, 48}, 10), Error) << "another run cannot write it meanwhile";
+  }
+  EXPECT_GE(lines_of(times_of_torn(folder, path, std::filesystem::file_size(path))), 15);
+}
+
+TEST(MovieWriter, FramesOfAFilmBesideItsNameCanBeReadToo) {
+  const test::TemporaryFolder folder;
+  MovieWriter writer(folder / "film.mp4", {64, 48}, 20);
+  for (int i = 0; i < 60; ++i) writer.write(shade({64, 48}, 4 * i), timestamp_from_seconds(0.05 * i));
+  std::string part;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    if (entry.path().extension() == ".part") part = entry.path();
+  ASSERT_FALSE(part.empty());
+  EXPECT_GE(lines_of(times_of_torn(folder, part, std::filesystem::file_size(part))), 40);
 }
 
 TEST(MovieWriter, APlaceThatCannotBeWrittenIsRefused) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fmt/ranges.h>
+
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/edit/fill_gap.h"
@@ -126,7 +128,18 @@ void require_free_name(const Request& request, Tracks& tracks, TrackId named, co
 
 }  // namespace
 
-Operation decide(const Request& request, Tracks& tracks) {
+std::string words_of(const OpenGaps& open, const Request& request) {
+  if (open.all() == 0) return "there is no gap to fill";
+  std::vector<std::string> why;
+  if (open.too_long > 0) why.push_back(fmt::format("{} longer than {:g} s (longest=)", open.too_long, request.longest_s));
+  if (open.too_far_off > 0)
+    why.push_back(fmt::format("{} expected to be filled with an error of more than {:g} mm (within=)", open.too_far_off,
+                              1e3 * request.within_m));
+  if (open.untold > 0) why.push_back(fmt::format("{} for which there is too little to tell the position from", open.untold));
+  return fmt::format("{} {} open: {}", open.all(), open.all() == 1 ? "gap stays" : "gaps stay", fmt::join(why, ", "));
+}
+
+Operation decide(const Request& request, Tracks& tracks, OpenGaps* open) {
   const std::vector<TrackName> names = tracks.names();
   Operation operation{
       .kind = request.kind, .tracks = tracks_named(request, names), .frames = request.frames, .label = request.label};
@@ -139,15 +152,16 @@ Operation decide(const Request& request, Tracks& tracks) {
       operation.cutoffs_hz.push_back(request.cutoff_hz ? require_cutoff(*request.cutoff_hz, tracks) : cutoff_of(tracks, track));
   }
   if (request.kind == Kind::fill) {
+    OpenGaps left;
     for (const TrackId track : operation.tracks) {
-      const auto fills = decide_fills(tracks, track, request.frames,
-                                      {.method = request.method, .longest_s = request.longest_s, .within_m = request.within_m});
+      const auto fills =
+          decide_fills(tracks, track, request.frames,
+                       {.method = request.method, .longest_s = request.longest_s, .within_m = request.within_m}, &left);
       operation.gaps.insert(operation.gaps.end(), fills.begin(), fills.end());
     }
     operation.tracks.clear();
-    if (operation.gaps.empty())
-      throw Error("fill: there is no gap of up to {:g} s that can be filled to within {:g} mm", request.longest_s,
-                  1e3 * request.within_m);
+    if (open != nullptr) *open = left;
+    if (operation.gaps.empty() && open == nullptr) throw Error("fill: {}", words_of(left, request));
   }
   return operation;
 }

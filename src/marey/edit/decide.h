@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+
+#include "marey/edit/fill_gap.h"
 #include "marey/edit/operation.h"
 #include "marey/edit/request.h"
 #include "marey/edit/tracks.h"
@@ -8,7 +11,11 @@ namespace marey::edit {
 
 /// What a request means for these tracks: names become tracks, and what is left to the program (how each gap is filled, how
 /// strongly each path is smoothed) is decided now, so that replaying decides nothing. Throws Error where a track is not there, a
-/// name means several, or there is nothing to be done.
-Operation decide(const Request& request, Tracks& tracks);
+/// name means several, or there is nothing to be done. With `open`, which gets the gaps that a fill leaves open, a fill without
+/// a gap that it can fill is no Error but an operation without gaps.
+Operation decide(const Request& request, Tracks& tracks, OpenGaps* open = nullptr);
+
+/// "2 gaps stay open: 1 longer than 1 s, …"; that there is none, if there is none.
+std::string words_of(const OpenGaps& open, const Request& request);
 
 }  // namespace marey::edit

@@ -202,7 +202,7 @@ TEST(Edit, WhatCannotBeDoneIsSaid) {
             "filter: at 100 frames a second a cut-off of 500 Hz would change nothing; it lies below 40.1 Hz");
   EXPECT_EQ(error_of(recording, "filter A 41"),
             "filter: at 100 frames a second a cut-off of 41 Hz would change nothing; it lies below 40.1 Hz");
-  EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap of up to 1 s that can be filled to within 50 mm");
+  EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap to fill");
   EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill, filter and team are known");
 }
 

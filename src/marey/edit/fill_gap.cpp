@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/edit/fill_trials.h"
 #include "marey/edit/gap_methods.h"
 #include "marey/edit/lowpass.h"
 
@@ -16,9 +16,6 @@ using Path = std::vector<Vector<3>>;
 
 constexpr double kAround_s = 20;           // of the recording on either side of a gap, that is looked at
 constexpr std::size_t kMostFrames = 4000;  // of it
-constexpr std::size_t kMostTrials = 24;    // holes that a method is tried on
-constexpr double kShortUntried_s = 0.15;   // where nothing can be tried: a polynomial up to here
-constexpr double kUntriedShare = 0.1;      // and what it is expected to be off, as a share of how far the marker went
 
 /// A gap by the recording's instants, both ends included.
 struct Gap {
@@ -57,77 +54,16 @@ Surroundings surroundings_of(Tracks& tracks, const std::vector<TrackId>& markers
   return piece;
 }
 
-std::optional<Path> filled(FillMethod method, const Places& places, const Hole& hole, const std::vector<std::size_t>& donors,
-                           const Hole& hidden) {
-  if (method == FillMethod::spline) return spline_fill(places, 0, hole);
-  if (method == FillMethod::rigid) return rigid_fill(places, 0, hole, donors);
-  return pattern_fill(places, 0, hole, donors, hidden);
-}
-
-/// Holes as long as the gap, where the marker and the donors were seen: the nearest ones, on both sides.
-std::vector<Hole> trials(const Places& places, const Hole& gap, const std::vector<std::size_t>& donors) {
-  std::vector<Hole> all;
-  const std::size_t step = std::max<std::size_t>(1, gap.size() / 3);
-  for (std::size_t first = 1; first + gap.size() < places.size(); first += step) {
-    const Hole hole{first, first + gap.size() - 1};
-    const bool whole = places.markers[0].spans(hole) && std::all_of(donors.begin(), donors.end(), [&](std::size_t donor) {
-                         return places.markers[donor].spans(hole);
-                       });
-    if (whole) all.push_back(hole);
-  }
-  const auto away = [&](const Hole& hole) { return std::abs(static_cast<double>(hole.first) - static_cast<double>(gap.first)); };
-  std::stable_sort(all.begin(), all.end(), [&](const Hole& a, const Hole& b) { return away(a) < away(b); });
-  if (all.size() > kMostTrials) all.resize(kMostTrials);
-  return all;
-}
-
-struct Judged {
-  double mean_square = std::numeric_limits<double>::infinity();  // m²
-  double expected_m = 0;
-};
-
-/// How a method did on the trials; an infinite error where it could not say anything anywhere.
-Judged judge(FillMethod method, const Places& places, const Hole& gap, const std::vector<std::size_t>& donors,
-             const std::vector<Hole>& holes) {
-  double squares = 0;
-  std::size_t count = 0;
-  std::vector<double> middle;  // errors in the middle half of the holes
-  for (const Hole& hole : holes) {
-    const auto path = filled(method, places, hole, donors, gap);
-    if (!path) continue;
-    for (std::size_t i = 0; i < path->size(); ++i) {
-      const double error = ((*path)[i] - places.markers[0].place[hole.first + i]).norm();
-      squares += error * error;
-      ++count;
-      if (4 * i + 1 >= path->size() && 4 * i <= 3 * path->size()) middle.push_back(error);
-    }
-  }
-  if (count == 0) return {};
-  // Nine tenths of the errors lie within two deviations.
-  const auto tenth = middle.begin() + static_cast<std::ptrdiff_t>(middle.size() * 9 / 10);
-  std::nth_element(middle.begin(), tenth, middle.end());
-  return {squares / static_cast<double>(count), std::max(0.5 * *tenth, 1e-5)};
-}
-
-/// Where nothing could be tried: what the field's rule says.
-Judged untried(FillMethod method, const Places& places, const Hole& gap) {
-  const bool brief = static_cast<double>(gap.size()) <= kShortUntried_s * places.rate_hz;
-  const double went = (places.markers[0].place[gap.last + 1] - places.markers[0].place[gap.first - 1]).norm();
-  const double rank = method == FillMethod::rigid ? 1 : (method == FillMethod::spline) == brief ? 0 : 2;
-  return {1 + rank, std::max(kUntriedShare * went, 0.005)};
-}
-
 std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, const std::vector<TrackId>& markers,
                                 std::optional<FillMethod> wanted) {
   const Surroundings piece = surroundings_of(tracks, markers, gap);
   const std::vector<std::size_t> donors = donors_of(piece.places, 0, piece.hole);
-  const std::vector<Hole> holes = trials(piece.places, piece.hole, donors);
-  std::optional<std::pair<FillMethod, Judged>> best;
+  const FillTrials trials(piece.places, piece.hole, donors);
+  std::optional<std::pair<FillMethod, FillScore>> best;
   for (const FillMethod method : {FillMethod::spline, FillMethod::rigid, FillMethod::pattern}) {
     if ((wanted && method != *wanted) || !filled(method, piece.places, piece.hole, donors, piece.hole)) continue;
-    Judged judged = judge(method, piece.places, piece.hole, donors, holes);
-    if (holes.empty()) judged = untried(method, piece.places, piece.hole);
-    if (!best || judged.mean_square < best->second.mean_square) best = {method, judged};
+    const FillScore score = trials.score(method);
+    if (!best || score.mean_square < best->second.mean_square) best = {method, score};
   }
   if (!best) return std::nullopt;
   const auto index = [&](std::int32_t at) { return tracks.moments()[static_cast<std::size_t>(at)].index; };
@@ -153,7 +89,8 @@ std::int32_t instant_of(const Tracks& tracks, std::int64_t index) {
 }  // namespace
 
 std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::optional<FrameRange>& frames,
-                                    const FillOptions& options) {
+                                    const FillOptions& options, OpenGaps* open) {
+  OpenGaps left;
   std::vector<TrackId> markers{track};
   for (const TrackName& name : tracks.names()) {
     if (name.id != track) markers.push_back(name.id);
@@ -166,9 +103,23 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
     if (gap.last < gap.first) continue;
     const auto &from = moments[static_cast<std::size_t>(gap.first)], &to = moments[static_cast<std::size_t>(gap.last)];
     if (frames && !(frames->holds(from.index) && frames->holds(to.index))) continue;
-    if (seconds(to.time - from.time) > options.longest_s) continue;
+    if (seconds(to.time - from.time) > options.longest_s) {
+      ++left.too_long;
+      continue;
+    }
     auto fill = decide(tracks, track, gap, markers, options.method);
-    if (fill && fill->expected_m <= options.within_m) fills.push_back(std::move(*fill));
+    if (!fill) {
+      ++left.untold;
+    } else if (fill->expected_m > options.within_m) {
+      ++left.too_far_off;
+    } else {
+      fills.push_back(std::move(*fill));
+    }
+  }
+  if (open != nullptr) {
+    open->too_long += left.too_long;
+    open->too_far_off += left.too_far_off;
+    open->untold += left.untold;
   }
   return fills;
 }

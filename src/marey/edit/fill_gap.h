@@ -16,10 +16,18 @@ struct FillOptions {
   double within_m = 0.05;                 ///< so do gaps whose fill is expected to be farther off
 };
 
+/// Gaps that stay open, by why.
+struct OpenGaps {
+  int too_long = 0, too_far_off = 0;
+  int untold = 0;  ///< no method could say anything
+
+  int all() const { return too_long + too_far_off + untold; }
+};
+
 /// The gaps of a track between its first and its last place, within `frames`, that can be filled, and how. What other tracks have
-/// filled or predicted tells nothing.
+/// filled or predicted tells nothing. `open` counts those that stay open, too.
 std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::optional<FrameRange>& frames,
-                                    const FillOptions& options);
+                                    const FillOptions& options, OpenGaps* open = nullptr);
 
 /// The rows of a gap, filled as was decided; other tracks are asked only where the edit does not keep its places. Throws Error
 /// where what it was decided on is not there any more.

@@ -46,13 +46,13 @@ Vector<3> place_of(int marker, int frame) {
   return body * Vector<3>(marker == 5 ? 0.15 + own : 0.2 - 0.7 * own, marker == 5 ? 0.3 : 0.2, 0.5 * own);
 }
 
-Recording walk(double noise_m, unsigned seed) {
+Recording walk(double noise_m, unsigned seed, int frames = kFrames) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, noise_m);
   Recording recording(header("walk"));
   for (int marker = 0; marker < 7; ++marker)
     recording.set_name({.id = TrackId{marker + 1}, .label = fmt::format("M{}", marker), .team = {}});
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < frames; ++frame) {
     Instant instant = instant_at(frame);
     for (int marker = 0; marker < 7; ++marker) {
       const Vector<3> off(noise(random), noise(random), noise(random));
@@ -147,6 +147,55 @@ TEST(FillGap, WhatItIsExpectedToBeOffCoversTheTruth) {
     }
   }
   EXPECT_GT(covered, 0.65 * count);
+}
+
+/// There is no room for test holes as long as the gap; what is left is seen for less than half of it on either side.
+TEST(FillGap, ALongGapOfAShortTakeIsFilledWithTheErrorThatIsExpected) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE(fmt::format("seed {}", seed));
+  const Recording recording = walk(3e-4, seed, 170);
+  int covered = 0, count = 0;
+  double squares = 0, expected = 0;
+  for (int marker = 0; marker < 7; ++marker) {
+    for (const int first : {30, 35, 40}) {
+      Tracks tracks = tracks_of(recording);
+      cut(tracks, marker, first, first + 99);
+      const auto all = errors(tracks, marker, {});
+      ASSERT_EQ(all.size(), 100u) << "marker " << marker;
+      for (const auto& [error, deviation] : all) {
+        covered += error <= 2 * deviation;
+        squares += error * error;
+        expected += deviation * deviation;
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(covered, 0.7 * count);
+  EXPECT_LT(expected, 10 * squares);
+}
+
+/// The same without any room before the gap: shorter holes behind it tell.
+TEST(FillGap, ShorterHolesTellOfALongGapAtTheRim) {
+  const Recording recording = walk(3e-4, 7, 170);
+  Tracks tracks = tracks_of(recording);
+  cut(tracks, 2, 1, 100);
+  const auto fills = decide_fills(tracks, TrackId{3}, std::nullopt, {});
+  ASSERT_EQ(fills.size(), 1u);
+  EXPECT_LT(fills[0].expected_m, 0.01);
+  EXPECT_GT(fills[0].expected_m, 1e-4);
+}
+
+TEST(FillGap, GapsThatStayOpenAreCounted) {
+  const Recording recording = walk(3e-4, 8);
+  Tracks tracks = tracks_of(recording);
+  cut(tracks, 0, 200, 350);
+  cut(tracks, 0, 500, 510);
+  OpenGaps open;
+  EXPECT_EQ(decide_fills(tracks, TrackId{1}, std::nullopt, {}, &open).size(), 1u);
+  EXPECT_EQ(open.too_long, 1);
+  EXPECT_TRUE(decide_fills(tracks, TrackId{1}, std::nullopt, {.longest_s = 1, .within_m = 1e-6}, &open).empty());
+  EXPECT_EQ(open.too_far_off, 1);
+  EXPECT_EQ(open.all(), 3);
 }
 
 TEST(FillGap, WhatIsTooLongOrHasNoEndStaysOpen) {

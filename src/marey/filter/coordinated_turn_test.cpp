@@ -101,36 +101,38 @@ TEST(CoordinatedTurn, WithoutARateItIsTheStraightLine) {
   }
 }
 
-/// The slow twins: both filters as their papers write them, with the measurement's own matrices and points.
+/// The slow twins: both filters as their papers write them, with the measurement's own matrices and points. Matrices of dynamic
+/// size, which the compiler instantiates once.
 template <int D>
 struct Twin {
   using Motion = CoordinatedTurn<D>;
+  using State = Vector<Motion::kSize>;
   static constexpr int N = Motion::kSize;
-  Vector<N> x;
-  Matrix<N> P;
+  Eigen::VectorXd x;
+  Eigen::MatrixXd P;
 
   Twin(const Vector<D>& z, const Matrix<D>& R, double speed) : x(Motion::start(z)), P(Motion::start_covariance(R, speed, kNoise)) {}
 
   void predict_extended(double dt) {
-    Matrix<N> F;
-    Motion::move(x, dt, kNoise, &F);
-    x = Motion::move(x, dt, kNoise);
-    P = F * P * F.transpose() + Motion::noise(dt, kNoise);
+    Matrix<N> jacobian;
+    x = Motion::move(State(x), dt, kNoise, &jacobian);
+    const Eigen::MatrixXd F = jacobian, Q = Motion::noise(dt, kNoise);
+    P = F * P * F.transpose() + Q;
   }
 
-  void correct_extended(const Vector<D>& z, const Matrix<D>& R) {
-    Eigen::Matrix<double, D, N> H = Eigen::Matrix<double, D, N>::Zero();
-    H.template leftCols<D>().setIdentity();
-    const Eigen::Matrix<double, N, D> K = P * H.transpose() * (H * P * H.transpose() + R).inverse();
+  void correct_extended(const Eigen::VectorXd& z, const Eigen::MatrixXd& R) {
+    const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D, N);
+    const Eigen::MatrixXd S = H * P * H.transpose() + R;
+    const Eigen::MatrixXd K = P * H.transpose() * S.inverse();
     x += K * (z - H * x);
-    P = (Matrix<N>::Identity() - K * H) * P;
+    P = ((Eigen::MatrixXd::Identity(N, N) - K * H) * P).eval();
   }
 
-  std::vector<Vector<N>> points(double kappa) const {
-    const Matrix<N> root = Eigen::LLT<Matrix<N>>((N + kappa) * P).matrixL();
-    std::vector<Vector<N>> all = {x};
-    for (int k = 0; k < N; ++k) all.push_back(x + root.col(k));
-    for (int k = 0; k < N; ++k) all.push_back(x - root.col(k));
+  std::vector<Eigen::VectorXd> points(double kappa) const {
+    const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>((N + kappa) * P).matrixL();
+    std::vector<Eigen::VectorXd> all = {x};
+    for (int k = 0; k < N; ++k) all.emplace_back(x + root.col(k));
+    for (int k = 0; k < N; ++k) all.emplace_back(x - root.col(k));
     return all;
   }
 
@@ -138,27 +140,27 @@ struct Twin {
 
   void predict_unscented(double dt, double kappa) {
     auto moved = points(kappa);
-    for (auto& point : moved) point = Motion::move(point, dt, kNoise);
+    for (auto& point : moved) point = Motion::move(State(point), dt, kNoise);
     x.setZero();
     for (std::size_t k = 0; k < moved.size(); ++k) x += weight(k, kappa) * moved[k];
     P = Motion::noise(dt, kNoise);
     for (std::size_t k = 0; k < moved.size(); ++k) P += weight(k, kappa) * (moved[k] - x) * (moved[k] - x).transpose();
   }
 
-  void correct_unscented(const Vector<D>& z, const Matrix<D>& R, double kappa) {
+  void correct_unscented(const Eigen::VectorXd& z, const Eigen::MatrixXd& R, double kappa) {
     const auto all = points(kappa);
-    Vector<D> mean = Vector<D>::Zero();
-    for (std::size_t k = 0; k < all.size(); ++k) mean += weight(k, kappa) * all[k].template head<D>();
-    Matrix<D> S = R;
-    Eigen::Matrix<double, N, D> cross = Eigen::Matrix<double, N, D>::Zero();
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(D);
+    for (std::size_t k = 0; k < all.size(); ++k) mean += weight(k, kappa) * all[k].head(D);
+    Eigen::MatrixXd S = R;
+    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(N, D);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const Vector<D> residual = all[k].template head<D>() - mean;
+      const Eigen::VectorXd residual = all[k].head(D) - mean;
       S += weight(k, kappa) * residual * residual.transpose();
       cross += weight(k, kappa) * (all[k] - x) * residual.transpose();
     }
-    const Eigen::Matrix<double, N, D> K = cross * S.inverse();
+    const Eigen::MatrixXd K = cross * S.inverse();
     x += K * (z - mean);
-    P = (P - K * S * K.transpose()).eval();
+    P -= K * S * K.transpose();
   }
 };
 
@@ -191,7 +193,7 @@ TYPED_TEST(TurningFilter, AgreesWithItsTwin) {
     } else {
       twin.predict_extended(dt);
     }
-    const Matrix<D> predicted = twin.P.template topLeftCorner<D, D>();
+    const Matrix<D> predicted = twin.P.topLeftCorner(D, D);
     EXPECT_LE((filter.covariance() - predicted).norm(), 1e-9 * predicted.norm()) << step;
     if (step % 4 == 3) continue;
     filter.correct(z, R);
@@ -200,8 +202,8 @@ TYPED_TEST(TurningFilter, AgreesWithItsTwin) {
     } else {
       twin.correct_extended(z, R);
     }
-    EXPECT_LE((filter.position() - twin.x.template head<D>()).norm(), 1e-9 * (1 + twin.x.norm())) << step;
-    EXPECT_LE((filter.velocity() - twin.x.template segment<D>(D)).norm(), 1e-8 * (1 + twin.x.norm())) << step;
+    EXPECT_LE((filter.position() - Vector<D>(twin.x.head(D))).norm(), 1e-9 * (1 + twin.x.norm())) << step;
+    EXPECT_LE((filter.velocity() - Vector<D>(twin.x.segment(D, D))).norm(), 1e-8 * (1 + twin.x.norm())) << step;
   }
 }
 

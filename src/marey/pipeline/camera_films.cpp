@@ -47,12 +47,15 @@ CameraFilms::Film CameraFilms::open(const Frame& frame) const {
   const auto index = static_cast<std::size_t>(number(frame.camera));
   const auto rate_hz = index < rig_.cameras.size() ? rig_.cameras[index].rate_hz : std::nullopt;
   const std::string path = (folder_ / file_of(frame.camera)).string();
-  return {std::make_unique<draw::MovieWriter>(path, frame.picture.size(), rate_hz, draw::MovieWriter::Quality::to_record),
+  using draw::MovieWriter;
+  return {std::make_unique<MovieWriter>(path, frame.picture.size(), rate_hz, MovieWriter::Quality::to_record,
+                                        MovieWriter::Keep::always),
           frame.time, frame.time};
 }
 
 void CameraFilms::write(const Instant& instant) {
   if (!wanted_->on()) return;
+  const std::size_t known = films_.size();
   for (const Frame& frame : instant.frames) {
     auto film = films_.find(frame.camera);
     if (film == films_.end()) {
@@ -63,17 +66,20 @@ void CameraFilms::write(const Instant& instant) {
     film->second.movie->write(draw::Canvas(frame.picture).take(), frame.time - film->second.begin + Timestamp{});
     film->second.last = frame.time;
   }
+  if (films_.size() > known) write_rig();
 }
 
 void CameraFilms::finish() {
-  if (films_.empty()) return;
+  for (auto& [id, film] : films_) film.movie->finish();
+}
+
+void CameraFilms::write_rig() const {
   const Timestamp first = std::min_element(films_.begin(), films_.end(), [](const auto& a, const auto& b) {
                             return a.second.begin < b.second.begin;
                           })->second.begin;
   Rig kept = rig_;
   kept.cameras.clear();
-  for (auto& [id, film] : films_) {
-    film.movie->finish();
+  for (const auto& [id, film] : films_) {
     const auto index = static_cast<std::size_t>(number(id));
     RigCamera camera = index < rig_.cameras.size() ? rig_.cameras[index] : RigCamera{};
     if (camera.name.empty()) camera.name = std::filesystem::path(file_of(id)).stem().string();
@@ -84,7 +90,6 @@ void CameraFilms::finish() {
     kept.cameras.push_back(std::move(camera));
   }
   format::rig::write_rig(kept, (folder_ / kRigFile).string());
-  made_ = false;
 }
 
 }  // namespace marey::pipeline

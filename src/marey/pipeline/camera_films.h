@@ -14,7 +14,8 @@
 namespace marey::pipeline {
 
 /// Writes FOLDER/CAMERA.mp4 of each camera, good enough to measure in, of the moments at which `wanted` is on, and FOLDER/rig.toml:
-/// the rig with these films as its sources, and when each began. What is not finished leaves nothing behind.
+/// the rig with these films as its sources, and when each began. Both are there from the first frame on and stay, however the
+/// program ends.
 class CameraFilms final : public Sink {
  public:
   CameraFilms(std::string folder, std::shared_ptr<const RecordSwitch> wanted);
@@ -37,6 +38,7 @@ class CameraFilms final : public Sink {
 
   std::string file_of(CameraId camera) const;
   Film open(const Frame& frame) const;
+  void write_rig() const;
 
   std::filesystem::path folder_;
   std::shared_ptr<const RecordSwitch> wanted_;

@@ -221,5 +221,22 @@ TEST(Feed, HonoursRegionRateAndOffset) {
   EXPECT_EQ(feed.sample(5, 2, 300).size(), 5u);
 }
 
+TEST(Feed, WarnsOfARateThatIsNotTheVideosOwn) {
+  const test::TemporaryFolder folder;
+  test::ffmpeg("-f lavfi -i testsrc=size=64x48:rate=60000/1001 -t 0.5 -c:v mpeg4 " + folder / "film.mp4");
+  RigCamera camera;
+  camera.name = "left";
+  camera.source = folder / "film.mp4";
+  EXPECT_TRUE(Feed(camera, CameraId{0}).warnings().empty());
+  camera.rate_hz = 60;
+  EXPECT_TRUE(Feed(camera, CameraId{0}).warnings().empty()) << "of 59.94 that is the same";
+  camera.rate_hz = 120;
+  const Feed feed(camera, CameraId{0});
+  ASSERT_EQ(feed.warnings().size(), 1u);
+  const std::string warning = feed.warnings().front();
+  for (const char* part : {"camera \"left\"", "59.94", "120", "remove the rate"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+}
+
 }  // namespace
 }  // namespace marey::pipeline

@@ -94,7 +94,7 @@ EditHistory edit_history(const std::string& path) {
 }
 
 std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditRequest>& requests, const Hooks& hooks,
-                                const std::optional<EditState>& on) {
+                                const std::optional<EditState>& on, std::vector<std::string>* notes) {
   std::vector<DoneEdit> done;
   const TakeReader take(path);
   auto [before, head, state] = standing_of(take, path, on);
@@ -103,7 +103,14 @@ std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditR
   for (const EditRequest& request : requests) {
     hooks.advance({.step = "editing", .done = std::ssize(done), .total = std::ssize(requests)});
     try {
-      const Operation operation = edit::decide(edit::parse_request(request.text), tracks);
+      const edit::Request parsed = edit::parse_request(request.text);
+      edit::OpenGaps open;
+      const Operation operation = edit::decide(parsed, tracks, notes == nullptr ? nullptr : &open);
+      const bool nothing = operation.kind == Operation::Kind::fill && operation.gaps.empty();
+      if (nothing || open.all() > 0)
+        notes->push_back(
+            fmt::format("{}: {}{}", request.where, edit::words_of(open, parsed), nothing ? "; nothing was filled" : ""));
+      if (nothing) continue;
       tracks.apply(operation);
       Edit edit = edit::edit_of(operation);
       edit.id = id++;
@@ -115,6 +122,7 @@ std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditR
       throw Error("{}: {}{}", request.where, error.what(), requests.size() > 1 ? "; nothing was changed" : "");
     }
   }
+  if (done.empty()) return done;
   std::vector<Edit> edits;
   for (const DoneEdit& one : done) edits.push_back(one.edit);
   format::take::add_edits(path, edits, head, state);

@@ -44,8 +44,10 @@ EditHistory edit_history(const std::string& path);
 // Error, and changes nothing, where they are others by then.
 
 /// Throws Error, with where it was asked for, at the first that cannot be done; then nothing is. Returns them as they were done.
+/// With `notes` a fill that finds no gap to fill is not done, and is no Error; they get a sentence for it, and for each fill that
+/// leaves gaps open.
 std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditRequest>& requests, const Hooks& hooks = {},
-                                const std::optional<EditState>& on = {});
+                                const std::optional<EditState>& on = {}, std::vector<std::string>* notes = nullptr);
 
 /// Goes back (steps < 0) or on along the branch that was taken last, and returns the head then; nothing: what was recorded.
 std::optional<std::int64_t> move_head(const std::string& path, std::int64_t steps, const std::optional<EditState>& on = {});

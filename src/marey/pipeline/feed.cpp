@@ -19,6 +19,7 @@
 #include "marey/format/tracks/detections.h"
 #include "marey/pipeline/stopwatch.h"
 #include "marey/source/open_source.h"
+#include "marey/source/rates.h"
 #include "marey/source/read_ahead.h"
 #include "marey/source/region_source.h"
 
@@ -339,6 +340,11 @@ Feed Feed::again() const {
   throw Error("{}", said_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
 }
 
+std::function<Feed()> Feed::opener() const {
+  if (!can_rewind()) return {};
+  return [camera = camera_, id = id_, options = options_] { return Feed(camera, id, options); };
+}
+
 std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) const {
   if (!can_rewind()) return {};
   FeedOptions options = options_;
@@ -356,9 +362,20 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
   return samples;
 }
 
+std::string Feed::rate_warning() const {
+  if (!is_live() || !camera_.rate_hz) return {};
+  const auto own = live_->info().rate_hz;
+  if (!own || !source::differ(*own, *camera_.rate_hz)) return {};
+  return said_of(camera_, fmt::format("the rig says rate = {0:g}, the camera {1:g} frames per second: {2}; set rate = {1:g} in the "
+                                      "rig, or remove it",
+                                      *camera_.rate_hz, *own,
+                                      *own < *camera_.rate_hz ? "instants between its frames have none" : "frames are dropped"));
+}
+
 std::vector<std::string> Feed::warnings() const {
   std::vector<std::string> all;
   for (const std::string& warning : is_live() ? live_->warnings() : input_->warnings()) all.push_back(said_of(camera_, warning));
+  if (std::string warning = rate_warning(); !warning.empty()) all.push_back(std::move(warning));
   if (detector_ == nullptr) return all;
   for (const std::string& warning : detector_->warnings()) all.push_back(said_of(camera_, info().name + ": " + warning));
   return all;

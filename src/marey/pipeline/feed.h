@@ -81,12 +81,16 @@ class Feed {
   bool can_rewind() const;
   /// The same camera from its beginning, without a detector. Throws Error where it cannot be read twice.
   Feed again() const;
+  /// Makes what `again` does, later and often; empty where that cannot be read twice. The feed need not be there any more.
+  std::function<Feed()> opener() const;
   /// At most `count` frames, spread evenly over the first `seconds`; the feed itself stays where it is. None where it cannot be
   /// read twice. Throws Stopped.
   std::vector<Frame> sample(int count, double seconds, int most_frames) const;
   /// What a detector learns the empty scene from: thirty frames of thirty seconds, of which 300 frames are read at most.
   std::vector<Frame> sample_beginning() const { return sample(30, 30, 300); }
 
+  /// Of a live camera: what to do if the rig's rate is not the camera's own; empty if it is.
+  std::string rate_warning() const;
   /// What went wrong so far without stopping it, one sentence each, with the camera's name where it has one.
   std::vector<std::string> warnings() const;
 

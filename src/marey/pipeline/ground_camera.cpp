@@ -182,12 +182,17 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
   if (!sizes_known) learned_.emplace();
   if (options.ball && whole != nullptr && !turning_ && feed.has_pictures()) ball_.emplace(ball_sizes(view, area), *options.ball);
+  if (detector_ != nullptr && !turning_) standing_ = std::make_shared<StandingPeople>(Picture());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  if (!turning_) shaking_ = shaking(camera_, samples);
+  if (!turning_) shaking_ = shaking(samples);
   if (ball_) ball_->prime(samples);
-  for (Frame& frame : samples) frame.picture = looked_at(frame.picture);
+  for (Frame& frame : samples) {
+    frame.picture = looked_at(frame.picture);
+    if (options.without) frame.picture = options.without->without_them(frame.picture);
+  }
   detector_->prime(samples);
+  if (standing_) standing_ = std::make_shared<StandingPeople>(detector_->scene());
 }
 
 GroundCamera::~GroundCamera() = default;
@@ -223,15 +228,21 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
 /// Who is expected is where the detector need not learn the background.
 detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected) {
   expected_.clear();
+  in_picture_.clear();
   const cv::Size size = frame.picture.size();
   const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
   for (const Track<2>& track : expected) {
     const auto box = box_at(track.position, frame.time);
     if (!box) continue;
     const Box here = geometry::intersection(moved(*box, -corner()), picture);
-    if (!here.empty()) expected_.push_back({here});
+    if (here.empty()) continue;
+    expected_.push_back({here});
+    in_picture_.push_back(track);
+    in_picture_.back().box = here;
   }
-  return detector_->detect(frame, expected_);
+  detect::Detections found = detector_->detect(frame, expected_);
+  if (standing_) standing_->see(frame, in_picture_, *detector_);
+  return found;
 }
 
 void GroundCamera::learn_sizes(const std::vector<Detection>& detections, const cv::Size& size) {
@@ -275,7 +286,7 @@ void GroundCamera::report(Summary& summary) const {
   counts.frames = frames_;
   counts.missed = summary.frames - frames_;
   counts.detections = detections_;
-  if (shaking_) summary.warnings.push_back(*shaking_);
+  if (shaking_) summary.warnings.push_back(said_of(camera_, *shaking_));
   counts.outside = outside_;
   summary.detections += detections_;
   if (!detector_) return;

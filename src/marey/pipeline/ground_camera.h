@@ -14,6 +14,7 @@
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/feed.h"
 #include "marey/pipeline/run.h"
+#include "marey/pipeline/standing_people.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ball/ball_moment.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -24,6 +25,7 @@ struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
   bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
   std::shared_ptr<const TurningCamera> turning = {};           ///< how it turns; nothing where it stands
+  std::shared_ptr<const StandingPeople> without = {};          ///< who is not to be taken for a part of the scene
   std::optional<detect::ball::BallDetectorOptions> ball = {};  ///< the ball is looked for, where the camera has pictures and stands
 };
 
@@ -51,6 +53,9 @@ class GroundCamera {
   /// The box of a person at `ground` (m, world) in the camera's picture, px; nothing where that is not known.
   std::optional<Box> box_at(const Vector<2>& ground, Timestamp time) const;
 
+  /// Who was taken for a part of the scene and has left it; nothing where there is no model of it.
+  const std::shared_ptr<StandingPeople>& standing() const { return standing_; }
+
   /// Puts in what was looked at, found and left out.
   void report(Summary& summary) const;
   std::int64_t frames() const { return frames_; }
@@ -73,6 +78,8 @@ class GroundCamera {
   std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are
   std::optional<detect::ball::BallDetector> ball_;
   std::optional<track::ball::BallView> ball_view_;
+  std::shared_ptr<StandingPeople> standing_;
+  std::vector<Track<2>> in_picture_;  // who is expected, in the part that is looked at
   std::vector<Expected> expected_;
   std::vector<Observation<2>> seen_;
   std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;

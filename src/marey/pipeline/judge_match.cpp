@@ -33,7 +33,7 @@ Velocities velocities_of(const Recording& recording, const TrackColumns& track, 
     return velocities;
   }
   if (!of_people(recording)) return velocities;
-  const std::vector<analyse::Path> paths = analyse::paths_of(recording, track);
+  const std::vector<analyse::Path> paths = analyse::paths_of(recording, track).paths;
   for (std::size_t row = 0; row < track.size(); ++row) {
     const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[row]));
     for (const analyse::Path& path : paths) {

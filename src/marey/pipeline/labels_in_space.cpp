@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -28,6 +29,26 @@ Recording points_in(const std::string& path, std::vector<std::string>* warnings,
 }
 
 constexpr std::size_t kFewFrames = 10;  // that a set is hardly learned from
+constexpr double kMisfit = 2;           // times as far off as distances of the subject that taught are
+constexpr double kFewFound = 0.7;       // of the set's markers
+
+/// That a set is of somebody else, where it is so.
+std::optional<std::string> misfit_of(const solve::labels::Labelled& labelled, const LabelSummary& summary, const std::string& set,
+                                     const std::string& recording) {
+  const auto found =
+      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.seen > 0; });
+  const bool off = labelled.misfit > kMisfit,
+             few = static_cast<double>(found) < kFewFound * static_cast<double>(summary.health.size());
+  if (!off && !few) return std::nullopt;
+  return fmt::format(
+      "{}: the set {} does not fit: {}{} of its {} markers have names, and of those some may be wrong; is it of another person, or "
+      "were markers moved? Learn one of this person, or one with --scaled from several",
+      recording, set,
+      off ? fmt::format("distances that it knows as rigid are off by {:.0f} mm (median), {:.1f} times what is expected; ",
+                        1e3 * labelled.misfit_m, labelled.misfit)
+          : "",
+      found, summary.health.size());
+}
 
 /// Whether a label is of a pattern, in which * stands for any letters.
 bool is_like(std::string_view label, std::string_view pattern) {
@@ -134,6 +155,8 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   summary.unnamed = std::move(labelled.unnamed);
   summary.renamed = labelled.renamed;
   summary.scale = labelled.scale;
+  summary.misfit = labelled.misfit;
+  if (auto sentence = misfit_of(labelled, summary, set, recording)) summary.warnings.push_back(std::move(*sentence));
   for (const auto& marker : summary.health) {
     if (marker.seen == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
   }

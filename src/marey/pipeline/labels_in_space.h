@@ -25,6 +25,7 @@ struct LabelSummary {
   std::int64_t instants = 0, points = 0, named = 0;  ///< points that were measured or filled; of these with a name now
   std::int64_t renamed = 0;                          ///< stretches of tracks that had another name of the set
   double scale = 1;
+  double misfit = 0;  ///< how far rigid distances are off, against what is expected of the subject that taught: about 1
   std::vector<std::string> warnings;
 };
 

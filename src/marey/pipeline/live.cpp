@@ -31,6 +31,7 @@ class Watched final : public Stage {
   std::span<const Instant> step(const FrameSet& frames) override {
     const Timestamp given = time_.now();
     const std::span<const Instant> known = stage_->step(frames);
+    monitor_.heard(stage_->news());
     monitor_.saw(frames, known, given, time_.now());
     return known;
   }

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kTold = 0.25;   // s between two reports
 constexpr double kMeasured = 1;  // s over which rates are counted
-constexpr double kWindow = 5;    // s of latencies: those of the window before are shown until the next one is full
+constexpr std::ptrdiff_t kNewsKept = 10;
+constexpr double kWindow = 5;  // s of latencies: those of the window before are shown until the next one is full
 
 Summary::StepTime step_of(const char* name, const StageTimes& times) {
   return {name, times.count(), times.quantile(0.5), times.quantile(0.99)};
@@ -45,6 +46,13 @@ void LiveMonitor::saw(const FrameSet& frames, std::span<const Instant> instants,
     for (const SeenPoint& seen : instants.back().seen) ++detections_[static_cast<std::size_t>(number(seen.camera))];
   }
   tick();
+}
+
+void LiveMonitor::heard(const std::vector<std::string>& news) {
+  if (news.empty()) return;
+  news_count_ += std::ssize(news);
+  news_.insert(news_.end(), news.begin(), news.end());
+  if (std::ssize(news_) > kNewsKept) news_.erase(news_.begin(), news_.end() - kNewsKept);
 }
 
 void LiveMonitor::tick() {
@@ -97,6 +105,11 @@ LiveStatus LiveMonitor::status() const {
   }
   status.recording = recording_ && recording_();
   status.troubles = sinks_->troubles();
+  status.news = news_;
+  status.news_count = news_count_;
+  for (const Feed& feed : clock_->feeds()) {
+    if (std::string warning = feed.rate_warning(); !warning.empty()) status.troubles.push_back(std::move(warning));
+  }
   return status;
 }
 

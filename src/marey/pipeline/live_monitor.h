@@ -35,6 +35,8 @@ struct LiveStatus {
   std::optional<double> latency_median_s, latency_p99_s;  ///< from exposure to the instant, over the last few seconds
   bool recording = false;
   std::vector<std::string> troubles;  ///< of sinks, one sentence each
+  std::vector<std::string> news;      ///< the last few things that were found out, one sentence each
+  std::int64_t news_count = 0;        ///< how many there were so far
 };
 
 /// Watches a clock and what is made of its moments. All from the run's own thread.
@@ -49,6 +51,8 @@ class LiveMonitor {
   void watch(const Clock& clock, const Sinks& sinks);
   /// A moment went on, and instants came of it.
   void saw(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done);
+  /// What the job found out, one sentence each.
+  void heard(const std::vector<std::string>& news);
   /// Time goes on.
   void tick();
 
@@ -71,7 +75,8 @@ class LiveMonitor {
   std::vector<double> rates_;
   std::vector<std::int64_t> frames_, detections_;
   std::vector<FeedState> states_;
-  std::int64_t instants_ = 0, targets_ = 0;
+  std::int64_t instants_ = 0, targets_ = 0, news_count_ = 0;
+  std::vector<std::string> news_;
 };
 
 }  // namespace marey::pipeline

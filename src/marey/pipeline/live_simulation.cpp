@@ -14,6 +14,7 @@
 #include "marey/simulate/people/people_film.h"
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/to_and_fro.h"
 #include "marey/source/live/played.h"
 
 namespace marey::pipeline {
@@ -122,11 +123,39 @@ struct SharedRoom {
   }
 };
 
+/// What a camera sees, drawn beforehand.
+struct DrawnRoom {
+  simulate::room::RoomSpots spots;
+  std::vector<simulate::room::RoomSpots::Drawn> drawn;
+  std::int64_t period = 0;  ///< frames there and back
+
+  DrawnRoom(const SharedRoom& room, int camera);
+  const simulate::room::RoomSpots::Drawn& frame(std::int64_t number) const;
+};
+
+/// The frames of one way, or of both where the camera's offset from the turns makes them differ.
+DrawnRoom::DrawnRoom(const SharedRoom& room, int camera) : spots(room.scene, static_cast<std::size_t>(camera)) {
+  const auto one_way = std::max<std::int64_t>(2, std::llround(room.behaviour.drawn_s * room.rate_hz()));
+  const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
+  period = 2 * one_way - 2;
+  drawn.resize(static_cast<std::size_t>(offset == 0 ? one_way : period));
+  const double length = static_cast<double>(one_way - 1) / room.rate_hz();
+  tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) {
+    const double t = simulate::room::to_and_fro(offset + static_cast<double>(i) / room.rate_hz(), length);
+    drawn[i] = spots.draw(t, room.seen_by(camera, t, i), i);
+  });
+}
+
+const simulate::room::RoomSpots::Drawn& DrawnRoom::frame(std::int64_t number) const {
+  const std::int64_t at = (number % period + period) % period;
+  return drawn[static_cast<std::size_t>(at < std::ssize(drawn) ? at : period - at)];
+}
+
 /// One of its cameras. Frame n is exposed at offset + n / rate by the camera's own clock.
 class RoomCamera final : public Connection {
  public:
-  RoomCamera(std::shared_ptr<const SharedRoom> room, std::shared_ptr<const std::vector<cv::Mat>> drawn, int camera,
-             const std::string& name, Timestamp begin, source::LiveTime& time, std::stop_token stop)
+  RoomCamera(std::shared_ptr<const SharedRoom> room, std::shared_ptr<const DrawnRoom> drawn, int camera, const std::string& name,
+             Timestamp begin, source::LiveTime& time, std::stop_token stop)
       : room_(std::move(room)), drawn_(std::move(drawn)), camera_(camera), begin_(begin), time_(time), stop_(std::move(stop)) {
     info_.name = name;
     info_.size = room_->scene.options().picture;
@@ -208,9 +237,8 @@ class RoomCamera final : public Connection {
 
   CameraFrame drawn(std::int64_t frame) const {
     CameraFrame given;
-    if (drawn_ != nullptr && !drawn_->empty()) {
-      const auto count = std::ssize(*drawn_), turn = std::max<std::int64_t>(1, 2 * count - 2), at = frame % turn;
-      given.frame.picture = exposed_picture((*drawn_)[static_cast<std::size_t>(at < count ? at : turn - at)]);
+    if (drawn_ != nullptr) {
+      given.frame.picture = exposed_picture(drawn_->spots.picture(drawn_->frame(frame)));
       return given;
     }
     const double t = exposed(frame);
@@ -230,7 +258,7 @@ class RoomCamera final : public Connection {
   }
 
   std::shared_ptr<const SharedRoom> room_;
-  std::shared_ptr<const std::vector<cv::Mat>> drawn_;
+  std::shared_ptr<const DrawnRoom> drawn_;
   int camera_;
   Timestamp begin_;
   source::LiveTime& time_;
@@ -262,15 +290,10 @@ class Rooms {
   std::map<std::string, std::weak_ptr<const SharedRoom>> rooms_;
 };
 
-std::shared_ptr<const std::vector<cv::Mat>> draw_beforehand(const SharedRoom& room, int camera) {
-  const auto count = static_cast<std::size_t>(std::llround(room.behaviour.drawn_s * room.rate_hz()));
-  auto drawn = std::make_shared<std::vector<cv::Mat>>(room.behaviour.blobs ? 0 : count);
-  const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
-  tbb::parallel_for(std::size_t{0}, drawn->size(), [&](std::size_t i) {
-    const double t = offset + static_cast<double>(i) / room.rate_hz();
-    (*drawn)[i] = room.drawn(camera, t, i);
-  });
-  return drawn;
+/// Null where everything is drawn as it comes.
+std::shared_ptr<const DrawnRoom> draw_beforehand(const SharedRoom& room, int camera) {
+  if (room.behaviour.blobs || room.behaviour.drawn_s * room.rate_hz() < 0.5) return nullptr;
+  return std::make_shared<DrawnRoom>(room, camera);
 }
 
 source::live::Connect open_room(Rooms& rooms, const Address& address, const Opening& opening) {

@@ -22,6 +22,11 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
   return fmt::format("{:g}-{:g}", zone == 0 ? 0.0 : borders[zone - 1], borders[zone]);
 }
 
+/// Empty where it is not known.
+std::string shown_if_known(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string();
+}
+
 /// Teams that are called by the colour of their shirts are drawn in it.
 std::optional<Appearance> shirt_of(const std::string& team) {
   try {
@@ -39,11 +44,13 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   page.team = person.team;
   page.appearance = shirt_of(person.team);
   page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
-                fmt::format("{:.1f}", person.top_mps),    std::to_string(person.sprints),
-                std::to_string(person.accelerations),     std::to_string(person.decelerations)};
+                shown_if_known(person.top_mps, 1),        shown_if_known(person.top_sigma_mps, 1),
+                std::to_string(person.sprints),           std::to_string(person.accelerations),
+                std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
     page.paths.push_back(path.place);
+    page.seen.push_back(path.seen);
     auto& speeds = page.speeds.emplace_back();
     for (std::size_t i = 0; i < path.velocity.size(); ++i)
       speeds.emplace_back(path.start_s + path.step_s * static_cast<double>(i), path.velocity[i].norm());
@@ -54,23 +61,40 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
 }
 
 std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options) {
-  std::string text = "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y";
+  std::string text =
+      "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y,"
+      "top_sigma_mps,seen_s,impossible";
   for (const char* unit : {"s", "m"}) {
     for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
       text += fmt::format(",{}_at_{}_mps", unit, zone_name(options.zones, zone));
   }
   text += '\n';
   for (const analyse::PersonMeasure& person : measured.people) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{:.3f},{},{:.2f},{},{},{:.2f},{:.2f}", person.id,
+    fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{},{},{:.2f},{},{},{:.2f},{:.2f},{},{:.2f},{}", person.id,
                    format::quoted_field(person.label), format::quoted_field(person.team), person.distance_m, person.mean_mps,
-                   person.top_mps, person.sprints, person.seconds, person.accelerations, person.decelerations,
-                   person.average_place.x(), person.average_place.y());
+                   shown_if_known(person.top_mps, 3), person.sprints, person.seconds, person.accelerations, person.decelerations,
+                   person.average_place.x(), person.average_place.y(), shown_if_known(person.top_sigma_mps, 3), person.seen_s,
+                   person.impossible.size());
     for (const auto* zones : {&person.zone_s, &person.zone_m}) {
       for (const double value : *zones) fmt::format_to(std::back_inserter(text), ",{:.2f}", value);
     }
     text += '\n';
   }
   return text;
+}
+
+void add_impossible(const analyse::Measurement& measured, draw::MatchReport& report) {
+  draw::PageTable table;
+  table.title = "Not counted: nobody moves like that";
+  table.head = {"no.", "name", "from, s", "to, s", "what is wrong"};
+  table.bars_from = 5;
+  for (const analyse::PersonMeasure& person : measured.people) {
+    for (const analyse::ImpossibleStretch& stretch : person.impossible)
+      table.rows.push_back({std::to_string(person.id), person.label, fmt::format("{:.1f}", stretch.begin_s),
+                            fmt::format("{:.1f}", stretch.end_s),
+                            stretch.one_person ? "the places" : "the number: before and after are two people"});
+  }
+  if (!table.rows.empty()) report.tables.push_back(std::move(table));
 }
 
 /// The halves, as the file tells them.
@@ -114,7 +138,7 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
   report.title = title;
   report.pitch = options.pitch;
   report.periods = periods_of(match);
-  report.columns = {"distance, m", "mean, m/s", "top, m/s", "sprints", "accelerations", "decelerations"};
+  report.columns = {"distance, m", "mean, m/s", "top, m/s", "± m/s", "sprints", "accelerations", "decelerations", "seen, s"};
   for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
     report.columns.push_back(fmt::format("m at {} m/s", zone_name(options.zones, zone)));
   for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
@@ -131,6 +155,7 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
     }
   }
   if (measured.ball) add_ball_tables(*measured.ball, report);
+  add_impossible(measured, report);
   WholeFile file((std::filesystem::path(folder) / "report.html").string());
   file.write(draw::to_html(report));
   file.finish();

@@ -1,13 +1,19 @@
 #include "marey/pipeline/people_in_picture.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/nobody_found.h"
+#include "marey/pipeline/picture_doubts.h"
+#include "marey/pipeline/standing_people.h"
 #include "marey/pipeline/steady_camera.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
@@ -113,7 +119,10 @@ class LiveRest final : public InstantSource {
 class PeopleInPicture final : public Stage {
  public:
   PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
-      : options_(options), tracker_(track::make_tracker(tracker_options(feed, options))) {
+      : options_(options),
+        camera_(feed.camera()),
+        tracking_(tracker_options(feed, options)),
+        tracker_(track::make_tracker(tracking_)) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.made_by.program = "marey track";
@@ -124,6 +133,7 @@ class PeopleInPicture final : public Stage {
     if (feed.has_pictures() && feed.detector() == nullptr) {
       detector_ = detect::make_detector(searching_every_frame(options.detector));
       if (!options.live) prime(feed);
+      standing_.emplace(options.live ? Picture() : detector_->scene());
     }
     if (!options.masks.empty()) {
       if (!detector_) throw Error("{}: masks are of the background model, and detections are given", options.masks);
@@ -133,7 +143,7 @@ class PeopleInPicture final : public Stage {
     if (!options.outlines) return;
     if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
     follower_.emplace(*options.outlines);
-    if (!options.live) outlines_.emplace(options.beside, options.with_lines);
+    if (!options.live) outlines_ = std::make_unique<track::OutlineLog>(options.beside, options.with_lines);
   }
 
   RecordingHeader header() const override { return header_; }
@@ -142,30 +152,42 @@ class PeopleInPicture final : public Stage {
     const CameraFrame& given = *frames.cameras.front();
     if (skips_frame(given)) return pass_over(given.frame);
     const detect::Detections seen = detect(given);
-    if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
+    if (detector_) doubts_.add(given.frame, seen);
     const auto tracks = follow(given.frame, seen);
-    for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
-    detections_ += std::ssize(seen.detections);
-    if (live_) return told(given.frame, tracks);
+    const bool stood = standing_ && standing_->see(given.frame, tracks, *detector_);
+    if (live_) {
+      count(tracks, seen.detections.size());
+      return told(given.frame, tracks);
+    }
     if (!given.frame.picture.empty()) {
       const cv::Size size = given.frame.picture.size();
       options_.join.view = Box{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
     }
     const auto number = std::ssize(moments_);
-    recording_.add(number, given.frame.time, tracks, clothes_of(given.frame, seen));
     moments_.push_back({given.frame.index, given.frame.time});
-    if (outlines_) outlines_->add(number, tracks);
+    const std::vector<track::Clothes> clothes = clothes_of(given.frame, seen);
+    log(number, tracks, clothes, seen.detections.size());
+    if (!open_again_) return {};
+    if (stood) {
+      looked_at_again_ = number + 1;
+      after_.clear();
+    } else if (looked_at_again_ > 0 && !outlines_) {  // outlines need the pictures, to the end
+      after_.push_back({observations_of(seen.detections, given.frame.camera), clothes});
+    }
     return {};
   }
 
-  std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) override {
+  std::vector<std::string> news() override { return standing_ ? standing_->news() : std::vector<std::string>{}; }
+
+  std::unique_ptr<InstantSource> finish(const Hooks& hooks) override {
+    if (looked_at_again_ > 0 && !hooks.stop.stop_requested()) look_again(hooks);
     if (masks_) masks_->finish();
     if (live_) {
       if (live_->empty()) return nullptr;
       return std::make_unique<LiveRest>(*live_, options_.seen_only);
     }
-    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_),
-                                        outlines_ ? &*outlines_ : nullptr, options_.seen_only);
+    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_), outlines_.get(),
+                                        options_.seen_only);
   }
 
   void report(Summary& summary) const override {
@@ -173,23 +195,108 @@ class PeopleInPicture final : public Stage {
     std::int64_t too_brief = 0;
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
-    if (shaking_) summary.warnings.push_back(*shaking_);
+    report_standing(summary);
+    report_counts(summary);
+    if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
+  }
+
+ private:
+  /// What the tracker is told of a frame.
+  struct Observed {
+    std::vector<Observation<2>> seen;
+    std::vector<track::Clothes> clothes;
+  };
+
+  void report_counts(Summary& summary) const {
     if (detector_ == nullptr) return;
+    for (std::string& doubt : doubts_.warnings(camera_, shaking_, options_.steady)) summary.warnings.push_back(std::move(doubt));
     const detect::DetectionCounts counts = detector_->detection_counts();
     if (counts.noise) summary.left_out["noise"] = *counts.noise;
     if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
   }
 
- private:
+  void report_standing(Summary& summary) const {
+    if (!standing_) return;
+    if (!open_again_) {
+      for (std::string& sentence : standing_->said()) summary.notes.push_back(std::move(sentence));
+    } else if (added_ > 0) {
+      summary.notes.push_back(
+          fmt::format("{} stood in the scene from the beginning and left it later: {} tracked from the first frame on, which was "
+                      "looked at again",
+                      added_ == 1 ? "one person" : fmt::format("{} people", added_), added_ == 1 ? "that one is" : "they are"));
+    }
+  }
+
+  void count(std::span<const Track<2>> tracks, std::size_t detections) {
+    for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
+    detections_ += static_cast<std::int64_t>(detections);
+  }
+
+  /// What is known of one frame, for the second pass.
+  void log(std::int64_t number, std::span<const Track<2>> tracks, std::span<const track::Clothes> clothes, std::size_t detections) {
+    count(tracks, detections);
+    recording_.add(number, moments_[static_cast<std::size_t>(number)].time, tracks, clothes);
+    if (outlines_) outlines_->add(number, tracks);
+  }
+
+  /// Begins anew with a scene in which those who left it are not. What was seen after the last of them had left is as it was seen
+  /// then. Where this is stopped, what was found at first counts.
+  void look_again(const Hooks& hooks) {
+    track::TrackletLog first = std::exchange(recording_, {});
+    std::unique_ptr<track::OutlineLog> first_outlines = std::move(outlines_);
+    if (first_outlines) outlines_ = std::make_unique<track::OutlineLog>(options_.beside, options_.with_lines);
+    if (follower_) follower_.emplace(*options_.outlines);
+    bool done = false;
+    try {
+      done = look_without_them(hooks);
+    } catch (const Stopped&) {  // while the feed was read
+    }
+    if (done) {
+      added_ = standing_->since_beginning();
+      return;
+    }
+    recording_ = std::move(first);
+    outlines_ = std::move(first_outlines);
+  }
+
+  /// False where it is asked to stop.
+  bool look_without_them(const Hooks& hooks) {
+    believed_.clear();
+    begun_.clear();
+    detections_ = 0;
+    tracker_ = track::make_tracker(tracking_);
+    Feed feed = open_again_();
+    std::vector<Frame> samples = feed.sample_beginning();
+    for (Frame& sample : samples) sample.picture = standing_->without_them(sample.picture);
+    detector_ = detect::make_detector(searching_every_frame(options_.detector));
+    detector_->prime(samples);
+    const std::int64_t count = outlines_ ? std::ssize(moments_) : looked_at_again_;
+    std::int64_t number = 0;
+    for (; number < count; ++number) {
+      const std::optional<CameraFrame> given = feed.next();
+      if (!given || hooks.report({"looking again", number, count}) == Continue::no) return false;
+      const detect::Detections seen = detect(*given);
+      log(number, follow(given->frame, seen), clothes_of(given->frame, seen), seen.detections.size());
+    }
+    for (const Observed& later : after_) {
+      log(number, tracker_->step(moments_[static_cast<std::size_t>(number)].time, later.seen), later.clothes, later.seen.size());
+      ++number;
+    }
+    return true;
+  }
+
   void prime(const Feed& feed) {
     const std::vector<Frame> samples = feed.sample_beginning();
     detector_->prime(samples);
-    shaking_ = shaking(feed.camera(), samples);
+    if (!samples.empty()) open_again_ = feed.opener();
+    if (!options_.steady) shaking_ = shaking(samples);
   }
 
   detect::Detections detect(const CameraFrame& given) {
     if (given.detections) return {.detections = *given.detections, .foreground = {}};
-    return detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+    detect::Detections seen = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+    if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
+    return seen;
   }
 
   /// Whether this is a frame between those that a network without a background model searches.
@@ -230,18 +337,26 @@ class PeopleInPicture final : public Stage {
   }
 
   PeopleInPictureOptions options_;
+  RigCamera camera_;
+  track::TrackerOptions tracking_;
   RecordingHeader header_;
   std::unique_ptr<detect::Detector> detector_;  // none where the feed brings detections
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::OutlineFollower> follower_;
-  std::optional<track::OutlineLog> outlines_;
+  std::unique_ptr<track::OutlineLog> outlines_;
   std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
   std::optional<track::LiveTracks> live_;
   std::vector<Instant> due_;
+  std::optional<StandingPeople> standing_;  // where a background model may have taken them for the scene
+  std::function<Feed()> open_again_;        // empty where that is not to be
+  std::int64_t looked_at_again_ = 0;        // frames, once somebody is known to be missing from them
+  std::vector<Observed> after_;             // of the frames that follow those
+  int added_ = 0;                           // people who are in the results because of that
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0, frames_ = 0;
+  PictureDoubts doubts_;
   std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };
 

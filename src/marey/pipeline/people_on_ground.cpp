@@ -13,6 +13,8 @@
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/ground_offsets.h"
+#include "marey/pipeline/live_teams.h"
+#include "marey/pipeline/nobody_found.h"
 #include "marey/track/view_log.h"
 
 namespace marey::pipeline {
@@ -73,6 +75,9 @@ class GroundStage final : public PeopleOnGround {
     tracker.evidence.tentative_patience = std::max(tracker.evidence.tentative_patience, kPatientFrames / feeds.front().rate_hz());
     if (options.live) {
       tracker_ = track::ground::make_ground_tracker(tracker, views_);
+      analyse::TeamOptions teams = options.teams;
+      teams.pitch = area_.pitch();
+      if (!teams.names.empty()) live_teams_.emplace(teams);
     } else {
       run_.emplace(tracker, options_.join, options_.learn, views_,
                    [this](const GroundInstant& instant, std::span<const ObservationMatch> matches) { note(instant, matches); });
@@ -88,6 +93,21 @@ class GroundStage final : public PeopleOnGround {
   RecordingHeader header() const override { return header_; }
   void want_boxes() override { wants_boxes_ = true; }
   const std::vector<analyse::Teams::Team>& teams() const override { return teams_.teams; }
+
+  std::vector<std::shared_ptr<StandingPeople>> standing() const override {
+    std::vector<std::shared_ptr<StandingPeople>> all;
+    for (const GroundCamera& camera : cameras_) all.push_back(camera.standing());
+    return all;
+  }
+
+  std::vector<std::string> news() override {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < cameras_.size() && options_.live; ++i) {
+      if (cameras_[i].standing() == nullptr) continue;
+      for (const std::string& sentence : cameras_[i].standing()->news()) all.push_back(said_of(rig_.cameras[i], sentence));
+    }
+    return all;
+  }
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const auto seen = observe(frames, run_ ? run_->expected(frames.time) : tracker_->expected(frames.time));
@@ -123,6 +143,7 @@ class GroundStage final : public PeopleOnGround {
     if (!options_.live) summary.figures["joins"] = static_cast<double>(joins_);
     if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
+    if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
     for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
     for (const Summary::Camera& camera : summary.cameras) {
       if (camera.frames > 0) continue;
@@ -194,6 +215,7 @@ class GroundStage final : public PeopleOnGround {
       const GroundCameraOptions how{.detector = options_.detector,
                                     .prime = !options_.live,
                                     .turning = turning_of(options_.turning, feeds[i].id()),
+                                    .without = i < options_.without.size() ? options_.without[i] : nullptr,
                                     .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};
       opened[i].emplace(feeds[i], views_, area_, how);
     });
@@ -264,6 +286,7 @@ class GroundStage final : public PeopleOnGround {
       sample.provenance = track.state == Track<2>::State::observed ? Provenance::measured : Provenance::predicted;
       sample.cameras = track.cameras;
     }
+    if (live_teams_) instant.named = live_teams_->step(instant, appearances(seen));
     if (!wants_boxes_) return instant;
     logs_ = std::vector<track::ViewLog>(cameras_.size());
     for (std::size_t i = 0; i < logs_.size(); ++i) {
@@ -274,6 +297,16 @@ class GroundStage final : public PeopleOnGround {
     for (track::ViewLog& log : logs_) log.name([](TrackId track, std::int32_t) { return track; });
     add_boxes(instant);
     return instant;
+  }
+
+  /// What was observed of each track at this instant.
+  std::map<TrackId, Appearance> appearances(std::span<const CameraObservations> seen) const {
+    std::map<TrackId, Appearance> appearances;
+    for (const ObservationMatch& match : tracker_->matches()) {
+      const auto& observation = seen[static_cast<std::size_t>(match.view)].seen[static_cast<std::size_t>(match.observation)];
+      if (observation.appearance && !observation.shared) appearances.insert_or_assign(match.track, *observation.appearance);
+    }
+    return appearances;
   }
 
   /// The second pass: the tracks of the whole recording, in the user's coordinates, without those who never were in the area.
@@ -369,6 +402,7 @@ class GroundStage final : public PeopleOnGround {
   Recording recording_;
   std::vector<track::ball::BallMoment> ball_moments_;
   std::optional<TrackId> ball_;
+  std::optional<LiveTeams> live_teams_;  // where `live`, of teams that are named
   analyse::Teams teams_;
   std::int64_t off_pitch_ = 0;
   double joining_s_ = 0;

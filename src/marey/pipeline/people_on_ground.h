@@ -3,6 +3,7 @@
 // teams once the whole recording is known. Everything before the last step is in the rig's right-handed world.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ struct PeopleOnGroundOptions {
   TurningCameras turning;                    ///< of the rig's cameras, those that turn
   std::optional<BallOptions> ball = {};      ///< the ball is followed too; not where `live`
   bool steady = false;                       ///< cameras shake: the pictures of each that stands are steadied first
-  double margin = 2;                         ///< m round the pitch or the area where people still count
+  std::vector<std::shared_ptr<const StandingPeople>> without;  ///< by camera: who is no part of its scene; may be empty
+  double margin = 2;                                           ///< m round the pitch or the area where people still count
   /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;
 };
@@ -45,6 +47,8 @@ reconstruct::GroundArea area_of(const Rig& rig, const PeopleOnGroundOptions& opt
 class PeopleOnGround : public Stage {
  public:
   virtual const std::vector<analyse::Teams::Team>& teams() const = 0;
+  /// Of each camera who was taken for a part of its scene and has left it; nothing where that is not looked for.
+  virtual std::vector<std::shared_ptr<StandingPeople>> standing() const = 0;
 };
 
 /// `feeds` are the rig's cameras; instants are those of a clock over them. The results are in the

@@ -75,6 +75,8 @@ class Stage {
   /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
+  /// What somebody who watches should know at once of what the steps since the last call found out, one sentence each.
+  virtual std::vector<std::string> news() { return {}; }
   /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
   /// where all was told.
   virtual std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) { return nullptr; }

@@ -14,8 +14,6 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kShakes = 1.5;  // px root mean square, from which on people are lost to it (docs/tuning.md)
-
 /// The calibrated lens, without its distortion, in pixels of the whole picture.
 std::optional<source::steady::PinholeView> pinhole_of(const RigCamera& camera, cv::Size picture) {
   if (!camera.lens || !camera.size || camera.size->empty()) return std::nullopt;
@@ -91,11 +89,14 @@ void SteadyCamera::report(Summary& summary) const {
   for (const std::string& warning : source::steady::warned(counts)) summary.warnings.push_back(said_of(camera_, warning));
 }
 
-std::optional<std::string> shaking(const RigCamera& camera, std::span<const Frame> samples) {
+std::string said_of_shaking(double px) {
+  return fmt::format("the camera shakes, by {:.1f} px (root mean square); --steady steadies its pictures first", px);
+}
+
+std::optional<std::string> shaking(std::span<const Frame> samples) {
   const auto moved = source::steady::motion_among(samples);
   if (!moved || *moved < kShakes) return std::nullopt;
-  return said_of(camera,
-                 fmt::format("the camera shakes, by {:.1f} px (root mean square); --steady steadies its pictures first", *moved));
+  return said_of_shaking(*moved);
 }
 
 }  // namespace marey::pipeline

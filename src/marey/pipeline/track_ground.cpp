@@ -16,6 +16,7 @@
 #include "marey/format/match/ground_file.h"
 #include "marey/format/take/take_file.h"
 #include "marey/format/tracks/view_box_file.h"
+#include "marey/pipeline/ground_again.h"
 #include "marey/pipeline/ground_offsets.h"
 #include "marey/pipeline/steady_camera.h"
 
@@ -100,7 +101,7 @@ GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOn
   std::vector<Feed> feeds = options.steady ? open_steadied(rig, options, steady) : open_feeds(rig, {.rate_hz = options.rate_hz});
   Sinks& sinks = sinks_for(rig, feeds);
   const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const Feed& feed) { return feed.has_pictures(); });
-  const auto stage = people_on_ground(feeds, rig, options);
+  const auto stage = people_on_ground_again(feeds, rig, options);
   Clock clock(std::move(feeds));
   GroundSummary summary{run(*stage, clock, sinks, hooks), stage->teams()};
   for (const SteadyCamera& camera : steady) camera.report(summary);

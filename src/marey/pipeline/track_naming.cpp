@@ -16,6 +16,7 @@ class NamedStage final : public Stage {
   RecordingHeader header() const override { return stage_->header(); }
   void want_boxes() override { stage_->want_boxes(); }
   std::span<const Instant> step(const FrameSet& frames) override { return naming_->enter(stage_->step(frames)); }
+  std::vector<std::string> news() override { return stage_->news(); }
   std::unique_ptr<InstantSource> finish(const Hooks& hooks) override { return stage_->finish(hooks); }
   void report(Summary& summary) const override { stage_->report(summary); }
 

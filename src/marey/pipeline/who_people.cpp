@@ -11,6 +11,7 @@
 
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
+#include "marey/filter/human_motion.h"
 #include "marey/track/ground/ground_cut.h"
 
 namespace marey::pipeline {
@@ -54,14 +55,34 @@ GroundSample sample_of(const TrackColumns& track, std::size_t row, double away) 
   return sample;
 }
 
-/// From a row that was measured to another one, without a gap that is long between.
+/// The rows before which another person begins, because nobody can have gone from the one before to it.
+std::vector<bool> begins_another(const TrackColumns& track, std::span<const Timestamp> times) {
+  std::vector<filter::TimedPlace> places;
+  std::vector<std::size_t> row_of;
+  for (std::size_t row = 0; row < track.size(); ++row) {
+    if (!track.measured(row)) continue;
+    const auto covariance = track.sample(row).covariance;
+    places.push_back(
+        {seconds(times[static_cast<std::size_t>(track.at()[row])]), track.place(row),
+         covariance ? Matrix<2>(covariance->topLeftCorner<2, 2>()) : kPlaceSigma * kPlaceSigma * Matrix<2>::Identity()});
+    row_of.push_back(row);
+  }
+  std::vector<bool> begins(track.size(), false);
+  for (const filter::ImpossiblePiece& piece : filter::impossible_pieces(places)) {
+    if (!piece.one_person) begins[row_of[piece.first + (piece.last - piece.first + 1) / 2]] = true;
+  }
+  return begins;
+}
+
+/// From a row that was measured to another one, without a gap that is long between, nor a leap that nobody makes.
 void add_tracklets(const TrackColumns& track, std::span<const Timestamp> times, std::vector<GroundTracklet>& tracklets) {
+  const std::vector<bool> begins = begins_another(track, times);
   const std::vector<double> away = unmeasured_for(track, times);
   const auto time_of = [&](std::size_t row) { return times[static_cast<std::size_t>(track.at()[row])]; };
   std::optional<std::size_t> last;
   for (std::size_t row = 0; row < track.size(); ++row) {
     if (!track.measured(row)) continue;
-    if (!last || seconds(time_of(row) - time_of(*last)) > kLost) {
+    if (!last || begins[row] || seconds(time_of(row) - time_of(*last)) > kLost) {
       if (last) tracklets.back().goes_on = true;
       tracklets.push_back({.runs = {{track.id(), 0}}, .confirmed = true, .samples = {}});
     } else {

@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/source/decoder.h"
+#include "marey/source/rates.h"
 
 namespace marey::source {
 namespace {
@@ -23,6 +24,12 @@ class VideoSource final : public Source {
     const auto duration = decoder_.duration_s();
     const auto rate = decoder_.rate_hz();
     if (!info_.frame_count && duration && rate) info_.frame_count = std::llround(*duration * *rate);
+    if (rate_hz && rate && differ(*rate_hz, *rate)) {
+      warnings_.push_back(fmt::format(
+          "{}: its header says {:g} frames per second, the given rate is {:g}, and that is used: times and speeds depend "
+          "on it; if the header is right, remove the rate (\"rate\" in the rig, or --rate)",
+          path, *rate, *rate_hz));
+    }
   }
 
   const SourceInfo& info() const override { return info_; }

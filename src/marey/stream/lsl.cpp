@@ -12,6 +12,7 @@
 
 #include "marey/stream/lsl_messages.h"
 #include "marey/stream/server.h"
+#include "marey/stream/track_slots.h"
 #include "marey/stream/wires.h"
 
 namespace marey::stream {
@@ -114,7 +115,7 @@ class LslWire : public WireSink {
   void send(const Instant& instant, FrameTimes times) override {
     if (!shared_.begun) begin_outlet();
     cast().place(instant, scene_);
-    const auto channels = lsl_channels(shared_.outlet.layout, cast(), scene_, instant);
+    const auto channels = lsl_channels(shared_.outlet.layout, cast(), scene_, instant, slotted(instant));
     const auto sample = std::make_shared<const std::string>(lsl_sample(1e-9 * static_cast<double>(times.capture), channels));
     server_.each([&](Session& session, Outbox& out) { static_cast<LslSession&>(session).frame(sample, out); });
   }
@@ -124,13 +125,26 @@ class LslWire : public WireSink {
   void fill(WireReport& report) const override {
     take_counts(report, server_.counts());
     if (!note_.empty()) report.notes.push_back(note_);
-    if (shared_.begun && cast().labels().size() > shared_.outlet.layout.labels.size()) {
+    const LslLayout& layout = shared_.outlet.layout;
+    if (!shared_.begun) return;
+    if (layout.slots == 0 && cast().labels().size() > layout.labels.size()) {
       report.notes.push_back(fmt::format("{} labels came after the first moment and have no channels; an outlet's are fixed",
-                                         cast().labels().size() - shared_.outlet.layout.labels.size()));
+                                         cast().labels().size() - layout.labels.size()));
+    }
+    if (slots_.without_slot() > 0) {
+      report.notes.push_back(fmt::format("{} positions of unlabelled tracks were not sent: more than {} tracks at once",
+                                         slots_.without_slot(), slots_.size()));
     }
   }
 
  private:
+  /// All tracks, for those that get their labels later stay where they are.
+  const std::vector<const Sample*>& slotted(const Instant& instant) {
+    all_.clear();
+    for (const Sample& sample : instant.samples) all_.push_back(&sample);
+    return slots_.place(all_);
+  }
+
   /// liblsl looks for an outlet at the first port that is free from 16572 on.
   static Address free_port(Address wanted) {
     if (wanted.port != kFirstPort) return wanted;
@@ -161,8 +175,10 @@ class LslWire : public WireSink {
                      .bodies = header().bodies,
                      .metric = header().frame.metric(),
                      .flat = header().frame.dimensions() == 2};
-    shared_.begun = outlet.layout.channels() > 0;
-    if (!shared_.begun) note_ = "nothing has a label, and there are no bodies: an outlet has no channels, and is not found";
+    // An outlet's channels are fixed. Where nothing has a name yet, tracks are sent by slot.
+    if (outlet.layout.channels() == 0) outlet.layout.slots = options().unlabelled_slots;
+    slots_ = TrackSlots(outlet.layout.slots);
+    shared_.begun = true;
   }
 
   /// Searches go to groups that every program of this host may listen to.
@@ -207,6 +223,8 @@ class LslWire : public WireSink {
   Descriptor service_, searches_;
   std::vector<std::uint32_t> hosts_;
   Cast::Scene scene_;
+  TrackSlots slots_;
+  std::vector<const Sample*> all_;
   std::string note_;
 };
 
@@ -218,7 +236,7 @@ Wire lsl_wire() {
           .port = kFirstPort,
           .detail =
               "one channel a coordinate of every labelled point and every body, times of capture by the steady clock; m (px of "
-              "pictures), z up; missing is NaN",
+              "pictures), z up; missing is NaN; without labels and bodies 64 slots, each a track's ID and coordinates",
           .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
             return std::make_unique<LslWire>(target, options);
           }};

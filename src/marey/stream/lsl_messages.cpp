@@ -39,7 +39,7 @@ std::string description_xml(const LslLayout& layout) {
   const std::string_view unit = layout.metric ? "meters" : "pixels";
   constexpr std::array<std::string_view, 3> kAxes{"X", "Y", "Z"};
   for (const std::string& label : layout.labels) {
-    for (std::size_t i = 0; i < (layout.flat ? 2u : 3u); ++i)
+    for (std::size_t i = 0; i < layout.axes(); ++i)
       append_channel(xml, fmt::format("{}_{}", label, kAxes[i]), label, {}, fmt::format("Position{}", kAxes[i]), unit);
   }
   for (const Body& body : layout.bodies) {
@@ -48,6 +48,12 @@ std::string description_xml(const LslLayout& layout) {
       append_channel(xml, fmt::format("{}_{}", name, axis), {}, name, fmt::format("Position{}", axis), unit);
     for (const std::string_view part : {"A", "B", "C", "D"})
       append_channel(xml, fmt::format("{}_q{}", name, part), {}, name, fmt::format("Orientation{}", part), "quaternion");
+  }
+  for (std::size_t slot = 1; slot <= layout.slots; ++slot) {
+    const std::string name = fmt::format("slot{}", slot);
+    append_channel(xml, name + "_ID", name, {}, "TrackID", {});
+    for (std::size_t i = 0; i < layout.axes(); ++i)
+      append_channel(xml, fmt::format("{}_{}", name, kAxes[i]), name, {}, fmt::format("Position{}", kAxes[i]), unit);
   }
   return xml +
          "</channels><acquisition><manufacturer>Marey</manufacturer><model>Marey</model></acquisition>"
@@ -179,15 +185,17 @@ std::string lsl_sample(double time, const std::vector<float>& channels) {
   return std::move(bytes).str();
 }
 
-std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant) {
+std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant,
+                                std::span<const Sample* const> slotted) {
   std::vector<float> channels(layout.channels(), std::numeric_limits<float>::quiet_NaN());
   std::size_t at = 0;
-  const std::size_t axes = layout.flat ? 2 : 3;
-  for (std::size_t i = 0; i < layout.labels.size(); ++i, at += axes) {
-    const Sample* sample = i < scene.labelled.size() && cast.labels()[i] == layout.labels[i] ? scene.labelled[i] : nullptr;
+  const std::size_t axes = layout.axes();
+  const auto put_position = [&](const Sample* sample, std::size_t channel) {
     for (std::size_t axis = 0; sample != nullptr && axis < axes; ++axis)
-      channels[at + axis] = static_cast<float>(sample->position[static_cast<Eigen::Index>(axis)]);
-  }
+      channels[channel + axis] = static_cast<float>(sample->position[static_cast<Eigen::Index>(axis)]);
+  };
+  for (std::size_t i = 0; i < layout.labels.size(); ++i, at += axes)
+    put_position(i < scene.labelled.size() && cast.labels()[i] == layout.labels[i] ? scene.labelled[i] : nullptr, at);
   for (const Body& body : layout.bodies) {
     if (const BodyPose* pose = pose_of(instant, body.id); pose != nullptr && pose->tracked) {
       const Eigen::Quaterniond turn(pose->world_from_body.rotation);
@@ -198,6 +206,11 @@ std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const
         channels[at + static_cast<std::size_t>(offset)] = static_cast<float>(value);
     }
     at += 7;
+  }
+  for (std::size_t slot = 0; slot < std::min(layout.slots, slotted.size()); ++slot) {
+    const std::size_t channel = at + slot * (1 + axes);
+    if (slotted[slot] != nullptr) channels[channel] = static_cast<float>(number(slotted[slot]->track));
+    put_position(slotted[slot], channel + 1);
   }
   return channels;
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,10 @@ struct LslLayout {
   std::vector<Body> bodies;         ///< seven each: place, and the quaternion A (real), B, C, D
   bool metric = true;               ///< m; else px
   bool flat = false;                ///< two channels a label: x, y
+  std::size_t slots = 0;            ///< for tracks without a label: the track's ID, then its coordinates, in each
 
-  std::size_t channels() const { return labels.size() * (flat ? 2 : 3) + bodies.size() * 7; }
+  std::size_t axes() const { return flat ? 2 : 3; }
+  std::size_t channels() const { return labels.size() * axes() + bodies.size() * 7 + slots * (1 + axes()); }
 };
 
 struct LslOutlet {
@@ -61,7 +64,8 @@ std::string lsl_feed_head(const LslOutlet& outlet);
 /// A sample at that time, s: one channel each; NaN for what is missing.
 std::string lsl_sample(double time, const std::vector<float>& channels);
 
-/// A moment's channels.
-std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant);
+/// An instant's channels; `slotted` has the sample in each slot, null where there is none.
+std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant,
+                                std::span<const Sample* const> slotted = {});
 
 }  // namespace marey::stream

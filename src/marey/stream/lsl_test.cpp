@@ -96,5 +96,24 @@ TEST(Lsl, ChannelsAreNaNWhereNothingIs) {
   EXPECT_FLOAT_EQ(channels[9], static_cast<float>(std::cos(0.025)));  // the real part first
 }
 
+TEST(Lsl, SendsUnlabelledTracksInSlots) {
+  const LslLayout layout{.labels = {}, .bodies = {}, .slots = 2};
+  ASSERT_EQ(layout.channels(), 8u);
+  LslOutlet outlet = outlet_of_bodies();
+  outlet.layout = layout;
+  const std::string info = lsl_info_xml(outlet, true);
+  EXPECT_NE(info.find("<channel_count>8</channel_count>"), std::string::npos);
+  EXPECT_NE(info.find("<label>slot2_ID</label><marker>slot2</marker><type>TrackID</type>"), std::string::npos);
+  Sample sample;
+  sample.track = TrackId{41};
+  sample.position = {1, 2, 3};
+  const std::vector<const Sample*> slotted{nullptr, &sample};
+  const auto channels = lsl_channels(layout, Cast(), {}, Instant(), slotted);
+  ASSERT_EQ(channels.size(), 8u);
+  EXPECT_TRUE(std::isnan(channels[0]) && std::isnan(channels[3]));
+  EXPECT_EQ(channels[4], 41);
+  EXPECT_EQ(channels[7], 3);
+}
+
 }  // namespace
 }  // namespace marey::stream

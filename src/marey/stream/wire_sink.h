@@ -16,11 +16,15 @@
 namespace marey::stream {
 
 /// What a wire must be told beyond its address.
+inline constexpr std::size_t kMaxUnlabelledSlots = 64;
+
 struct StreamOptions {
   /// Clients may take control: QTM's TakeControl, and what it lets do.
   bool allow_control = false;
   /// Starts or stops a recording, as a client in control asks; false where it could not. Called on the wire's thread.
   std::function<bool(bool on)> record = {};
+  /// LSL, whose channels are fixed: how many tracks are sent where none has a label when the stream begins.
+  std::size_t unlabelled_slots = kMaxUnlabelledSlots;
   /// When instants were captured; null: it is learned from when they arrive.
   std::shared_ptr<CaptureClock> clock = nullptr;
 };

@@ -22,6 +22,10 @@ constexpr double kCrowdedSizeLimit = 9;   // a box whose size is not believed co
 constexpr double kMissesASecond = 5;      // of evidence: neighbouring frames miss a target for the same reason
 constexpr double kExpectedBack = 3;       // the same where a target that vanished is expected back
 constexpr double kHiddenMiss = 0.1;       // evidence that a miss of a hidden target costs
+constexpr double kStart = 1.0 / 9;        // of the highest speed: standard deviation of that of a target that was seen once
+constexpr double kMostSpread = 4;         // what the uncertainty of a target that was just seen costs, at most
+constexpr double kUsualStep = 0.2;        // s; what fades while a target is not seen was chosen on steps up to this
+constexpr double kNextFrame = 1.5;        // steps: a target may be missing from one frame
 constexpr double kOverlap = 0.25;         // IoU of a target's box and what must be the target, there being no other
 
 Vector<2> centre_of(const Observation<2>& observation) {
@@ -90,8 +94,7 @@ void FilterTracker::follow_camera(Seen seen) {
   expected_.clear();
   sightings_.clear();
   for (const Target& target : targets_) {
-    if (target.confirmed() && target.size && seconds(*now_ - target.last_seen) < kRecently)
-      expected_.push_back({in_view(target), target.unit});
+    if (target.confirmed() && target.size && was_seen_recently(target)) expected_.push_back({in_view(target), target.unit});
   }
   for (const Observation<2>& one : seen) {
     if (has_extent(one) && one.score >= options_.evidence.confident) sightings_.push_back({one.box->centre(), one.box->height});
@@ -125,21 +128,44 @@ double FilterTracker::search_radius(const Target& target) const {
   return reach(target) + (target.size ? target.unit : 0.0);
 }
 
+/// How far from its prediction the target may be seen: as its filter has it. Of the speed of one that was seen once nothing can be
+/// known, whatever its filter takes for certain (alpha-beta, extrapolation: rest).
+Matrix<2> FilterTracker::innovation_of(const Target& target, const Matrix<2>& R) const {
+  Matrix<2> S = target.filter.innovation_covariance(R);
+  if (target.last_seen != target.born) return S;
+  const double walked = kStart * options_.max_speed * target.unit * seconds(*now_ - target.last_seen);
+  S.diagonal() = S.diagonal().cwiseMax((R.diagonal().array() + walked * walked).matrix());
+  return S;
+}
+
+bool FilterTracker::was_seen_recently(const Target& target) const {
+  return seconds(*now_ - target.last_seen) < std::max(kRecently, kNextFrame * dt_);
+}
+
+/// The part of its unseen time that tells against a target: where frames are far apart, nobody could have been seen between them.
+double FilterTracker::missed_for(const Target& target) const {
+  return seconds(*now_ - target.last_seen) - std::max(0.0, dt_ - kUsualStep);
+}
+
 /// What the pair is worth: logarithm of its likelihood against that of clutter; 0 or less where it is out of the question.
 double FilterTracker::gain(const Target& target, const Observation<2>& observation) const {
   const Matrix<2> R = noise_of(observation, target);
-  const Matrix<2> S = target.filter.innovation_covariance(R);
+  const Matrix<2> S = innovation_of(target, R);
   const Vector<2> residual = place_of(observation, target) - target.filter.position();
   const double distance = residual.dot(S.inverse() * residual);
   if (!(distance <= gate_) || residual.norm() > reach(target)) return 0;
-  const double spread = std::log(S.determinant());
+  double spread = std::log(S.determinant());
   if (!target.size || !observation.box) {
     // Nothing is known of how dense clutter is: the gate decides, and of two targets the one that is surer of its place wins.
     const double against_noise = std::clamp(spread - std::log(R.determinant()), 0.0, 2 * gate_);
     return (3 * gate_ - distance - against_noise) / 2;
   }
-  double cost = distance + spread - 2 * 2 * std::log(target.unit * kReferenceSigma);
-  double room = kClutterRoom - 2 * seconds(*now_ - target.last_seen) / options_.fading;
+  spread -= 2 * 2 * std::log(target.unit * kReferenceSigma);
+  const double missed = missed_for(target);
+  // Frames far apart, or a filter that expects much, make the prediction wide; that alone makes nobody somebody else.
+  if (seconds(*now_ - target.last_seen) <= dt_) spread = std::min(spread, kMostSpread);
+  double cost = distance + spread;
+  double room = kClutterRoom - 2 * missed / options_.fading;
   if (!observation.shared) {
     const double distance_of_size = target.size->distance(*observation.box, size_options_);
     cost += target.crowded ? std::min(distance_of_size, kCrowdedSizeLimit) : distance_of_size;
@@ -206,7 +232,7 @@ void FilterTracker::list_overlaps(Seen seen) {
   pairs_.clear();
   for (int row = 0; row < std::ssize(targets_); ++row) {
     const Target& target = targets_[row];
-    if (!target.confirmed() || target.observation || !target.size || seconds(*now_ - target.last_seen) > kRecently) continue;
+    if (!target.confirmed() || target.observation || !target.size || !was_seen_recently(target)) continue;
     const Box box = target.size->around(in_view(target));
     grid_.for_each_near(in_view(target), target.unit, [&](int column) {
       const double overlap = geometry::iou(box, *seen[candidates_[column]].box);
@@ -279,7 +305,7 @@ void FilterTracker::retire_lost() {
     const double unseen = seconds(*now_ - target.last_seen);
     if (unseen <= 0) return false;
     if (target.evidence.refuted()) return true;
-    if (!target.confirmed()) return unseen > options_.evidence.tentative_patience;
+    if (!target.confirmed()) return unseen > std::max(options_.evidence.tentative_patience, kNextFrame * dt_);
     const double patience = target.hidden ? options_.hidden_patience : options_.patience;
     return unseen > options_.evidence.patience(patience, seconds(target.last_seen - target.born));
   });

@@ -39,6 +39,9 @@ class FilterTracker final : public ImmediateTracker<2> {
   Matrix<2> noise_of(const Observation<2>& observation, const Target& target) const;
   double reach(const Target& target) const;
   double search_radius(const Target& target) const;
+  Matrix<2> innovation_of(const Target& target, const Matrix<2>& R) const;
+  bool was_seen_recently(const Target& target) const;
+  double missed_for(const Target& target) const;
   double gain(const Target& target, const Observation<2>& observation) const;
 
   void match_gated(Seen seen, double least_score, double below_score);

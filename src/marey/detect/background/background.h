@@ -25,6 +25,13 @@ class Background {
   /// Frames come in the order of their time. Where their size changes, the model begins anew. The mask returned is valid
   /// until the next call.
   virtual Foreground apply(const Frame& frame, std::span<const Box> held) = 0;
+
+  /// The empty scene as it is believed to be now; empty where the model does not tell.
+  virtual Picture scene() const { return {}; }
+
+  /// What the picture shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the picture) is not 0 is the scene:
+  /// something that was taken for a part of it has gone. A model that does not tell its scene need not know.
+  virtual void believe(const Picture& /*picture*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
 };
 
 /// Marey's own model: background_adaptive.cpp explains it.

@@ -33,6 +33,7 @@
 #include "marey/detect/background/background_light.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/background/background_regions.h"
+#include "marey/detect/background/background_returning.h"
 #include "marey/detect/background/background_samples.h"
 #include "marey/detect/background/background_second.h"
 #include "marey/detect/background/background_shadow.h"
@@ -62,10 +63,12 @@ class AdaptiveBackground final : public Background {
 
   void prime(std::span<const Frame> samples) override {
     std::vector<cv::Mat> luma, cb, cr;
+    std::vector<FramePlanes> kept;
     for (const Frame& sample : samples) {
       if (sample.picture.empty() || (!luma.empty() && sample.picture.size() != luma.front().size())) continue;
       const FramePlanes planes = planes_of(sample.picture);
       if (!luma.empty() && planes.cb.empty() != cb.empty()) continue;
+      kept.push_back(planes);
       luma.push_back(planes.luma);
       if (!planes.cb.empty()) {
         cb.push_back(planes.cb);
@@ -79,6 +82,7 @@ class AdaptiveBackground final : public Background {
       cb_.begin(cb);
       cr_.begin(cr);
     }
+    believe_what_returns(kept, {&luma_, cb.empty() ? nullptr : &cb_, cb.empty() ? nullptr : &cr_});
     make_room(luma.front().size(), !cb.empty(), true);
     age_s_ = std::max(0.0, seconds(samples.back().time - samples.front().time));
   }
@@ -100,6 +104,22 @@ class AdaptiveBackground final : public Background {
     if (samples_.keep(planes, age_s_)) correct(held);
     ++frames_;
     return {mask_, covered_};
+  }
+
+  Picture scene() const override {
+    if (size_.empty()) return {};
+    if (!colour_) return Picture(luma_.picture());
+    return {luma_.picture(), cb_.picture(), cr_.picture(), black_ > 0 ? Picture::Range::limited : Picture::Range::full};
+  }
+
+  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
+    const FramePlanes planes = planes_of(picture);
+    if (planes.luma.size() != size_) return;
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        if (mask.at<std::uint8_t>(y, x) != 0) believe(planes, y + corner.y, x + corner.x);
+      }
+    }
   }
 
  private:
@@ -334,12 +354,14 @@ class AdaptiveBackground final : public Background {
     mark_held(held, y, y, held_row_);
     const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
     second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
-    for (const int x : taken_) {
-      luma_.believe(y, x, pixels[x]);
-      if (!colour_) continue;
-      cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
-      cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
-    }
+    for (const int x : taken_) believe(planes, y, x);
+  }
+
+  void believe(const FramePlanes& planes, int y, int x) {
+    luma_.believe(y, x, planes.luma.at<std::uint8_t>(y, x));
+    if (!colour_) return;
+    cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
+    cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
   }
 
   AdaptiveOptions options_;

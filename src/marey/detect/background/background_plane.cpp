@@ -80,6 +80,24 @@ void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed,
   renew_bands(0, mean_.rows);
 }
 
+cv::Mat ScenePlane::picture() const {
+  cv::Mat levels;
+  mean_.convertTo(levels, CV_8U, 1 / 128.0);
+  return levels;
+}
+
+void ScenePlane::replace(const cv::Mat& levels, const cv::Mat& spreads, const cv::Mat& where) {
+  for (int y = 0; y < mean_.rows; ++y) {
+    const auto* marked = where.ptr<std::uint8_t>(y);
+    for (int x = 0; x < mean_.cols; ++x) {
+      if (marked[x] == 0) continue;
+      believe(y, x, levels.at<std::uint8_t>(y, x));
+      spread_.at<std::uint8_t>(y, x) = spreads.at<std::uint8_t>(y, x);
+    }
+  }
+  renew_bands(0, mean_.rows);
+}
+
 void ScenePlane::renew_bands(int first, int last) {
   const int bottom = mean_.rows - 1;
   for (int row = first; row < last; ++row) {

@@ -29,6 +29,9 @@ class ScenePlane {
   /// them agree with one another as with the scene, they are the scene. `doubted` (likewise) marks where that may be.
   void correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& doubted);
 
+  /// Takes levels and spreads (1/8 levels), both CV_8UC1 of this plane's size, for the scene's where `where` is not 0.
+  void replace(const cv::Mat& levels, const cv::Mat& spreads, const cv::Mat& where);
+
   /// Learns rows [first, last) of `picture` at the rate 2^-shift; `frozen(row)` gives the row's pixels to leave alone.
   template <typename Frozen>
   void learn(const cv::Mat& picture, int first, int last, int shift, Frozen&& frozen) {
@@ -59,6 +62,8 @@ class ScenePlane {
   std::uint8_t level(int row, int column) const {
     return static_cast<std::uint8_t>((mean_.at<std::int16_t>(row, column) + 64) >> 7);
   }
+  /// The means' levels, CV_8UC1.
+  cv::Mat picture() const;
   const std::int16_t* mean(int row) const { return mean_.ptr<std::int16_t>(row); }
   const std::uint8_t* low(int row) const { return low_.ptr<std::uint8_t>(row); }
   const std::uint8_t* high(int row) const { return high_.ptr<std::uint8_t>(row); }

@@ -128,6 +128,28 @@ TEST(Background, KeepsAPersonWhoStandsStill) {
   EXPECT_LT(mog2.recall(), 0.5);
 }
 
+TEST(Background, LearnedAheadIsWhatComesBackBeforeWhomItWasHiddenFor) {
+  // 30 pictures, a second apart: 7 of the empty place, 13 of someone who stands there, 3 empty, 7 of another.
+  SmallScene scene(11);
+  std::vector<Frame> samples;
+  const Figure long_there{150, 150}, later{152, 151};
+  for (int i = 0; i < 30; ++i) {
+    const bool first = i >= 7 && i < 20, second = i >= 23;
+    samples.push_back(scene.film(first    ? std::span(&long_there, 1)
+                                 : second ? std::span(&later, 1)
+                                          : std::span<const Figure>{})
+                          .frame);
+  }
+  const auto model = make_background(AdaptiveOptions{});
+  model->prime(samples);
+  const SceneFrame empty = scene.film({});
+  EXPECT_LT(cv::countNonZero(model->apply(empty.frame, {}).mask), 20);
+  const SceneFrame there = scene.film(std::span(&long_there, 1));
+  Score score;
+  score.add(model->apply(there.frame, {}).mask, there);
+  EXPECT_GT(score.recall(), 0.9);
+}
+
 TEST(Background, HealsTheGhostOfOneWhoWasThereFirst) {
   const Play leaving = [](SmallScene& scene, int frame) {
     const Figure figure{100 + std::max(0, frame - 12 * kSecond) * 4, 150};

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "marey/detect/people/people_pieces.h"
 #include "marey/detect/runs.h"
 
 namespace marey::detect::people {
@@ -23,16 +24,15 @@ constexpr double kLeastFilled = 0.3;                           // of its box
 constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
 constexpr double kOutgrownAcross = 1.6, kOutgrownDown = 1.15;  // a region so much larger than one body holds another
 constexpr double kMerged = 0.6;                                // share of an expected box that lies within a region with others
-constexpr double kSameBody = 0.6;         // overlap of the body fitted with the one measured, which is then the better
-constexpr double kBelieved = 0.4;         // share of a body seen, from which on the rest of it shows what hides people
-constexpr double kOverlapExpected = 0.3;  // of the smaller of the two boxes
-constexpr double kHeldBeyond = 0.15;      // of an expected box's height, round it, that is kept from the background
+constexpr double kSameBody = 0.6;            // overlap of the body fitted with the one measured, which is then the better
+constexpr double kBelieved = 0.4;            // share of a body seen, from which on the rest of it shows what hides people
+constexpr double kOverlapExpected = 0.3;     // of the smaller of the two boxes
+constexpr double kHeldBeyond = 0.15;         // of an expected box's height, round it, that is kept from the background
+constexpr double kHeap = 1.6;                // heights of those who are expected there: no group of them is so tall
+constexpr double kSpeck = 0.1;               // of the tallest body seen: less is not told, while no size is known
+constexpr double kUnknownFlattestCut = 0.3;  // the same of what the border cuts off
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
-
-double gap(double begin_a, double end_a, double begin_b, double end_b) {
-  return std::max({0.0, begin_b - end_a, begin_a - end_b});
-}
 
 bool at_border(const Box& box, cv::Size image) {
   return box.left <= 1 || box.top <= 1 || box.right() >= image.width - 1 || box.bottom() >= image.height - 1;
@@ -141,7 +141,7 @@ void PeopleDetector::prime(std::span<const Frame> samples) {
     const cv::Size image = sample.picture.size();
     const Box everywhere{0, 0, static_cast<double>(image.width), static_cast<double>(image.height)};
     const Foreground foreground = background_->apply(sample, std::span(&everywhere, 1));
-    learn(clusters_of(find_regions(foreground.mask, {.min_area = options_.min_area}), {}), image);
+    learn(find_regions(foreground.mask, {.min_area = options_.min_area}), {}, image);
   }
   sizes_.fit();
   background_->prime(samples);
@@ -155,16 +155,16 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   result.foreground = background_->apply(frame, held);
   groups_ = 0;
   const cv::Size image = frame.picture.size();
-  const auto clusters = clusters_of(find_regions(result.foreground.mask, {.min_area = options_.min_area}), expected);
-  for (const Cluster& cluster : clusters) {
+  const std::vector<Region> regions = find_regions(result.foreground.mask, {.min_area = options_.min_area});
+  for (const Cluster& cluster : clusters_of(without_noise(regions), expected)) {
     if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
-      result.detections.push_back(whole(cluster, result.foreground));
+      result.detections.push_back(whole(cluster, expected, result.foreground));
       if (size_known()) hidden_.note(cluster.body, result.foreground.mask);
     } else {
       explain(cluster, expected, result.foreground, result.detections);
     }
   }
-  learn(clusters, image);
+  learn(regions, expected, image);
   if (sizes_.wants_fit()) sizes_.fit();
   return result;
 }
@@ -176,8 +176,11 @@ double PeopleDetector::least_area(const Region& region) const {
   return options_.min_share * size->height * size->width;
 }
 
-/// Which regions lie so near each other that they may be pieces of one body.
-assign::DisjointSets PeopleDetector::pieces_that_lie_together(const std::vector<Region>& regions) const {
+/// Which regions lie so near each other that they may be pieces of one body: by the size that a body has there, or while that is
+/// not known by their own.
+assign::DisjointSets PeopleDetector::pieces_that_lie_together(const std::vector<Region>& regions,
+                                                              std::span<const Expected> expected) const {
+  if (!size_known()) return pieces_of_those_expected(regions, expected);
   assign::DisjointSets pieces;
   pieces.reset(static_cast<int>(regions.size()));
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -195,12 +198,14 @@ assign::DisjointSets PeopleDetector::pieces_that_lie_together(const std::vector<
   return pieces;
 }
 
-std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions, std::span<const Expected> expected) {
-  const auto noise = std::remove_if(regions.begin(), regions.end(), [&](const Region& r) { return r.area < least_area(r); });
-  counts_.noise += regions.end() - noise;
-  regions.erase(noise, regions.end());
+std::vector<Region> PeopleDetector::without_noise(std::vector<Region> regions) {
+  counts_.noise += static_cast<std::int64_t>(std::erase_if(regions, [&](const Region& r) { return r.area < least_area(r); }));
+  return regions;
+}
 
-  assign::DisjointSets pieces = pieces_that_lie_together(regions);
+std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Region> regions,
+                                                                 std::span<const Expected> expected) const {
+  assign::DisjointSets pieces = pieces_that_lie_together(regions, expected);
   std::vector<Cluster> clusters;
   std::vector<int> cluster_of(regions.size(), -1);
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -216,10 +221,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
     cluster.runs.insert(cluster.runs.end(), regions[i].runs.begin(), regions[i].runs.end());
   }
   for (Cluster& cluster : clusters) {
-    if (cluster.regions > 1) {
-      std::sort(cluster.runs.begin(), cluster.runs.end(),
-                [](const PixelRun& a, const PixelRun& b) { return a.row != b.row ? a.row < b.row : a.begin < b.begin; });
-    }
+    if (cluster.regions > 1) put_in_order(cluster.runs);
     cluster.body = trimmed(cluster.runs, cluster.box, kLeastColumn);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const double shared = geometry::intersection(expected[i].box, cluster.box).area();
@@ -231,12 +233,28 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
   return clusters;
 }
 
-void PeopleDetector::learn(const std::vector<Cluster>& clusters, cv::Size image) {
-  if (options_.sizes) return;  // there is nothing to learn
-  for (const Cluster& cluster : clusters) {
-    if (cluster.expected.size() > 1 || at_border(cluster.box, image)) continue;
-    if (cluster.area < kLeastFilled * cluster.box.area()) continue;
-    sizes_.see(cluster.body, image);
+/// How large people are is learned from regions that are joined by their own size, never by the one that was learned before, which
+/// would only find itself confirmed: who is taken for a heap of small people must be seen whole.
+void PeopleDetector::learn(const std::vector<Region>& regions, std::span<const Expected> expected, cv::Size image) {
+  if (options_.sizes || std::ssize(regions) >= kManyRegions) return;  // there is nothing to learn, or all is noise
+  assign::DisjointSets pieces = pieces_by_their_own_size(regions);
+  for (const Body& body : bodies_of(regions, pieces)) {
+    if (body.area < kLeastFilled * body.box.area()) continue;
+    int known = 0;
+    double tallest = 0;
+    for (const Expected& one : expected) {
+      const double shared = geometry::intersection(one.box, body.box).area();
+      if (shared <= kOverlapExpected * std::min(one.box.area(), body.box.area())) continue;
+      ++known;
+      tallest = std::max(tallest, one.box.height);
+    }
+    if (known > 1 && body.box.height < kHeap * tallest) continue;  // a group
+    if (at_border(body.box, image)) {
+      const bool within = body.box.left > 1 && body.box.right() < image.width - 1;
+      if (within) sizes_.see_cut(body.box, image);
+    } else {
+      sizes_.see(trimmed(body.runs, body.box, kLeastColumn), image);
+    }
   }
 }
 
@@ -246,18 +264,38 @@ bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double 
   const auto size = size_at(foot.x(), foot.y());
   if (!size) {
     if (size_known()) return false;
-    const double tall = box.height / box.width;
-    return box.area() >= kUnknownSmallest && tall > kUnknownFlattest && tall < kUnknownTallest;
+    const double tall = box.height / box.width, flattest = at_border(cluster.box, image) ? kUnknownFlattestCut : kUnknownFlattest;
+    return box.area() >= kUnknownSmallest && box.height > kSpeck * sizes_.tallest_seen() && tall > flattest &&
+           tall < kUnknownTallest;
   }
   return !at_border(cluster.box, image) && box.height > kLowest * size->height && box.height < kHighest * size->height &&
          box.width > kNarrowest * size->width && box.width < widest * size->width && cluster.area > kLeastFilled * box.area();
 }
 
-Detection PeopleDetector::whole(const Cluster& cluster, const Foreground& foreground) const {
+/// While no size is known: of someone whom the picture's border cuts off, and who is expected there, what is not seen any more is
+/// where it was; else who walks out of the picture would leap as his parts do.
+Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image) {
+  Box box = cluster.body;
+  if (cluster.expected.size() != 1) return box;
+  const Box& known = expected[static_cast<std::size_t>(cluster.expected.front())].box;
+  if (box.left <= 1 || box.right() >= image.width - 1) {
+    const double height = std::max(box.height, std::min(known.height, static_cast<double>(image.height)));
+    box.top = std::clamp(known.top, box.bottom() - height, box.top);
+    box.height = height;
+  }
+  if (box.top <= 1 || box.bottom() >= image.height - 1) {
+    const double width = std::max(box.width, std::min(known.width, static_cast<double>(image.width)));
+    box.left = std::clamp(known.left, box.right() - width, box.left);
+    box.width = width;
+  }
+  return box;
+}
+
+Detection PeopleDetector::whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) const {
   const auto foot = cluster.body.foot();
   const auto size = size_at(foot.x(), foot.y());
   const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
-  if (!size) return detection_of(cluster.body, cluster.runs, 0.5 * filled, foreground);
+  if (!size) return detection_of(completed(cluster, expected, foreground.mask.size()), cluster.runs, 0.5 * filled, foreground);
   const double off = (cluster.body.height / size->height - 1) / 0.3;
   Box box = cluster.body;
   box.width = (box.width + size->width) / 2;
@@ -281,7 +319,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
     if (one.seen > kBelieved) hidden_.note(one.box, mask);
   }
   if (placed.size() == 1 && looks_whole(cluster, image, kWidest) && iou(placed[0].box, cluster.body) > kSameBody) {
-    found.push_back(whole(cluster, foreground));
+    found.push_back(whole(cluster, expected, foreground));
     return;
   }
   const auto within = std::count_if(known.begin(), known.end(), [&](const Box& box) {
@@ -289,7 +327,7 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   });
   if (placed.size() == 1 && within > 1 && outgrows(cluster.body, placed[0].box)) {
     // One body cannot be all of this, and two do not stand out: the region is theirs together.
-    Detection together = whole(cluster, foreground);
+    Detection together = whole(cluster, expected, foreground);
     together.group = groups_++;
     counts_.shared += within;
     found.push_back(std::move(together));

@@ -54,6 +54,10 @@ class PeopleDetector final : public Detector {
   DetectorTraits traits() const override { return {.toe_m = 0.1, .has_foreground = true, .knows_body_size = true}; }
   DetectionCounts detection_counts() const override { return {counts_.noise, counts_.misfits}; }
   std::optional<Box> body_at(const Vector<2>& foot) const override;
+  Picture scene() const override { return background_->scene(); }
+  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
+    background_->believe(picture, mask, corner);
+  }
 
   const Counts& counts() const { return counts_; }
   /// How large a person is whose feet are at (x, y), px: as it was given, or as it was learned so far.
@@ -73,11 +77,13 @@ class PeopleDetector final : public Detector {
 
   bool size_known() const { return options_.sizes != nullptr || sizes_.known(); }
   double least_area(const Region& region) const;
-  assign::DisjointSets pieces_that_lie_together(const std::vector<Region>& regions) const;
-  std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected);
-  void learn(const std::vector<Cluster>& clusters, cv::Size image);
+  assign::DisjointSets pieces_that_lie_together(const std::vector<Region>& regions, std::span<const Expected> expected) const;
+  std::vector<Region> without_noise(std::vector<Region> regions);
+  std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected) const;
+  void learn(const std::vector<Region>& regions, std::span<const Expected> expected, cv::Size image);
   bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
-  Detection whole(const Cluster& cluster, const Foreground& foreground) const;
+  static Box completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image);
+  Detection whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) const;
   void explain(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground,
                std::vector<Detection>& found);
 

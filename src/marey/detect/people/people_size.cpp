@@ -26,8 +26,11 @@ constexpr double kSmallestHeight = 12;           // px; below this a body has no
 constexpr double kFlattest = 1.2, kTallest = 5;  // height over width of what may be one upright person
 constexpr double kAgreement = 0.2;               // of the height
 constexpr double kTukey = 0.3;                   // of the height; a region further off has no say
-constexpr double kNeeded = 6;                    // weight of agreeing regions without which nothing is said
-constexpr double kHorizon = 0.6;                 // of the smallest height seen: no person is smaller
+constexpr double kTooTall = 2.2;     // of kAgreement: 1.8 times as tall as a person; groups in which one hides another are less
+constexpr double kTooTallCut = 1.5;  // the same of what the border cuts off: 1.4 times
+constexpr double kAgainst = 1;       // what that weighs, where one who agrees weighs 1
+constexpr double kNeeded = 6;        // weight of agreeing regions without which nothing is said
+constexpr double kHorizon = 0.6;     // of the smallest height seen: no person is smaller
 constexpr int kTrials = 400;
 
 /// Small, fast, the same everywhere; quality does not matter here.
@@ -56,6 +59,14 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
 }  // namespace
 
 void PersonSizeModel::see(const Box& region, cv::Size image) {
+  remember(region, image, false);
+}
+
+void PersonSizeModel::see_cut(const Box& region, cv::Size image) {
+  remember(region, image, true);
+}
+
+void PersonSizeModel::remember(const Box& region, cv::Size image, bool cut) {
   const double tall = region.height / std::max(region.width, 1.0);
   if (region.height < kSmallestHeight || tall < kFlattest || tall > kTallest) return;
   if (image_ != image) {
@@ -68,16 +79,17 @@ void PersonSizeModel::see(const Box& region, cv::Size image) {
   const int column = std::clamp(static_cast<int>(foot.x() * kSizeCellsAcross / image.width), 0, kSizeCellsAcross - 1);
   const int row = std::clamp(static_cast<int>(foot.y() * kSizeCellsAcross / image.height), 0, kSizeCellsAcross - 1);
   const std::size_t cell = static_cast<std::size_t>(row) * kSizeCellsAcross + column;
-  std::vector<Box>& boxes = cells_[cell];
-  for (const Box& known : boxes) {
-    if (geometry::iou(known, region) > 0.7) return;  // someone who stands says nothing new
+  std::vector<Remembered>& boxes = cells_[cell];
+  for (const Remembered& known : boxes) {
+    if (geometry::iou(known.box, region) > 0.7) return;  // someone who stands says nothing new
   }
   if (boxes.size() < kBoxesInCell) {
-    boxes.push_back(region);
+    boxes.push_back({region, cut});
   } else {
-    boxes[next_[cell]++ % kBoxesInCell] = region;
+    boxes[next_[cell]++ % kBoxesInCell] = {region, cut};
   }
   ++fresh_;
+  tallest_seen_ = std::max(tallest_seen_, region.height);
 }
 
 PersonSizeModel::Features PersonSizeModel::features_of(double x, double y) const {
@@ -88,14 +100,25 @@ PersonSizeModel::Features PersonSizeModel::features_of(double x, double y) const
 
 std::vector<PersonSizeModel::Sample> PersonSizeModel::weighted_samples() const {
   std::vector<Sample> samples;
-  for (const std::vector<Box>& boxes : cells_) {
+  for (const std::vector<Remembered>& boxes : cells_) {
     const double weight = 1 / std::sqrt(std::max<double>(1, static_cast<double>(boxes.size()) / 2));
-    for (const Box& box : boxes) {
+    for (const auto& [box, cut] : boxes) {
       const auto foot = box.foot();
-      samples.push_back({features_of(foot.x(), foot.y()), box.height, box.width / box.height, weight});
+      samples.push_back({features_of(foot.x(), foot.y()), box.height, box.width / box.height, weight, cut});
     }
   }
   return samples;
+}
+
+/// What agrees with these heights, less what speaks against them: nobody is taller than a person, but much is smaller.
+double PersonSizeModel::support_of(const Features& guess, const std::vector<Sample>& samples) {
+  double support = 0;
+  for (const Sample& sample : samples) {
+    const double off = (sample.height - guess.dot(sample.features)) / (kAgreement * sample.height);
+    if (off * off < 1 && !sample.cut) support += sample.weight * (1 - off * off);
+    if (off > (sample.cut ? kTooTallCut : kTooTall)) support -= kAgainst * sample.weight;
+  }
+  return support;
 }
 
 std::optional<PersonSizeModel::Features> PersonSizeModel::consensus(const std::vector<Sample>& samples) const {
@@ -106,6 +129,7 @@ std::optional<PersonSizeModel::Features> PersonSizeModel::consensus(const std::v
     const Sample& a = samples[draw.below(samples.size())];
     const Sample& b = samples[draw.below(samples.size())];
     const Sample& c = samples[draw.below(samples.size())];
+    if (a.cut || b.cut || c.cut) continue;
     Features guess(a.height, 0, 0, 0);
     if (trial % 4 != 0) {  // every fourth guess is a flat scene, for which one region is enough
       Eigen::Matrix3d M;
@@ -113,11 +137,7 @@ std::optional<PersonSizeModel::Features> PersonSizeModel::consensus(const std::v
       if (std::abs(M.determinant()) < 1e-4) continue;
       guess.head<3>() = M.inverse() * Eigen::Vector3d(a.height, b.height, c.height);
     }
-    double support = 0;
-    for (const Sample& sample : samples) {
-      const double off = (sample.height - guess.dot(sample.features)) / (kAgreement * sample.height);
-      if (off * off < 1) support += sample.weight * (1 - off * off);
-    }
+    const double support = support_of(guess, samples);
     if (support > best_support) {
       best_support = support;
       best = guess;
@@ -134,7 +154,7 @@ PersonSizeModel::Features PersonSizeModel::refined(Features start, const std::ve
     Features b = Features::Zero();
     for (const Sample& sample : samples) {
       const double expected = solution.dot(sample.features);
-      if (expected < kSmallestHeight / 2) continue;
+      if (sample.cut || expected < kSmallestHeight / 2) continue;
       const double off = (sample.height - expected) / (kTukey * expected);
       if (off * off >= 1) continue;
       const double pull = sample.weight * (1 - off * off) * (1 - off * off);
@@ -154,14 +174,14 @@ void PersonSizeModel::take_over(const Features& solution, const std::vector<Samp
   for (const Sample& sample : samples) {
     const double expected = solution.dot(sample.features);
     const double off = sample.height / std::max(expected, 1.0) - 1;
-    if (expected < kSmallestHeight / 2 || std::abs(off) > kAgreement) continue;
+    if (sample.cut || expected < kSmallestHeight / 2 || std::abs(off) > kAgreement) continue;
     aspects.emplace_back(sample.aspect, sample.weight);
     offs.emplace_back(std::abs(off), sample.weight);
     support += sample.weight;
     smallest_ = smallest_ == 0 ? expected : std::min(smallest_, expected);
     largest_ = std::max(largest_, expected);
   }
-  if (support < kNeeded) return;
+  if (support < kNeeded || support_of(solution, samples) <= 0) return;
   coefficients_ = solution;
   aspect_ = weighted_median(std::move(aspects));
   spread_ = std::max(0.04, 1.4826 * weighted_median(std::move(offs)));

@@ -26,6 +26,9 @@ class PersonSizeModel {
   /// like a person at all is left out. `image` is the size of the picture, the same in every call.
   void see(const Box& region, cv::Size image);
 
+  /// Takes in a region that the picture's upper or lower border cuts off: who is seen there is at least as tall.
+  void see_cut(const Box& region, cv::Size image);
+
   /// Learns from all that is remembered. Cheap enough for every few hundred regions, not for every frame.
   void fit();
 
@@ -34,6 +37,9 @@ class PersonSizeModel {
 
   /// Whether enough was seen to say anything.
   bool known() const { return coefficients_.has_value(); }
+
+  /// px: the tallest of what was taken in so far; 0 of nothing.
+  double tallest_seen() const { return tallest_seen_; }
 
   /// The size of a person whose feet are at (x, y), px; at most twice the largest seen. Nothing while too little was seen, and
   /// nothing where people would be so much smaller than any that were seen that none can stand there: towards the horizon.
@@ -49,20 +55,28 @@ class PersonSizeModel {
     double height = 0;
     double aspect = 0;  ///< width over height
     double weight = 0;
+    bool cut = false;  ///< the person is at least so tall
+  };
+  struct Remembered {
+    Box box;
+    bool cut = false;
   };
 
+  void remember(const Box& region, cv::Size image, bool cut);
   Features features_of(double x, double y) const;
   std::vector<Sample> weighted_samples() const;
+  static double support_of(const Features& guess, const std::vector<Sample>& samples);
   std::optional<Features> consensus(const std::vector<Sample>& samples) const;
   Features refined(Features start, const std::vector<Sample>& samples) const;
   void take_over(const Features& solution, const std::vector<Sample>& samples);
 
   cv::Size image_;
-  std::vector<std::vector<Box>> cells_;   ///< a bounded memory for each part of the picture, the oldest overwritten
-  std::vector<std::size_t> next_;         ///< where each of them is overwritten next
-  std::size_t fresh_ = 0;                 ///< boxes taken in since the last fit
-  std::size_t fitted_from_ = 0;           ///< boxes remembered at the last fit
-  std::optional<Features> coefficients_;  ///< height = coefficients · features
+  std::vector<std::vector<Remembered>> cells_;  ///< a bounded memory for each part of the picture, the oldest overwritten
+  std::vector<std::size_t> next_;               ///< where each of them is overwritten next
+  std::size_t fresh_ = 0;                       ///< boxes taken in since the last fit
+  std::size_t fitted_from_ = 0;                 ///< boxes remembered at the last fit
+  std::optional<Features> coefficients_;        ///< height = coefficients · features
+  double tallest_seen_ = 0;
   double aspect_ = 0;
   double spread_ = 0;
   double smallest_ = 0;

@@ -80,6 +80,59 @@ TEST(PeopleDetector, FindsPeopleAloneInGroupsInPiecesAndAtTheBorder) {
   EXPECT_EQ(detector.counts().shared, 3);
 }
 
+/// Someone `height` px tall who walks across and, where that is possible, in from below, in pieces: stripes of the body look like
+/// the scene.
+cv::Mat in_pieces(cv::Size image, double height, int i) {
+  cv::Mat mask = cv::Mat::zeros(image, CV_8UC1);
+  const double x = image.width * (0.2 + 0.02 * i), foot = std::max(image.height * (1.15 - 0.012 * i), 0.06 * image.height + height);
+  bodies::draw(mask, bodies::person(x, foot, height), 0.3 + 0.4 * (i % 2));
+  for (int stripe = 0; stripe < 3; ++stripe) {
+    const int row = static_cast<int>(foot - height * (0.25 + 0.22 * stripe)), tall = std::max(1, static_cast<int>(0.03 * height));
+    if (row > 0 && row + tall < image.height) mask.rowRange(row, row + tall).setTo(0);
+  }
+  return mask;
+}
+
+TEST(PeopleDetector, OneWhoIsInPiecesIsOneOfAnySize) {
+  for (const double height : {40.0, 100.0, 400.0, 700.0, 1200.0}) {
+    SCOPED_TRACE(height);
+    PeopleDetector detector(std::make_unique<Drawn>());
+    std::vector<Frame> samples;
+    for (int i = 0; i < 30; ++i) samples.push_back(frame_of(in_pieces(kSceneImage, height, i), i));
+    detector.prime(samples);
+    for (int i = 0; i < 30; ++i) {
+      const cv::Mat mask = in_pieces(kSceneImage, height, i);
+      const auto found = detector.detect(frame_of(mask, i), {}).detections;
+      EXPECT_LE(found.size(), 1u) << i;
+    }
+  }
+}
+
+/// What is small (a dog, leaves) may come first, and its size be taken for a person's: it must not divide a person for ever.
+TEST(PeopleDetector, ASizeThatWasTakenForTooSmallIsGivenUp) {
+  PeopleDetector detector(std::make_unique<Drawn>());
+  std::mt19937 random(3);
+  std::vector<Frame> samples;
+  for (int i = 0; i < 30; ++i) {
+    cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
+    bodies::draw(mask, bodies::person(60 + 22 * i, bodies::uniform(random, 100, 560), 40));
+    samples.push_back(frame_of(mask, i));
+  }
+  detector.prime(samples);
+  ASSERT_NEAR(detector.size_at(384, 400).value().height, 40, 5);
+  std::vector<Expected> expected;
+  std::size_t found = 0;
+  for (int i = 0; i < 200; ++i) {
+    cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);
+    bodies::draw(mask, bodies::person(120 + 2.6 * i, 500 + bodies::uniform(random, -40, 40), 400), bodies::uniform(random, 0, 1));
+    const auto result = detector.detect(frame_of(mask, 100 + i), expected);
+    expected.clear();
+    for (const Detection& one : result.detections) expected.push_back({one.box});
+    found = result.detections.size();
+  }
+  EXPECT_EQ(found, 1u);
+}
+
 TEST(PeopleDetector, ShadowsAtTheFeetDoNotWidenABox) {
   PeopleDetector detector = trained(30, 3);
   cv::Mat mask = cv::Mat::zeros(kSceneImage, CV_8UC1);

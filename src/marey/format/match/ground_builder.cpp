@@ -19,6 +19,7 @@ Sample sample_of(const GroundBuilder::Row& row) {
   if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), row.climb);
   sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
   sample.cameras = row.cameras;
+  if (row.covariance) sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = *row.covariance;
   sample.box = row.box;
   sample.score = row.score;
   return sample;

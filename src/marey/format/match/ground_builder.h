@@ -27,6 +27,7 @@ class GroundBuilder {
     double time = 0;       ///< s
     Vector<2> place = Vector<2>::Zero();
     std::optional<Vector<2>> velocity = {};
+    std::optional<Matrix<2>> covariance = {};  ///< of `place`, m²
     CameraMask cameras = 0;
     std::optional<Box> box = {};  ///< px, of one in a picture
     std::optional<double> score = {};

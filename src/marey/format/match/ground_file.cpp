@@ -40,16 +40,21 @@ enum Column {
   kHeight,
   kZ,
   kVz,
+  kXx,
+  kXy,
+  kYy,
   kColumns
 };
-constexpr std::array<std::string_view, kColumns> kAllNames = {
-    "frame", "time", "id", "label", "team", "x", "y", "vx", "vy", "state", "cameras", "left", "top", "width", "height", "z", "vz"};
-constexpr std::span<const std::string_view> kNames =
-    std::span(kAllNames).first(kLeft);  // the others are of tracks in a picture, and of the ball
+constexpr std::array<std::string_view, kColumns> kAllNames = {"frame",  "time", "id",    "label",   "team", "x",   "y",
+                                                              "vx",     "vy",   "state", "cameras", "left", "top", "width",
+                                                              "height", "z",    "vz",    "xx",      "xy",   "yy"};
+constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(
+    kLeft);  // the others are of tracks in a picture, of the ball, and of places whose covariance is known
 constexpr std::array kNeeded = {kId, kX, kY};
 constexpr double kFarthest = 1e5;   // m
 constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz
 constexpr std::size_t kMostCameras = 64;
+constexpr double kMostVariance = 1e6, kRounded = 1e-3;  // m²
 constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
 
 /// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 where there are none.
@@ -145,6 +150,7 @@ class GroundFileReader {
     if (field(kVx) && field(kVy))
       row.velocity =
           Vector<2>(number(kVx, -kFarthestOnGround, kFarthestOnGround), number(kVy, -kFarthestOnGround, kFarthestOnGround));
+    if (field(kXx) && field(kXy) && field(kYy)) row.covariance = covariance();
     if (field(kZ)) row.height = number(kZ, -kFarthestOnGround, kFarthestOnGround);
     if (field(kVz)) row.climb = number(kVz, -kFarthestOnGround, kFarthestOnGround);
     moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
@@ -158,6 +164,15 @@ class GroundFileReader {
                     number(kHeight, 0, kFarthest)};
     }
     builder_.add(person, row);
+  }
+
+  Matrix<2> covariance() const {
+    const double xx = number(kXx, 0, kMostVariance), xy = number(kXy, -kMostVariance, kMostVariance),
+                 yy = number(kYy, 0, kMostVariance);
+    if (xy * xy > xx * yy * (1 + kRounded) + kRounded)
+      throw Error("{}:{}: xx {:g}, xy {:g}, yy {:g} is no covariance: xy is at most the root of xx times yy", name_, line_, xx, xy,
+                  yy);
+    return (Matrix<2>() << xx, xy, xy, yy).finished();
   }
 
   /// Frames from times alone: as many a second as there are instants, from time 0 or the first instant on, which is the earlier.
@@ -257,10 +272,11 @@ Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
 void GroundWriter::write(const Instant& instant) {
   for (const TrackName& name : instant.named) {
     fields_[name.id] = {quoted_field(name.label), quoted_field(name.team), is_ball(name)};
-    if (is_ball(name)) add_heights();
+    if (is_ball(name)) add_columns(Extra::heights);
   }
   const double time = seconds(instant.time);
   for (const Sample& sample : instant.samples) {
+    if (sample.covariance) add_columns(Extra::covariances);
     seen_by_.clear();
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       if ((sample.cameras >> i & 1) == 0) continue;
@@ -272,25 +288,44 @@ void GroundWriter::write(const Instant& instant) {
     fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}", instant.index, time,
                    number(sample.track), fields.label, fields.team, sample.position.x(), sample.position.y(), velocity.x(),
                    velocity.y(), sample.measured() ? "observed" : "predicted", quoted_field(seen_by_));
-    if (has_heights_ && fields.ball)
-      fmt::format_to(std::back_inserter(text_), ",{:.3f},{:.3f}\n", sample.position.z(), velocity.z());
-    else
-      text_ += has_heights_ ? ",,\n" : "\n";
+    for (const Extra extra : extras_) write_extra(extra, sample, fields.ball);
+    text_ += '\n';
   }
   if (text_.size() > (std::size_t{1} << 20)) flush();
 }
 
-/// From now on each row has a height, and those that wait get an empty one; too late where some are written.
-void GroundWriter::add_heights() {
-  if (has_heights_ || head_written_) return;
-  has_heights_ = true;
+void GroundWriter::write_extra(Extra extra, const Sample& sample, bool ball) {
+  if (extra == Extra::heights) {
+    if (!ball) return void(text_ += ",,");
+    fmt::format_to(std::back_inserter(text_), ",{:.3f},{:.3f}", sample.position.z(),
+                   sample.velocity.value_or(Vector<3>::Zero()).z());
+  } else if (sample.covariance) {
+    const Matrix<3>& P = *sample.covariance;
+    fmt::format_to(std::back_inserter(text_), ",{:.5f},{:.5f},{:.5f}", P(0, 0), P(0, 1), P(1, 1));
+  } else {
+    text_ += ",,,";
+  }
+}
+
+/// From now on each row has these columns too, and those that wait get them empty; too late where some are written.
+void GroundWriter::add_columns(Extra extra) {
+  if (head_written_ || std::find(extras_.begin(), extras_.end(), extra) != extras_.end()) return;
+  extras_.push_back(extra);
   std::string longer;
-  for (const char c : text_) longer.append(c == '\n' ? ",," : "").push_back(c);
+  for (const char c : text_) longer.append(c == '\n' ? empty_of(extra) : "").push_back(c);
   text_ = std::move(longer);
 }
 
+const char* GroundWriter::empty_of(Extra extra) {
+  return extra == Extra::heights ? ",," : ",,,";
+}
+
 void GroundWriter::flush() {
-  if (!std::exchange(head_written_, true)) file_.write(fmt::format("{}{}\n", fmt::join(kNames, ","), has_heights_ ? ",z,vz" : ""));
+  if (!std::exchange(head_written_, true)) {
+    file_.write(fmt::format("{}", fmt::join(kNames, ",")));
+    for (const Extra extra : extras_) file_.write(extra == Extra::heights ? ",z,vz" : ",xx,xy,yy");
+    file_.write("\n");
+  }
   file_.write(text_);
   text_.clear();
 }

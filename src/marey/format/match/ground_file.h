@@ -15,7 +15,8 @@ namespace marey::format::match {
 /// People on the ground as CSV: frame,time,id,label,team,x,y,vx,vy,state,cameras. Frames count from 0; s, m, m/s; one row a person
 /// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
 /// between. Where no velocity is known all are written as 0. With a ball, whose label is "ball", two columns more, z,vz, have its
-/// height in m and how fast it rises; a writer must be told of it within the first megabyte.
+/// height in m and how fast it rises; where it is known how well places are, three more, xx,xy,yy, have their covariance in m².
+/// A writer must be told of either within the first megabyte.
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
@@ -51,12 +52,17 @@ class GroundWriter : public Sink {
     bool ball = false;
   };
 
-  void add_heights();
+  /// Columns that not every file has, in the order in which they came to be known.
+  enum class Extra { heights, covariances };
+
+  static const char* empty_of(Extra extra);
+  void add_columns(Extra extra);
+  void write_extra(Extra extra, const Sample& sample, bool ball);
   void flush();
 
   std::string path_;
   WholeFile file_;
-  bool has_heights_ = false;  // a ball is there
+  std::vector<Extra> extras_;
   bool head_written_ = false;
   std::vector<std::string> cameras_;
   std::map<TrackId, Fields> fields_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 
 #include "support/files.h"
@@ -66,6 +67,33 @@ TEST(GroundFile, WhatIsWrittenIsReadBack) {
     }
   }
   EXPECT_EQ(test::read_file(folder / "match.csv").substr(0, 55), "frame,time,id,label,team,x,y,vx,vy,state,cameras\n0,0.00");
+}
+
+TEST(GroundFile, HowWellPlacesAreKnownIsKept) {
+  RecordingHeader header;
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  Recording recording(header);
+  for (int i = 0; i < 3; ++i) {
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(0.04 * i);
+    instant.samples = {sample_of(1, {10.0 + i, 20}, {3, 0}, 0, true)};
+    if (i > 0) instant.samples[0].covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() << 0.04, -0.01, -0.01, 0.25;
+    if (i == 2) {
+      instant.named.push_back({TrackId{2}, std::string(kBallLabel), ""});
+      instant.samples.push_back(sample_of(2, {11, 20}, {0, 0}, 0, true));
+    }
+    recording.add(instant);
+  }
+  const test::TemporaryFolder folder;
+  write_ground(recording, folder / "match.csv");
+  EXPECT_NE(test::read_file(folder / "match.csv").find("state,cameras,xx,xy,yy,z,vz\n"), std::string::npos);
+  const Recording read = read_ground(folder / "match.csv");
+  ASSERT_EQ(read.tracks()[0].size(), 3u);
+  EXPECT_FALSE(read.tracks()[0].sample(0).covariance);
+  for (const std::size_t row : {1u, 2u})
+    EXPECT_EQ(read.tracks()[0].sample(row).covariance, recording.tracks()[0].sample(row).covariance);
+  EXPECT_THROW(parse_ground("frame,id,x,y,xx,xy,yy\n0,1,1,2,0.01,0.5,0.01\n", "wrong.csv"), Error);
 }
 
 TEST(GroundFile, OtherToolsNeedFewColumnsInAnyOrder) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,9 +40,9 @@ class LayoutFinder {
     find_scale();
     find_unit();
     find_begin();
-    find_points();
-    find_analog();
     find_bodies();
+    find_counts();
+    find_analog();
     find_frames();
     if (layout_.frames == 0) layout_.analog_channels = layout_.analog_samples = 0;  // a count that no bytes bound
     return std::move(layout_);
@@ -79,22 +80,77 @@ class LayoutFinder {
     layout_.begin = (block - 1) * kC3dBlock;
   }
 
-  void find_points() {
+  /// Of what the file says twice and differently: what ends where the file does. Where both do, or neither, the parameters are
+  /// believed about the points, and the first block about the analog values.
+  void find_counts() {
+    std::vector<std::size_t> points = {head_.points}, words = {words_of_first_block()};
     const auto used = head_.number("POINT:USED");
-    layout_.points =
-        used && std::isfinite(*used) && std::abs(*used) <= 65535 ? static_cast<std::size_t>(unsigned_word(*used)) : head_.points;
-    if (used && layout_.points != head_.points) {
+    if (used && std::isfinite(*used) && std::abs(*used) <= 65535)
+      points.insert(points.begin(), static_cast<std::size_t>(unsigned_word(*used)));
+    if (const auto other = words_of_parameters()) words.push_back(*other);
+    if (const std::size_t samples = head_.analog_samples; samples > 0) words.push_back(count("ANALOG:USED", 1'000'000) * samples);
+    layout_.points = points.front();
+    layout_.analog_words = words.front();
+    const bool fits = choose_by_length(points, words);
+    if (points.front() != points.back())
       layout_.warnings.push_back(
-          fmt::format("it names {} points in one place and {} in another; the first is believed", layout_.points, head_.points));
+          fmt::format("it names {} points in one place and {} in another; {}", points.front(), points.back(),
+                      layout_.points == points.front() ? "the first is believed" : "its length fits the second"));
+    if (words.size() > 1 && words_of_parameters().value_or(words.front()) != words.front())
+      layout_.warnings.push_back(fmt::format(
+          "its first block names {} analog values a frame, and its rates of analog values and of points make {}; {}", words.front(),
+          *words_of_parameters(),
+          !fits ? "its length fits neither, and the first is believed" : fmt::format("its length fits {}", layout_.analog_words)));
+  }
+
+  /// False where no pair of counts ends with the file; then nothing is changed.
+  bool choose_by_length(std::span<const std::size_t> points, std::span<const std::size_t> words) {
+    for (const std::size_t w : words) {
+      for (const std::size_t p : points) {
+        if (!ends_with_file(p, w)) continue;
+        layout_.points = p;
+        layout_.analog_words = w;
+        return true;
+      }
     }
-    layout_.analog_words = head_.analog_words;
-    // A count of more than 16 bits: the parameters know.
-    const double words =
-        head_.number("ANALOG:USED").value_or(0) *
-        std::round(head_.number("ANALOG:RATE").value_or(0) / std::max(1e-9, head_.number("POINT:RATE").value_or(0)));
-    if (words > 65535 && words < 1e9 && static_cast<std::uint16_t>(static_cast<std::uint64_t>(words)) == head_.analog_words) {
-      layout_.analog_words = static_cast<std::size_t>(words);
-    }
+    return false;
+  }
+
+  /// Whether so many frames as the file names end in its last block.
+  bool ends_with_file(std::size_t points, std::size_t analog_words) const {
+    const std::size_t bytes = layout_.word() * (4 * points + analog_words), end = end_of_frames();
+    if (bytes == 0 || end <= layout_.begin) return false;
+    const std::size_t room = end - layout_.begin;
+    const auto counts = named_counts();
+    return std::any_of(counts.begin(), counts.end(), [&](std::int64_t count) {
+      const auto frames = static_cast<std::size_t>(std::max<std::int64_t>(0, count));
+      return frames > 0 && frames <= room / bytes && room - frames * bytes < kC3dBlock;
+    });
+  }
+
+  /// Where the bytes end that frames may have.
+  std::size_t end_of_frames() const {
+    return layout_.bodies == 0 || layout_.bodies_begin <= layout_.begin ? size_ : layout_.bodies_begin;
+  }
+
+  /// Samples of a channel in a frame by the rates that the parameters name.
+  std::optional<double> samples_of_rates() const {
+    const double analog = head_.number("ANALOG:RATE").value_or(0);
+    const double points = head_.number("POINT:RATE").value_or(static_cast<double>(head_.rate_hz));
+    if (!(analog > 0) || !(points > 0) || !std::isfinite(analog / points) || analog / points > 1e9) return std::nullopt;
+    return analog / points;
+  }
+
+  std::optional<std::size_t> words_of_parameters() const {
+    const double samples = std::round(samples_of_rates().value_or(0)), used = head_.number("ANALOG:USED").value_or(0);
+    if (!(used > 0) || !(samples >= 1) || !(used * samples < 1e9)) return std::nullopt;
+    return static_cast<std::size_t>(used * samples);
+  }
+
+  /// A count of more than 16 bits has turned over: the parameters know.
+  std::size_t words_of_first_block() const {
+    const std::size_t words = words_of_parameters().value_or(0);
+    return words > 65535 && static_cast<std::uint16_t>(words) == head_.analog_words ? words : head_.analog_words;
   }
 
   /// Channels and how often they are sampled in a frame: what the parameters and the first block say must make the words there are.
@@ -150,19 +206,17 @@ class LayoutFinder {
         layout_.bodies == 0 ? -1 : static_cast<std::int64_t>((size_ - layout_.bodies_begin) / layout_.bodies_bytes());
     const std::size_t bytes = layout_.frame_bytes() > 0 ? layout_.frame_bytes() : layout_.bodies_bytes();
     if (bytes == 0) return;
-    const bool behind = layout_.bodies == 0 || layout_.bodies_begin <= layout_.begin;
-    const std::size_t end = behind ? size_ : layout_.bodies_begin;
+    const std::size_t end = end_of_frames();
     const auto there =
         layout_.frame_bytes() == 0 ? of_bodies : static_cast<std::int64_t>(end > layout_.begin ? (end - layout_.begin) / bytes : 0);
     const std::vector<std::int64_t> counts = named_counts();
     if (counts.empty()) return;
     const auto fits = std::find_if(counts.begin(), counts.end(), [&](std::int64_t count) { return count <= there; });
-    if (fits == counts.end()) return refuse_or_count(counts, there);
+    if (fits == counts.end()) return count_what_is_there(counts, there, of_bodies);
     layout_.frames = static_cast<std::size_t>(*fits);
     if (fits != counts.begin()) layout_.warnings.push_back(fmt::format("it names {} frames, but holds {}", counts.front(), *fits));
     count_beyond_16_bits(*fits, there, bytes);
-    if (of_bodies >= 0 && of_bodies < static_cast<std::int64_t>(layout_.frames))
-      throw Error("{}: is cut off: it has {} frames and the matrices of {}; copy it again", name_, layout_.frames, of_bodies);
+    require_matrices(of_bodies);
   }
 
   /// A count that ran over its 16 bits, or stopped at their end, where the frames go on for as long as a whole turn.
@@ -175,15 +229,29 @@ class LayoutFinder {
     layout_.warnings.push_back(fmt::format("it names {} frames, which is as far as it counts; it holds {}", named, layout_.frames));
   }
 
-  void refuse_or_count(const std::vector<std::int64_t>& counts, std::int64_t there) {
+  /// What the file holds where it is shorter than any count it names. Throws Error where it holds nothing.
+  void count_what_is_there(const std::vector<std::int64_t>& counts, std::int64_t there, std::int64_t of_bodies) {
+    const std::int64_t named = *std::min_element(counts.begin(), counts.end());
+    if (there <= 0) throw Error("{}: is cut off: it names {} frames and holds {}; copy it again", name_, named, there);
+    layout_.frames = static_cast<std::size_t>(there);
     // 65535 (or -1) stands for "more than can be said", even where it is less.
-    if (counts.front() == 65535 && there > 0) {
-      layout_.frames = static_cast<std::size_t>(there);
-      layout_.warnings.push_back(fmt::format("it does not say how many frames it holds; there are {}", there));
-      return;
-    }
-    throw Error("{}: is cut off: it names {} frames and holds {}; copy it again", name_,
-                *std::min_element(counts.begin(), counts.end()), there);
+    layout_.warnings.push_back(
+        counts.front() == 65535
+            ? fmt::format("it does not say how many frames it holds; there are {}", there)
+            : fmt::format("is cut off: it names {} frames and holds {}, which are read; copy it again to have them all", named,
+                          there));
+    require_matrices(of_bodies);
+  }
+
+  /// A file that ends among the matrices of its bodies has as many frames as it has matrices.
+  void require_matrices(std::int64_t of_bodies) {
+    if (of_bodies < 0 || of_bodies >= static_cast<std::int64_t>(layout_.frames)) return;
+    if (of_bodies == 0)
+      throw Error("{}: is cut off: it has {} frames and no matrix of its bodies; copy it again", name_, layout_.frames);
+    layout_.warnings.push_back(
+        fmt::format("is cut off: it has {} frames and the matrices of {}, which are read; copy it again to have them all",
+                    layout_.frames, of_bodies));
+    layout_.frames = static_cast<std::size_t>(of_bodies);
   }
 
   const C3dHead& head_;

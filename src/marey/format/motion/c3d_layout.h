@@ -39,7 +39,8 @@ struct C3dLayout {
   std::size_t bodies_bytes() const { return body_bytes() * bodies * bodies_ratio; }  ///< of a frame
 };
 
-/// Found from the head and from how long the file is. Throws Error, with `name` for the file, where it is cut off.
+/// Found from the head and from how long the file is; of one that is cut off, the frames that are there. Throws Error, with `name`
+/// for the file, where there is none.
 C3dLayout c3d_layout(const C3dHead& head, std::size_t size, const std::string& name);
 
 }  // namespace marey::format::motion

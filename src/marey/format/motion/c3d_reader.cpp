@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -13,6 +15,8 @@
 #include "marey/format/motion/c3d_beside.h"
 #include "marey/format/motion/c3d_layout.h"
 #include "marey/format/motion/c3d_parameters.h"
+#include "marey/format/motion/c3d_points.h"
+#include "marey/format/motion/c3d_zeros.h"
 
 namespace marey::format::motion {
 namespace {
@@ -25,10 +29,9 @@ class C3dReader : public FileReader {
         path_(name),
         head_(read_c3d_head(bytes, name)),
         bytes_(bytes, head_.processor),
-        layout_(c3d_layout(head_, bytes.size(), name)) {
-    for (const auto* sentences : {&head_.warnings, &layout_.warnings}) {
-      for (const std::string& sentence : *sentences) warnings_.push_back(name + ": " + sentence);
-    }
+        layout_(c3d_layout(head_, bytes.size(), name)),
+        points_(bytes_, layout_) {
+    for (const auto* sentences : {&head_.warnings, &layout_.warnings}) warn(*sentences);
     tells_measured_ = any_point_tells();
     info_.header.made_by.program = maker();
     info_.header.rate_hz = rate(name);
@@ -36,6 +39,8 @@ class C3dReader : public FileReader {
     const std::string screen = head_.text("POINT:Y_SCREEN");
     if (screen == "+Y" || screen == "+Z") info_.up = screen == "+Y" ? UpAxis::y : UpAxis::z;
     find_tracks(points);
+    if (maker() != "Marey") zeros_.emplace(points_, places());  // which marks all that is missing
+    if (zeros_) warn(zeros_->warnings());
     find_bodies();
     if (file_ != nullptr) info_.beside = beside_points(head_, layout_, name);
     info_.beside.turned = up == UpAxis::y;
@@ -61,38 +66,27 @@ class C3dReader : public FileReader {
   }
 
  private:
-  std::size_t offset(std::size_t frame, std::size_t point) const {
-    return layout_.begin + frame * layout_.frame_bytes() + point * 4 * layout_.word();
-  }
-
-  /// The fourth word: its lower byte the residual, its higher one the cameras; negative where the point is missing.
-  int fourth_word(std::size_t at) const {
-    if (!layout_.real) return bytes_.integer(at + 6);
-    const double value = std::round(bytes_.real(at + 12));
-    return value >= 0 && value <= 32767 ? static_cast<int>(value) : value > 32767 ? 0 : -1;
+  void warn(const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences) warnings_.push_back(path_ + ": " + sentence);
   }
 
   bool any_point_tells() const {
     for (std::size_t frame = 0; frame < layout_.frames; ++frame) {
       for (std::size_t i = 0; i < layout_.points; ++i) {
-        if (fourth_word(offset(frame, i)) > 0) return true;
+        if (points_.fourth_word(frame, i) > 0) return true;
       }
     }
     return false;
   }
 
   std::optional<Sample> point_at(std::size_t frame, std::size_t i) const {
-    const std::size_t at = offset(frame, i);
-    const int word = fourth_word(at);
-    if (word < 0) return std::nullopt;
+    const int word = points_.fourth_word(frame, i);
+    if (word < 0 || (zeros_ && zeros_->missing(frame, i))) return std::nullopt;
+    const Vector<3> position = points_.position(frame, i);
+    if (!position.allFinite()) return std::nullopt;
     Sample point;
     point.track = TrackId(static_cast<int>(i) + 1);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double value =
-          layout_.real ? static_cast<double>(bytes_.real(at + 4 * axis)) : bytes_.integer(at + 2 * axis) * layout_.scale;
-      if (!std::isfinite(value)) return std::nullopt;
-      point.position[static_cast<Eigen::Index>(axis)] = value * layout_.unit_m;
-    }
+    point.position = position * layout_.unit_m;
     if (word > 0) {
       point.cameras = static_cast<CameraMask>(word >> 8);
       point.residual_m = (word & 0xff) * layout_.scale * layout_.unit_m;
@@ -150,6 +144,15 @@ class C3dReader : public FileReader {
     warnings_.push_back(fmt::format("{}: {} stand among its points and are no places; they are left out", path_, counts));
   }
 
+  /// The tracks whose points are positions: an angle of 0 is none.
+  std::vector<TrackName> places() const {
+    const auto others = other_quantities();
+    std::vector<TrackName> tracks;
+    std::copy_if(info_.tracks.begin(), info_.tracks.end(), std::back_inserter(tracks),
+                 [&](const TrackName& track) { return track.label.empty() || !others.contains(track.label); });
+    return tracks;
+  }
+
   void find_bodies() {
     std::vector<std::string> labels = head_.texts("ROTATION:LABELS");
     labels.resize(layout_.bodies);
@@ -191,6 +194,8 @@ class C3dReader : public FileReader {
   C3dHead head_;
   C3dBytes bytes_;
   C3dLayout layout_;
+  C3dPointWords points_;
+  std::optional<C3dZeros> zeros_;
   bool tells_measured_ = false;
   FileInfo info_;
   std::vector<bool> is_place_;  // of each point

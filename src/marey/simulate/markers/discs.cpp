@@ -85,15 +85,20 @@ cv::Mat drawn(const Shape& shape, int side) {
 
 }  // namespace
 
+cv::Rect reach_of(const Disc& disc) {
+  const double reach = disc.radius + kReach * disc.blur + 1;
+  const auto low = [&](double centre) { return static_cast<int>(std::ceil(centre - reach)); };
+  const auto high = [&](double centre) { return static_cast<int>(std::floor(centre + reach)) + 1; };
+  return {cv::Point(low(disc.centre.x()), low(disc.centre.y())), cv::Point(high(disc.centre.x()), high(disc.centre.y()))};
+}
+
 void draw_discs(cv::Mat& image, std::span<const Disc> discs, int points) {
   CV_Assert(image.type() == CV_32FC1 && points > 0);
   for (const Disc& disc : discs) {
-    const double reach = disc.radius + kReach * disc.blur + 1;
-    const cv::Range columns = pixels(disc.centre.x() - reach, disc.centre.x() + reach, image.cols);
-    const cv::Range rows = pixels(disc.centre.y() - reach, disc.centre.y() + reach, image.rows);
-    for (int y = rows.start; y < rows.end; ++y) {
+    const cv::Rect touched = reach_of(disc) & cv::Rect({}, image.size());
+    for (int y = touched.y; y < touched.br().y; ++y) {
       float* row = image.ptr<float>(y);
-      for (int x = columns.start; x < columns.end; ++x) {
+      for (int x = touched.x; x < touched.br().x; ++x) {
         const double share = coverage(disc, x, y, points);
         row[x] = static_cast<float>((1 - share) * row[x] + share * disc.level);
       }

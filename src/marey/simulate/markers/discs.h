@@ -18,6 +18,9 @@ struct Disc {
   double blur = 0.55;                    ///< standard deviation of the edge, px; positive
 };
 
+/// The pixels that `draw_discs` touches for it, in an image without borders.
+cv::Rect reach_of(const Disc& disc);
+
 /// Lays discs over `image` (CV_32FC1), each over those before it: pixel ← (1 − c) · pixel + c · level, where the coverage c is the
 /// disc's share averaged over points × points places within the pixel. Only pixels within 6 blurs of a disc are touched.
 void draw_discs(cv::Mat& image, std::span<const Disc> discs, int points = 8);

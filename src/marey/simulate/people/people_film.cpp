@@ -14,13 +14,14 @@
 namespace marey::simulate::people {
 namespace {
 
-constexpr std::array<NamedPeopleSituation, 7> kSituations{{{"apart", PeopleSituation::apart},
+constexpr std::array<NamedPeopleSituation, 8> kSituations{{{"apart", PeopleSituation::apart},
                                                            {"crossing", PeopleSituation::crossing},
                                                            {"post", PeopleSituation::post},
                                                            {"abrupt", PeopleSituation::abrupt},
                                                            {"border", PeopleSituation::border},
                                                            {"overlap", PeopleSituation::overlap},
-                                                           {"crowd", PeopleSituation::crowd}}};
+                                                           {"crowd", PeopleSituation::crowd},
+                                                           {"standing", PeopleSituation::standing}}};
 
 constexpr double kStature = 1.78;  // m
 constexpr double kLens = 3.0;      // focal length in widths of the picture: as from a stand

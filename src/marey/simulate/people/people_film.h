@@ -27,6 +27,7 @@ enum class PeopleSituation {
   border,    ///< each walks out of the picture and in again at its sides, in a lane of its own
   overlap,   ///< two players, one in part behind the other for two seconds, by 15 to 75 %; half of them turn back
   crowd,     ///< each goes anywhere: every kind of occlusion, entering and leaving
+  standing,  ///< half of them stand from the beginning and walk off in the film's second half; the others go anywhere
 };
 
 struct NamedPeopleSituation {

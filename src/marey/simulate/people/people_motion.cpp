@@ -66,6 +66,7 @@ class Director {
   void overlap();
   void behind_posts();
   void crowd();
+  void standing();
   PeopleMotion take() { return std::move(motion_); }
 
  private:
@@ -91,6 +92,8 @@ class Director {
   };
   std::vector<Lane> lanes(int wanted) const;
   void begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal);
+  Vector<2> anywhere(bool outside);
+  void walk_anywhere(Walker& walker, double now, int& team);
   void walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander);
   void change_shape(Walker& walker, bool abrupt);
 
@@ -273,36 +276,83 @@ void Director::behind_posts() {
   }
 }
 
-void Director::crowd() {
+/// A place on the ground in the lower part of the picture, or at its side without.
+Vector<2> Director::anywhere(bool outside) {
   const double width = camera_.size.width;
   const double low_row = camera_.size.height - 4;
   const double high_row = std::max(0.3 * camera_.size.height, 4 + height_at(0.3 * camera_.size.height));
-  const auto row = [&] { return random_.uniform(high_row, low_row); };
-  const auto outside = [&] {
-    const double r = row();
-    return ground(random_.chance(0.5) ? -height_at(r) : width + height_at(r), r);
-  };
-  const auto inside = [&] { return ground(random_.uniform(0.05, 0.95) * width, row()); };
+  const double row = random_.uniform(high_row, low_row);
+  if (!outside) return ground(random_.uniform(0.05, 0.95) * width, row);
+  return ground(random_.chance(0.5) ? -height_at(row) : width + height_at(row), row);
+}
+
+/// A step of somebody who goes from goal to goal; who leaves the picture is replaced by somebody else.
+void Director::walk_anywhere(Walker& walker, double now, int& team) {
+  if (!walker.walk(now, dt_, stature(walker.id), false)) return;
+  const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
+  if (column < -10 || column > camera_.size.width + 10) {
+    walker.id = new_figure(team++ % 2);
+    const Vector<2> goal = anywhere(false);
+    begin(walker, anywhere(true), goal);
+    return;
+  }
+  if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.5, 4);
+  walker.wished_speed = speed();
+  walker.goal = anywhere(random_.chance(0.25));
+}
+
+void Director::crowd() {
   std::vector<Walker> walkers(static_cast<std::size_t>(*options_.people));
   int team = 0;
   for (Walker& walker : walkers) {
     walker.id = new_figure(team++ % 2);
-    begin(walker, inside(), inside());
+    const Vector<2> goal = anywhere(false);
+    begin(walker, anywhere(false), goal);
   }
   for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
     const double now = static_cast<double>(frame) * dt_;
     for (Walker& walker : walkers) {
       motion_.frames[frame].push_back({walker.id, walker.stance});
-      if (!walker.walk(now, dt_, stature(walker.id), false)) continue;
-      const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
-      if (column < -10 || column > width + 10) {
-        walker.id = new_figure(team++ % 2);
-        begin(walker, outside(), inside());
-        continue;
+      walk_anywhere(walker, now, team);
+    }
+  }
+}
+
+/// Half of them stand from the first frame on, shifting their weight, and walk off in the second half of the film, each at a
+/// moment of their own; the others walk about between them.
+void Director::standing() {
+  constexpr double kApart = 1.5, kSway = 0.02, kBeat = 0.3;  // m, m, Hz
+  constexpr double kShortest = 0.55, kLongest = 0.8;         // of the film, that they stand
+  const double length = static_cast<double>(motion_.frames.size()) * dt_;
+  std::vector<Walker> people(static_cast<std::size_t>(*options_.people));
+  const std::size_t standing = (people.size() + 1) / 2;
+  std::vector<Vector<2>> home(standing);
+  std::vector<double> leaves(standing);
+  int team = 0;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    people[i].id = new_figure(team++ % 2);
+    Vector<2> place = anywhere(false);
+    const auto crowded = [&](const Vector<2>& other) { return (other - place).norm() < kApart; };
+    for (int tries = 0;
+         i < standing && tries < 100 && std::any_of(home.begin(), home.begin() + static_cast<std::ptrdiff_t>(i), crowded); ++tries)
+      place = anywhere(false);
+    begin(people[i], place, anywhere(i < standing));
+    if (i >= standing) continue;
+    people[i].stance.speed = 0;
+    people[i].stance.heading = random_.uniform(0, 2 * std::numbers::pi);
+    home[i] = place;
+    leaves[i] = random_.uniform(kShortest, kLongest) * length;
+  }
+  for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
+    const double now = static_cast<double>(frame) * dt_;
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      motion_.frames[frame].push_back({people[i].id, people[i].stance});
+      if (i < standing && now < leaves[i]) {
+        const double phase = 2 * std::numbers::pi * kBeat * now + static_cast<double>(i);
+        people[i].stance.place = home[i] + kSway * Vector<2>(std::sin(phase), std::cos(0.7 * phase));
+      } else {
+        walk_anywhere(people[i], now, team);
       }
-      if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.5, 4);
-      walker.wished_speed = speed();
-      walker.goal = random_.chance(0.25) ? outside() : inside();
     }
   }
 }
@@ -332,6 +382,9 @@ PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, c
       break;
     case PeopleSituation::crowd:
       director.crowd();
+      break;
+    case PeopleSituation::standing:
+      director.standing();
       break;
   }
   return director.take();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "marey/simulate/markers/discs.h"
+#include "marey/simulate/random.h"
 
 namespace marey::simulate::room {
 namespace {
@@ -10,11 +11,30 @@ namespace {
 constexpr float kGround = 22;            // grey level
 constexpr double kGhostDistance = 4;     // m
 constexpr double kSmallestRadius = 0.6;  // px
+constexpr int kField = 64;               // px by which a field of noise is wider and higher than a picture: 4096 of them
 
 RoomOptions exact(RoomOptions options) {
   options.noise_px = 0;
   options.merge_px = 0;  // discs that touch are one by themselves
   return options;
+}
+
+std::vector<markers::Disc> discs_of(const RoomScene& scene, std::size_t index, double time_s, const std::vector<RoomBlob>& seen,
+                                    const RoomFilmOptions& options) {
+  const RigCamera& camera = scene.rig_at(time_s).cameras[index];
+  const Vector<3> centre = camera.camera()->centre();
+  const std::vector<Vector<3>> points = scene.points(time_s);
+  std::vector<markers::Disc> discs;
+  for (const RoomBlob& blob : seen) {
+    const double distance = blob.marker ? (points[static_cast<std::size_t>(*blob.marker)] - centre).norm() : kGhostDistance;
+    const double radius = options.marker_radius * geometry::focal_of(*camera.lens).x() / distance;
+    discs.push_back({blob.pixel, std::max(kSmallestRadius, radius)});
+  }
+  return discs;
+}
+
+std::uint64_t noise_seed(const RoomScene& scene, std::size_t index, std::uint64_t draw) {
+  return scene.options().seed * 1000003u + draw * 64 + index;
 }
 
 class RoomFilm : public Source {
@@ -54,18 +74,51 @@ std::unique_ptr<Source> film_room(const RoomOptions& room, std::size_t index, co
 
 cv::Mat draw_room(const RoomScene& scene, std::size_t index, double time_s, const std::vector<RoomBlob>& seen, std::uint64_t draw,
                   const RoomFilmOptions& options) {
-  const RigCamera& camera = scene.rig_at(time_s).cameras[index];
-  const Vector<3> centre = camera.camera()->centre();
-  const std::vector<Vector<3>> points = scene.points(time_s);
-  std::vector<markers::Disc> discs;
-  for (const RoomBlob& blob : seen) {
-    const double distance = blob.marker ? (points[static_cast<std::size_t>(*blob.marker)] - centre).norm() : kGhostDistance;
-    const double radius = options.marker_radius * geometry::focal_of(*camera.lens).x() / distance;
-    discs.push_back({blob.pixel, std::max(kSmallestRadius, radius)});
+  cv::Mat image(*scene.rig().cameras[index].size, CV_32FC1, cv::Scalar(kGround));
+  markers::draw_discs(image, discs_of(scene, index, time_s, seen, options));
+  return markers::expose(image, options.picture_noise, noise_seed(scene, index, draw));
+}
+
+RoomSpots::RoomSpots(const RoomScene& scene, std::size_t index, const RoomFilmOptions& options)
+    : scene_(scene), index_(index), options_(options), size_(*scene.rig().cameras[index].size) {
+  const cv::Mat ground(size_.height + kField, size_.width + kField, CV_32FC1, cv::Scalar(kGround));
+  field_ = markers::expose(ground, options_.picture_noise, noise_seed(scene, index, 0));
+}
+
+RoomSpots::Drawn RoomSpots::draw(double time_s, const std::vector<RoomBlob>& seen, std::uint64_t draw) const {
+  const std::uint64_t seed = noise_seed(scene_, index_, draw);
+  Random random(seed);
+  Drawn drawn;
+  drawn.noise = {static_cast<int>(random.uniform(0, kField)), static_cast<int>(random.uniform(0, kField))};
+  const std::vector<markers::Disc> discs = discs_of(scene_, index_, time_s, seen, options_);
+  std::vector<cv::Rect> reaches;
+  for (const markers::Disc& disc : discs) reaches.push_back(markers::reach_of(disc) & cv::Rect({}, size_));
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    const cv::Rect& place = reaches[i];
+    if (place.empty()) continue;
+    std::vector<markers::Disc> inside;
+    for (std::size_t j = 0; j < discs.size(); ++j) {
+      if ((reaches[j] & place).empty()) continue;
+      inside.push_back(discs[j]);
+      inside.back().centre -= Vector<2>(place.x, place.y);
+    }
+    cv::Mat image(place.size(), CV_32FC1, cv::Scalar(kGround));
+    markers::draw_discs(image, inside);
+    const cv::Mat seen_there = markers::expose(image, options_.picture_noise, seed * 31 + i);
+    drawn.places.push_back(place);
+    drawn.pixels.insert(drawn.pixels.end(), seen_there.datastart, seen_there.dataend);
   }
-  cv::Mat image(*camera.size, CV_32FC1, cv::Scalar(kGround));
-  markers::draw_discs(image, discs);
-  return markers::expose(image, options.picture_noise, scene.options().seed * 1000003u + draw * 64 + index);
+  return drawn;
+}
+
+cv::Mat RoomSpots::picture(const Drawn& drawn) const {
+  cv::Mat picture = field_(cv::Rect(drawn.noise, size_)).clone();
+  const std::uint8_t* pixels = drawn.pixels.data();
+  for (const cv::Rect& place : drawn.places) {
+    for (int y = 0; y < place.height; ++y, pixels += place.width)
+      std::copy_n(pixels, place.width, picture.ptr(place.y + y) + place.x);
+  }
+  return picture;
 }
 
 std::vector<int> cameras_that_see(const RoomScene& scene, const RoomFrame& frame) {

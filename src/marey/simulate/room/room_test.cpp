@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "marey/simulate/room/body.h"
+#include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/to_and_fro.h"
 
 namespace marey::simulate::room {
 namespace {
@@ -218,6 +220,56 @@ TEST(Room, AFrameIsTheSameInAnyOrder) {
   options.seed = 2;
   EXPECT_NE(RoomScene(options).rig().cameras[0].camera_from_world->translation,
             one.rig().cameras[0].camera_from_world->translation);
+}
+
+TEST(RoomFilm, SpotsOverAFieldOfNoiseAreThePicture) {
+  RoomOptions options;
+  options.motion = RoomMotion::cloud;  // spots that touch, and at the border
+  options.markers = 300;
+  options.picture = {321, 240};
+  options.cameras = 2;
+  const RoomScene scene(options);
+  for (const double noise : {0.0, 0.7}) {
+    const RoomFilmOptions film{.picture_noise = noise};
+    const RoomSpots spots(scene, 1, film);
+    for (const std::uint64_t i : {0u, 7u}) {
+      const double time = static_cast<double>(i) / options.rate_hz;
+      const std::vector<RoomBlob> seen = scene.seen_by(1, time, i);
+      ASSERT_GT(seen.size(), 100u);
+      const cv::Mat whole = draw_room(scene, 1, time, seen, i, film), together = spots.picture(spots.draw(time, seen, i));
+      ASSERT_EQ(together.size(), whole.size());
+      EXPECT_LE(cv::norm(whole, together, cv::NORM_INF), 10 * noise);
+      const double rms = cv::norm(whole, together, cv::NORM_L2) / std::sqrt(static_cast<double>(whole.total()));
+      EXPECT_NEAR(rms, noise * std::sqrt(2.0), 0.2 * noise) << "the noise of both, and it is not the same";
+    }
+  }
+}
+
+TEST(RoomFilm, SpotsTakeAFiftiethOfThePicture) {
+  RoomOptions options;
+  const RoomScene scene(options);
+  const RoomSpots spots(scene, 0);
+  const RoomSpots::Drawn drawn = spots.draw(0, scene.seen_by(0, 0, 0), 0);
+  EXPECT_LT(drawn.pixels.size() + drawn.places.size() * sizeof(cv::Rect), static_cast<std::size_t>(options.picture.area()) / 50);
+}
+
+TEST(ToAndFro, TurnsWithoutAJerk) {
+  for (const double length : {0.3, 1.0, 2.0, 7.0}) {
+    const double ramp = std::min(0.5, length / 2), step = 1e-3;
+    EXPECT_EQ(to_and_fro(0, length), 0);
+    EXPECT_NEAR(to_and_fro(length, length), length - ramp, 1e-9);
+    EXPECT_NEAR(to_and_fro(2 * length, length), 0, 1e-9);
+    double before = 0;
+    for (double t = -length; t < 5 * length; t += step) {
+      const double velocity = (to_and_fro(t + step, length) - to_and_fro(t, length)) / step;
+      EXPECT_LE(std::abs(velocity), 1 + 1e-9);
+      if (t > -length) {
+        ASSERT_LE(std::abs(velocity - before), 1.01 * step / ramp) << length << " s, at " << t;
+      }
+      before = velocity;
+    }
+    EXPECT_NEAR(to_and_fro(1.3 * length, length), to_and_fro(0.7 * length, length), 1e-9) << "back as it came";
+  }
 }
 
 TEST(Room, ABumpMovesOneCameraFromThenOn) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "marey/assign/no_index.h"
 #include "marey/solve/labels/four_points.h"
@@ -44,6 +45,11 @@ class Beam {
       : scene_(scene), learned_(learned), model_(model), options_(options), turn_(learned_from_scene), sides_(model.size()) {
     if (turn_) find_nearest();
     find_sides();
+  }
+
+  double side_cost_of(const BootAnswer& answer, std::size_t name) const {
+    const int point = answer.point_of[name];
+    return point == kNoIndex ? 0 : side_cost(answer, name, static_cast<std::size_t>(point), kNobody);
   }
 
   BootAnswer run() {
@@ -327,6 +333,25 @@ class Beam {
 };
 
 }  // namespace
+
+struct SideCosts::Parts {
+  BootScene scene;
+  Beam beam;
+  BootAnswer answer = {};
+
+  Parts(BootScene its, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options)
+      : scene(std::move(its)), beam(scene, learned, model, options, std::nullopt) {}
+};
+
+SideCosts::SideCosts(BootScene scene, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options)
+    : parts_(std::make_unique<Parts>(std::move(scene), learned, model, options)) {}
+SideCosts::~SideCosts() = default;
+SideCosts::SideCosts(SideCosts&&) noexcept = default;
+
+double SideCosts::of(const std::vector<int>& point_of, std::size_t name) const {
+  parts_->answer.point_of = point_of;
+  return parts_->beam.side_cost_of(parts_->answer, name);
+}
 
 BootAnswer boot_labels(const BootScene& scene, const LearnedMarkers& learned, const DistanceModel& model,
                        const BootOptions& options, const std::optional<Matrix<3>>& learned_from_scene) {

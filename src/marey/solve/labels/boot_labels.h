@@ -8,6 +8,7 @@
 // the end single names are exchanged as long as that gains. Cost: names × points × answers × names.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,6 +35,22 @@ struct BootScene {
 struct BootAnswer {
   std::vector<int> point_of;  ///< by name: the point, or assign::kNoIndex
   double score = 0;
+};
+
+/// What it costs that points lie on the wrong side of each other, for any answer to one scene. `learned`, `model` and `options`
+/// must outlive it.
+class SideCosts {
+ public:
+  SideCosts(BootScene scene, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options);
+  ~SideCosts();
+  SideCosts(SideCosts&&) noexcept;
+
+  /// Of the sides that a name has a part in; 0 if it has no point. `point_of`: by name, or assign::kNoIndex.
+  double of(const std::vector<int>& point_of, std::size_t name) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// With `learned_from_scene`, where the subject's posture is about the one it was learned in: the turn from one's axes to the

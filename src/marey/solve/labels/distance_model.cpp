@@ -55,6 +55,12 @@ double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceSeen& se
   return std::max(most + std::log1p(std::exp(-std::abs(as_segment - as_posture))), options_.floor);
 }
 
+std::optional<double> DistanceModel::rigid_deviation(std::size_t a, std::size_t b, const DistanceSeen& seen) const {
+  if (moves_) return deviation(a, b);
+  if (seen.variance > options_.shift * options_.shift) return std::nullopt;
+  return std::hypot(options_.still_shift, options_.still_share * mean(a, b));
+}
+
 void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceSeen& seen) {
   Term& term = terms_[LearnedMarkers::index_of(a, b)];
   if (seen.count < kOftenEnough) return;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "marey/core/learned_markers.h"
@@ -48,6 +49,8 @@ class DistanceModel {
   double ratio(std::size_t a, std::size_t b, const DistanceSeen& seen) const;
   /// Standard deviation that a distance is believed to have, m.
   double deviation(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].deviation; }
+  /// Standard deviation of a distance that was seen, if it is rigid: nothing if it was not learned, and varies here.
+  std::optional<double> rigid_deviation(std::size_t a, std::size_t b, const DistanceSeen& seen) const;
   double mean(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].mean; }
   /// The others by how much their distances tell, the most first.
   const std::vector<std::size_t>& partners(std::size_t label) const { return partners_[label]; }

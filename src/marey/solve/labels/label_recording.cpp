@@ -9,6 +9,7 @@
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
 #include "marey/geometry/layout.h"
+#include "marey/solve/labels/check_names.h"
 #include "marey/solve/labels/labelled_result.h"
 #include "marey/solve/labels/learn_markers.h"
 #include "marey/solve/labels/named_chains.h"
@@ -21,6 +22,7 @@ using assign::kNoIndex;
 constexpr double kBootS = 0.15;        // s: a chain that a name is looked for from nothing is at least so long
 constexpr double kFewestBooted = 0.4;  // of the set's markers, below which nothing is told
 constexpr std::size_t kMostPointsToBoot = 160;
+constexpr double kMisfit = 2, kMostWider = 4;  // times as far off as distances of the subject that taught are
 
 std::pair<double, double> extent_of(std::vector<double> heights) {
   std::sort(heights.begin(), heights.end());
@@ -31,13 +33,33 @@ std::pair<double, double> extent_of(std::vector<double> heights) {
 class Labelling {
  public:
   Labelling(const Recording& recording, const LearnedMarkers& learned, const LabelOptions& options, const Hooks& hooks)
-      : recording_(recording), learned_(learned), options_(options), hooks_(hooks), chains_([&] {
+      : recording_(recording), learned_(learned), options_(options), distances_(options.distances), hooks_(hooks), chains_([&] {
           auto tracklets = tracklets_of(recording, options.tracklets);
           const auto chain_of = chains_of(tracklets, recording.header.rate_hz, options.tracklets);
           return NamedChains(std::move(tracklets), chain_of, recording.instants().size(), learned.size());
         }()) {}
 
   Labelled run() {
+    name_all();
+    if (learned_.moves && misfit().ratio > kMisfit) {  // it is somebody else's: what distances may be off is measured
+      const double wider = std::min(misfit().ratio, kMostWider);
+      distances_.shift *= wider;
+      distances_.share *= wider;
+      for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
+      name_all();
+    }
+    const std::vector<int> undecided = check();
+    judge();
+    drop(undecided);
+    Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, doubts_, scale_);
+    const Misfit misfit_now = misfit();
+    labelled.misfit = misfit_now.ratio;
+    labelled.misfit_m = misfit_now.off_m;
+    return labelled;
+  }
+
+ private:
+  void name_all() {
     boot();
     for (int round = 0; round < options_.rounds; ++round) {
       hooks_.advance({.step = "naming", .done = round + 1, .total = options_.rounds + 1});
@@ -51,11 +73,12 @@ class Labelling {
     }
     chains_.gather();
     refine();
-    judge();
-    return labelled_result(recording_, learned_, chains_, *model_, doubts_, scale_);
   }
 
- private:
+  /// Of those that have names now, by what was taught.
+  Misfit misfit() const { return misfit_of(chains_.named_distances(), DistanceModel(learned_, scale_, options_.distances)); }
+  std::vector<int> check();
+  void drop(const std::vector<int>& undecided);
   void boot();
   [[noreturn]] void fail_to_boot(std::ptrdiff_t booted, std::size_t crowd) const;
   void refine();
@@ -72,6 +95,7 @@ class Labelling {
   const Recording& recording_;
   const LearnedMarkers& learned_;
   const LabelOptions& options_;
+  DistanceOptions distances_;
   const Hooks& hooks_;
   NamedChains chains_;
   std::unique_ptr<DistanceModel> model_;
@@ -175,7 +199,7 @@ void Labelling::boot() {
     if (chains.size() > kMostPointsToBoot) crowd = std::max(crowd, chains.size());
     if (chains.size() < 4 || chains.size() > kMostPointsToBoot) continue;
     for (const double scale : best_score > 0 && learned_.scaled ? std::vector{scale_} : scales(instant)) {
-      const DistanceModel model(learned_, scale, options_.distances);
+      const DistanceModel model(learned_, scale, distances_);
       BootAnswer answer = boot_labels(scene, learned_, model, options_.boot);
       if (const auto turn = turn_to_learned(scene, answer)) answer = boot_again(scene, answer, model, *turn);
       if (answer.score <= best_score) continue;
@@ -184,7 +208,7 @@ void Labelling::boot() {
   }
   const auto booted = std::count_if(best.point_of.begin(), best.point_of.end(), [](int point) { return point != kNoIndex; });
   if (static_cast<double>(booted) < kFewestBooted * static_cast<double>(learned_.size())) fail_to_boot(booted, crowd);
-  model_ = std::make_unique<DistanceModel>(learned_, scale_, options_.distances);
+  model_ = std::make_unique<DistanceModel>(learned_, scale_, distances_);
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (best.point_of[name] != kNoIndex)
       chains_.set_name(best_chains[static_cast<std::size_t>(best.point_of[name])], static_cast<int>(name));
@@ -290,6 +314,43 @@ double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fit
     if (loss < least) least = loss, next = other;
   }
   return least;
+}
+
+/// Holds the names against what was taught alone, and puts right what is better otherwise. Returns which of them could as well be
+/// another, by name.
+std::vector<int> Labelling::check() {
+  const DistanceModel taught(learned_, scale_, distances_);
+  const CheckedNames checked = check_names(chains_, learned_, taught, options_.boot, options_.neighbours, options_.least_margin);
+  std::vector<int> name_of(learned_.size(), kNoIndex);
+  bool changed = false;
+  for (std::size_t name = 0; name < learned_.size(); ++name) {
+    if (checked.holder_of[name] == kNoIndex) continue;
+    name_of[static_cast<std::size_t>(checked.holder_of[name])] = static_cast<int>(name);
+    changed = changed || checked.holder_of[name] != static_cast<int>(name);
+  }
+  if (!changed) return checked.undecided;
+  bearers_.assign(learned_.size(), {});
+  for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
+    const int was = chains_.chains()[static_cast<std::size_t>(chain)].name;
+    if (was == kNoIndex) continue;
+    const int name = name_of[static_cast<std::size_t>(was)];
+    chains_.set_name(chain, name);
+    if (name != kNoIndex) bearers_[static_cast<std::size_t>(name)].push_back(chain);
+  }
+  model_ = std::make_unique<DistanceModel>(learned_, scale_, distances_);
+  chains_.gather();
+  refine();
+  return checked.undecided;
+}
+
+void Labelling::drop(const std::vector<int>& undecided) {
+  for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
+    const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
+    if (name == kNoIndex || undecided[static_cast<std::size_t>(name)] == kNoIndex) continue;
+    doubts_[chain] = {.best = name, .next = undecided[static_cast<std::size_t>(name)], .fit = options_.least_fit, .margin = 0};
+    chains_.set_name(chain, kNoIndex);
+  }
+  chains_.gather();
 }
 
 void Labelling::judge() {

@@ -109,6 +109,11 @@ SceneMotion against(const SceneMotion& motion, const SceneMotion& rest) {
   return {turned.angle() * turned.axis(), motion.log_scale - rest.log_scale};
 }
 
+SceneMotion after(const SceneMotion& motion, const SceneMotion& first) {
+  const Eigen::AngleAxisd turned(rotation_of(motion.turn) * rotation_of(first.turn));
+  return {turned.angle() * turned.axis(), motion.log_scale + first.log_scale};
+}
+
 std::optional<SceneFit> fit_motion(std::span<const FollowedPlace> places, const PinholeView& view, double agree_px) {
   if (places.size() < 4) return std::nullopt;
   const PictureShift start = voted(places, view, agree_px);

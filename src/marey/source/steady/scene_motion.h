@@ -29,6 +29,9 @@ Matrix<3> moved_from_rest(const SceneMotion& motion, const PinholeView& view);
 /// What `motion` is against another rest, which itself is moved by `rest` from the one that both are told against.
 SceneMotion against(const SceneMotion& motion, const SceneMotion& rest);
 
+/// `motion` against a picture that itself is moved by `first`: both together, against the rest.
+SceneMotion after(const SceneMotion& motion, const SceneMotion& first);
+
 /// A place of the scene, px: at rest and now.
 struct FollowedPlace {
   Vector<2> rest, seen;

@@ -23,6 +23,8 @@ constexpr double kMeanShare = 0.08;
 constexpr std::size_t kMostKinds = 6;
 constexpr int kSearchAgain = 5;  // pictures: one that is lost for longer is looked for everywhere so often
 constexpr int kCoarse = 2;
+constexpr double kStillThere = 0.6;  // of a picture's corners: with fewer, the next ones are told against a newer picture
+constexpr int kBeforeLeast = 10;     // pictures that only the one before tells, after which new corners are taken
 constexpr int kInMedian = 15;
 
 std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients) {
@@ -313,6 +315,31 @@ void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
   if (take_corners(levels)) agreed_ = 0;
 }
 
+/// By the last picture whose motion is known: where somebody hides what the scene was known by, or has uncovered it, one picture
+/// still shows what the next one does. From time to time the scene's corners are taken anew then.
+std::optional<SceneFit> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+  if (before_picture_.empty()) return std::nullopt;
+  if (before_.pyramid.empty()) {
+    before_.at = corners_of(before_picture_, options_.corners, options_.least_corner);
+    before_.pyramid = pyramid_of(before_picture_, true);
+  }
+  if (std::ssize(before_.at) < options_.fewest) return std::nullopt;
+  auto found = find_from(before_, pyramid, {});
+  if (!found) return std::nullopt;
+  const bool changed = found->agreeing < kStillThere * static_cast<double>(before_.at.size());
+  found->motion = after(found->motion, before_motion_);
+  if (found->motion.turn.head<2>().norm() * view_.focal > options_.farthest * size_.width) return std::nullopt;
+  if (changed) {
+    before_ = {};
+    before_picture_ = now;
+    before_motion_ = found->motion;
+  }
+  if (++by_before_ < kBeforeLeast) return found;
+  by_before_ = 0;
+  take_corners(at_rest(now, found->motion));
+  return found;
+}
+
 std::optional<SceneMotion> StandingScene::find(const Picture& picture) {
   if (picture.size() != picture_) return std::nullopt;
   const cv::Mat now = shrunk(picture);
@@ -325,11 +352,18 @@ std::optional<SceneMotion> StandingScene::find(const Picture& picture) {
   } else if (lost_run_ % kSearchAgain == 0) {
     found = find_anywhere(now, pyramid);
   }
+  const bool by_corners = found.has_value();
+  if (!found) found = find_from_before(now, pyramid);
   lost_run_ = found ? 0 : lost_run_ + 1;
   if (!found) return std::nullopt;
   last_ = found->motion;
+  if (!by_corners) return last_;
+  by_before_ = 0;
+  before_ = {};
+  before_picture_ = now;
+  before_motion_ = last_;
   keep_up(now, *found);
-  return found->motion;
+  return last_;
 }
 
 }  // namespace marey::source::steady

@@ -75,6 +75,7 @@ class StandingScene {
   bool begin_with(std::vector<Sampled>& samples, std::size_t anchor);
   void settle_focal(const std::vector<std::vector<FollowedPlace>>& pictures);
   bool learn_focal(const std::vector<FollowedPlace>& places, const SceneMotion& motion);
+  std::optional<SceneFit> find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid);
   void keep_up(const cv::Mat& now, const SceneFit& fit);
   cv::Mat at_rest(const cv::Mat& now, const SceneMotion& motion) const;
   cv::Mat coarse(const cv::Mat& picture) const;
@@ -89,7 +90,11 @@ class StandingScene {
   std::vector<Corners> corners_;  // the last few kinds of light; the first are from the beginning
   std::size_t used_ = 0;
   SceneMotion last_;
-  cv::Mat mean_;  // CV_32F, at rest, of recent pictures
+  Corners before_;          // of a picture of late whose motion was known
+  cv::Mat before_picture_;  // that picture, until its corners are wanted
+  SceneMotion before_motion_;
+  int by_before_ = 0;  // pictures in turn whose motion only that one told
+  cv::Mat mean_;       // CV_32F, at rest, of recent pictures
   int in_mean_ = 0, since_mean_ = 0, lost_run_ = 0;
   double agreed_ = 0;  // share of corners, of late
 };

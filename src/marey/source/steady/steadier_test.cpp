@@ -97,6 +97,22 @@ TEST(StandingScene, TellsWhereThePictureLooksThoughSomebodyWalks) {
   }
 }
 
+TEST(StandingScene, IsNotLostWhereSomebodyInPlainClothesHidesMostOfIt) {
+  const cv::Mat scene = scene_of(6);
+  std::vector<Picture> samples;
+  for (unsigned i = 0; i < 30; ++i) samples.push_back(seen(scene, {0, 0}, static_cast<int>(12 * i), i));
+  StandingScene standing(kSize, std::nullopt);
+  ASSERT_TRUE(standing.learn(samples));
+  for (int i = 0; i < 140; ++i) {
+    const int hidden = i < 100 ? std::min(390, 6 * i) : std::max(0, 390 - 15 * (i - 100));
+    cv::Mat picture = seen(scene, {0, 0}, 500, 100 + static_cast<unsigned>(i)).luma().clone();
+    picture.colRange(0, hidden).setTo(60);
+    const auto motion = standing.find(Picture(picture));
+    ASSERT_TRUE(motion) << i;
+    EXPECT_LT(seen_motion(*motion, standing.view(), {0, 0}), 3) << i;  // at corners far from the strip that is seen
+  }
+}
+
 TEST(StandingScene, RestsInTheMiddleOfWhatItLearned) {
   const cv::Mat scene = scene_of(4);
   std::vector<Picture> samples;

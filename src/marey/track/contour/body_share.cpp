@@ -1,25 +1,30 @@
-// A cell is a mixture of body and ground: its share of body is how far its colour has gone from the ground's to the body's, both
-// taken from the neighbourhood (the ground outside the silhouette, the body where it differs most from that ground). A halo is
-// ground that is too bright or too dark: it lies beyond the ground, or a small part of the way to the body; blur and smeared colour
-// are symmetric, so that one half of the way is where the body ends. Cells deep inside belong to the body whatever their colour,
-// unless they plainly are ground and lead outside (between legs, below an arm). Cost: some fifteen box filters.
+// A cell is a mixture of body and ground: its share of body is how far its colour is from the ground's on the way to the body's.
+// The ground is read beside the silhouette; the body in the middle of the limb that the cell belongs to, because skin between two
+// white garments is not a half of white. A halo is ground that is too bright or too dark: it lies beyond the ground, or a small
+// part of the way to the body; blur and smeared colour are symmetric, so that one half of the way is where the body ends. How much
+// too wide the silhouette is, is measured where body and ground differ clearly; deeper than that, a cell belongs to the body
+// whatever its colour, unless it plainly is ground and leads outside (between legs, below an arm). Without that measurement,
+// limbs whose colour is near to the ground's are cut off. Cost: some ten box filters, and a few dozen reads per cell at the edge.
 #include "marey/track/contour/body_share.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 namespace marey::track::contour {
 namespace {
 
-constexpr double kGroundReach = 0.15, kBodyReach = 0.07;  // heights: neighbourhoods that ground and body are read from
-constexpr double kAway = 0.025;                           // heights: the ground is read this far from everything
-constexpr double kRim = 0.07;                             // heights: how deep a silhouette's rim may be ground
-constexpr float kLeastContrast = 16;                      // levels between body and ground, from which on colour tells
-constexpr float kPlainGround = 12;                        // levels from the ground below which a cell deep inside is ground
-constexpr float kHalo = 0.25F;                            // square of a halo's strength, of the step from ground to body
-constexpr double kSmooth = 0.6;                           // cells
+constexpr double kGroundReach = 0.15;                       // heights: the neighbourhood that the ground is read from
+constexpr double kAway = 0.025;                             // heights: the ground is read this far from everything
+constexpr double kRim = 0.07, kRimLeast = 5, kRimMost = 8;  // heights; px: how deep a silhouette's rim may be ground
+constexpr float kLeastContrast = 16;                        // levels between body and ground, from which on colour tells
+constexpr float kClearContrast = 32;                        // from which on it tells how much too wide a silhouette is
+constexpr double kSpread = 0.5;                             // cells by which that varies along the edge
+constexpr float kPlainGround = 12;                          // levels from the ground below which a cell deep inside is ground
+constexpr float kHalo = 0.25F;                              // square of a halo's strength, of the step from ground to body
+constexpr double kSmooth = 0.6;                             // cells
 
 int odd_kernel(double radius) {
   return 2 * std::max(1, static_cast<int>(std::lround(radius))) + 1;
@@ -68,39 +73,128 @@ cv::Mat ground_beside(const ColourPatch& patch, const cv::Mat& taken, double hei
   return weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
 }
 
-cv::Mat body_share(const ColourPatch& patch, const cv::Mat& own, double height) {
-  cv::Mat taken;
-  cv::max(own, patch.mask, taken);
-  const cv::Mat ground = ground_beside(patch, taken, height);
-  cv::Mat weights(patch.size(), CV_32FC1), share(patch.size(), CV_32FC1);
-  for (int y = 0; y < weights.rows; ++y) {
-    for (int x = 0; x < weights.cols; ++x) {
-      const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
-      const float square = away.dot(away);
-      weights.at<float>(y, x) = own.at<float>(y, x) * square * square;
+namespace {
+
+/// The colour of the body at a cell near it, read where the silhouette is deepest: inwards from the cell to the middle of the limb,
+/// or until it is `rim` cells below the edge.
+class BodyColours {
+ public:
+  BodyColours(const ColourPatch& patch, const cv::Mat& depth, float rim) : patch_(patch), depth_(depth), rim_(rim) {}
+
+  cv::Vec3f at(cv::Point cell) const {
+    const cv::Point middle = deepest_from(cell);
+    const float least = 0.8F * depth_.at<float>(middle);
+    cv::Vec3f sum(0, 0, 0);
+    float count = 0;
+    for_neighbours(middle, [&](const cv::Point& one) {
+      if (depth_.at<float>(one) < least) return;
+      sum += patch_.colour.at<cv::Vec3f>(one);
+      count += 1;
+    });
+    return count > 0 ? sum / count : sum;
+  }
+
+ private:
+  template <typename Visit>
+  void for_neighbours(const cv::Point& cell, const Visit& visit) const {
+    for (int y = std::max(0, cell.y - 1); y <= std::min(depth_.rows - 1, cell.y + 1); ++y) {
+      for (int x = std::max(0, cell.x - 1); x <= std::min(depth_.cols - 1, cell.x + 1); ++x) visit({x, y});
     }
   }
-  const cv::Mat body =
-      weighted_mean(patch.colour, weights, odd_kernel(std::max(4.0, kBodyReach * height) / patch.step), cv::Scalar());
-  cv::Mat inside, depth;
-  own.convertTo(inside, CV_8U, 255);
-  cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
-  const cv::Mat near = dilated(own, 1);
-  const auto rim = static_cast<float>(std::clamp(kRim * height, 3.0, 8.0) / patch.step);
-  for (int y = 0; y < share.rows; ++y) {
-    for (int x = 0; x < share.cols; ++x) {
-      float& value = share.at<float>(y, x);
-      value = own.at<float>(y, x);
+
+  cv::Point deepest_from(cv::Point cell) const {
+    while (depth_.at<float>(cell) < rim_) {
+      cv::Point best = cell;
+      for_neighbours(cell, [&](const cv::Point& one) {
+        if (depth_.at<float>(one) > depth_.at<float>(best)) best = one;
+      });
+      if (best == cell) break;
+      cell = best;
+    }
+    return cell;
+  }
+
+  const ColourPatch& patch_;
+  const cv::Mat& depth_;
+  float rim_;
+};
+
+/// How many cells too wide a silhouette is, from the shares of cells that are ground by their colour, ring by ring inwards.
+class Overwidth {
+ public:
+  explicit Overwidth(float rim) : rings_(static_cast<std::size_t>(std::ceil(rim)) + 1) {}
+
+  /// A cell `depth` > 0 cells below the edge, whose colour tells clearly.
+  void add(float depth, bool ground) {
+    Ring& ring = rings_[std::min(rings_.size() - 1, static_cast<std::size_t>(std::max(0.0F, depth - 0.5F)))];
+    ring.cells += 1;
+    ring.ground += ground ? 1 : 0;
+  }
+  double cells() const {
+    double sum = 0;
+    for (const Ring& ring : rings_) sum += ring.cells > 0 ? static_cast<double>(ring.ground) / ring.cells : 0;
+    return sum;
+  }
+
+ private:
+  struct Ring {
+    int cells = 0, ground = 0;
+  };
+  std::vector<Ring> rings_;
+};
+
+/// What the colours tell of the cells near a body.
+struct ColourShares {
+  cv::Mat covered;  ///< CV_32FC1: share of body; −1 where colour does not tell
+  cv::Mat away;     ///< CV_32FC1: square of the difference from the ground, levels²
+  double too_wide;  ///< cells
+};
+
+ColourShares shares_by_colour(const ColourPatch& patch, const cv::Mat& ground, const cv::Mat& near, const cv::Mat& depth,
+                              float rim) {
+  const BodyColours body(patch, depth, rim);
+  Overwidth overwidth(rim);
+  ColourShares shares{cv::Mat(patch.size(), CV_32FC1, cv::Scalar(-1)), cv::Mat(patch.size(), CV_32FC1), 0};
+  for (int y = 0; y < near.rows; ++y) {
+    for (int x = 0; x < near.cols; ++x) {
+      const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
+      const float square = away.dot(away), below = depth.at<float>(y, x);
+      shares.away.at<float>(y, x) = square;
       if (near.at<float>(y, x) == 0) continue;
-      const cv::Vec3f way = body.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
+      if (below > rim) {
+        if (square < kPlainGround * kPlainGround) shares.covered.at<float>(y, x) = 0;
+        continue;
+      }
+      const cv::Vec3f way = body.at({x, y}) - ground.at<cv::Vec3f>(y, x);
       const float contrast = way.dot(way);
       if (contrast < kLeastContrast * kLeastContrast) continue;
-      const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
       const float covered = std::clamp(away.dot(way) / contrast, 0.0F, 1.0F);
-      const bool deep = depth.at<float>(y, x) > rim;
       // What is unlike both (dark hair over a white shirt) is body too; a halo is not as far from the ground as that.
-      if (covered < 0.5F && away.dot(away) > kHalo * contrast) continue;
-      if (!deep || away.dot(away) < kPlainGround * kPlainGround) value = covered;
+      const bool unlike = covered < 0.5F && square > kHalo * contrast;
+      if (below > 0 && contrast >= kClearContrast * kClearContrast) overwidth.add(below, covered < 0.5F && !unlike);
+      if (!unlike) shares.covered.at<float>(y, x) = covered;
+    }
+  }
+  shares.too_wide = overwidth.cells();
+  return shares;
+}
+
+}  // namespace
+
+cv::Mat body_share(const ColourPatch& patch, const cv::Mat& own, double height) {
+  cv::Mat taken, inside, depth;
+  cv::max(own, patch.mask, taken);
+  own.convertTo(inside, CV_8U, 255);
+  cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
+  const auto rim = static_cast<float>(std::clamp(kRim * height, kRimLeast, kRimMost) / patch.step);
+  const ColourShares colour = shares_by_colour(patch, ground_beside(patch, taken, height), dilated(own, 1), depth, rim);
+  cv::Mat share = own.clone();
+  for (int y = 0; y < share.rows; ++y) {
+    for (int x = 0; x < share.cols; ++x) {
+      const float covered = colour.covered.at<float>(y, x);
+      const bool deep = depth.at<float>(y, x) > colour.too_wide + kSpread;
+      if (covered < 0 || (deep && colour.away.at<float>(y, x) >= kPlainGround * kPlainGround)) continue;
+      share.at<float>(y, x) = covered;
     }
   }
   cv::GaussianBlur(share, share, {}, kSmooth);

@@ -62,8 +62,12 @@ std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& s
 
 bool LoneSilhouettes::take(FollowedTarget& target, const Detection& seen, const Track<2>& track) {
   const int count = target.shape.spline().count();
-  const auto spline = fitted(seen, {.order = target.shape.spline().order(), .least = count, .most = count, .rounds = kRounds});
-  if (!spline || spline->count() != count) return false;
+  geometry::SplineFitOptions options = fit_;  // never fewer than it had: a shape that is seen anew keeps its detail
+  options.least = count;
+  options.most = std::max(count, options.most);
+  options.rounds = kRounds;
+  const auto spline = fitted(seen, options);
+  if (!spline || spline->count() < count) return false;
   const double growth = std::sqrt(spline->area() / target.usual_area);
   const bool known = target.state == Outline::State::seen || target.learned > 0;
   if (known && target.held < kHeldTooLong && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return false;

@@ -16,6 +16,9 @@ namespace marey::track::contour {
 /// Takes outlines from silhouettes that nobody shares, and learns from them how their targets look.
 class LoneSilhouettes {
  public:
+  /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
+  explicit LoneSilhouettes(const geometry::SplineFitOptions& fit) : fit_(fit) {}
+
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   void look_at(const Picture& picture, const cv::Mat& mask);
   bool has_colours() const;  ///< whether the frame's picture can tell where a body ends
@@ -30,6 +33,7 @@ class LoneSilhouettes {
  private:
   void learn(FollowedTarget& target, const Vector<2>& centre, const Track<2>& track);
 
+  geometry::SplineFitOptions fit_;
   Picture picture_;
   cv::Mat mask_;
   ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty where colours were not used

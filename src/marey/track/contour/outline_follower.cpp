@@ -31,7 +31,9 @@ constexpr double kMeets = 0.03;     // share of its box from which on another's 
 
 class OutlineFollower::Implementation {
  public:
-  explicit Implementation(const OutlineOptions& options) : options_(options), lines_(options.lines) { check(options); }
+  explicit Implementation(const OutlineOptions& options) : options_(options), lines_(options.lines), lone_(fit_options(options)) {
+    check(options);
+  }
 
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
     const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;

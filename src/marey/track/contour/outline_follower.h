@@ -17,7 +17,7 @@ namespace marey::track::contour {
 /// Lengths in px; noises in heights of the target, so that the same hold near the camera and far from it.
 struct OutlineOptions {
   int order = 4;                      ///< degree + 1, 2 … 8
-  std::optional<int> control_points;  ///< exactly so many; left out: by tolerance, at most 24
+  std::optional<int> control_points;  ///< exactly so many; left out: by tolerance, at most 40
   double tolerance = 0.3;             ///< px, RMS, between a silhouette's edge and the spline
   int lines = 24;                     ///< measurement lines
   double least_height = 8;            ///< px; smaller targets get no outline

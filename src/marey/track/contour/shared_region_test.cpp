@@ -66,6 +66,21 @@ TEST(HalfLevelCurve, ClosesAtThePatchsBorderAndTakesTheLargest) {
   EXPECT_NEAR(geometry::polygon_area(half_level_curve(share, patch)), 900, 2);
 }
 
+TEST(BodyShare, ABareLimbBetweenWhiteClothesIsBody) {
+  ColourPatch patch = lawn();
+  const cv::Rect shorts(50, 20, 16, 20), knee(55, 40, 5, 12), sock(55, 52, 5, 20);
+  cv::Mat body = cv::Mat::zeros(patch.size(), CV_32FC1);
+  for (const auto& [part, colour] : {std::pair(shorts, cv::Scalar(215, 128, 128)), std::pair(knee, cv::Scalar(100, 116, 138)),
+                                     std::pair(sock, cv::Scalar(215, 128, 128))}) {
+    patch.colour(part).setTo(colour);
+    body(part) = 1;
+  }
+  patch.mask = body.clone();
+  const cv::Mat share = body_share(patch, body, 60);
+  EXPECT_GT(cv::mean(share(knee))[0], 0.8);
+  EXPECT_NEAR(geometry::polygon_area(half_level_curve(share, patch)), cv::sum(body)[0], 0.1 * cv::sum(body)[0]) << "in one piece";
+}
+
 TEST(BodyShare, ASilhouetteThatRunsOnTheHaloIsCutBackToTheBody) {
   ColourPatch patch = lawn();
   const auto body = ellipse({60, 50}, 12, 30);

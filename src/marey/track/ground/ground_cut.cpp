@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "marey/core/colour.h"
+#include "marey/filter/human_motion.h"
 
 namespace marey::track::ground {
 namespace {
@@ -86,10 +87,12 @@ class Cutter {
     Vector<3> before = Vector<3>::Zero();
     std::optional<std::size_t> best;
     double best_gain = options_.surely * options_.deviation * options_.deviation;
-    for (std::size_t i = from; i + fewest < to + 1 && i < to; ++i) {
+    for (std::size_t i = from; i < to; ++i) {
       const auto n = static_cast<double>(i - from);
       const auto m = static_cast<double>(to - i);
-      if (i - from >= fewest) {
+      // Within a track somebody else may have passed in front; before it begins and after it ends nobody knows of that.
+      const std::size_t before_it = from == 0 ? 1 : fewest, after_it = to == bins_.size() ? 1 : fewest;
+      if (i - from >= before_it && to - i >= after_it) {
         const double apart = (before / n - (all - before) / m).norm();
         const double gain = apart * apart * n * m / (n + m);
         if (apart > options_.least && gain > best_gain) {
@@ -196,6 +199,29 @@ std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet
   for (GroundTracklet& tracklet : tracklets) {
     const std::vector<std::size_t> cuts = Cutter(tracklet.samples, times, options).cuts();
     cut(std::move(tracklet), cuts, pieces);
+  }
+  return pieces;
+}
+
+std::vector<GroundTracklet> cut_where_impossible(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times) {
+  std::vector<GroundTracklet> pieces;
+  std::vector<filter::TimedPlace> places;
+  for (GroundTracklet& tracklet : tracklets) {
+    places.clear();
+    for (const GroundSample& sample : tracklet.samples)
+      places.push_back({seconds(times[static_cast<std::size_t>(sample.instant)]), sample.at(), sample.spread()});
+    const std::vector<filter::ImpossiblePiece> wrong = filter::impossible_pieces(places);
+    std::vector<GroundTracklet> later;  // the last first
+    for (auto piece = wrong.rbegin(); piece != wrong.rend(); ++piece) {
+      if (piece->first == 0 || piece->last + 1 == tracklet.samples.size()) continue;
+      if (!piece->one_person) {
+        later.push_back(split(tracklet, piece->last + 1));
+        tracklet.goes_on = false;
+      }
+      erase(tracklet, piece->first, piece->last + 1);
+    }
+    pieces.push_back(std::move(tracklet));
+    std::move(later.rbegin(), later.rend(), std::back_inserter(pieces));
   }
   return pieces;
 }

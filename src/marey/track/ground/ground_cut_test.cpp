@@ -1,5 +1,6 @@
 #include "marey/track/ground/ground_cut.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -50,6 +51,52 @@ TEST(GroundCut, TwoPeopleKeepTheirSamples) {
   EXPECT_EQ(after_handing_over(seen(1, 0, 52, in_left), seen(2, 50, 150, in_right, 3)), std::pair(52, 50)) << "far apart";
   EXPECT_EQ(after_handing_over(seen(1, 0, 60, in_left), seen(2, 50, 150, in_right, 0.5)), std::pair(60, 50)) << "for a second";
   EXPECT_EQ(after_handing_over(seen(1, 50, 52, in_left), seen(2, 50, 150, in_right, 0.5)), std::pair(52, 50)) << "never alone";
+}
+
+TEST(GroundCut, IsCutWhereABoxSlidesToSomebodyElse) {
+  GroundTracklet slides = seen(1, 0, 150, in_left);
+  slides.runs.push_back({TrackId{2}, 120});
+  slides.goes_on = true;
+  for (GroundSample& sample : slides.samples)
+    sample.place[1] = static_cast<float>(std::clamp(0.9 * (sample.instant - 70), 0.0, 3.6));
+  const auto pieces = cut_where_impossible({slides, seen(3, 0, 150, in_right, 20)}, ten_a_second());
+  ASSERT_EQ(pieces.size(), 3U);
+  EXPECT_NEAR(pieces[0].samples.back().instant, 70, 4);
+  EXPECT_NEAR(pieces[1].samples.front().instant, 74, 4);
+  EXPECT_FALSE(pieces[0].goes_on) << "it is somebody else";
+  EXPECT_TRUE(pieces[1].goes_on);
+  ASSERT_EQ(pieces[1].runs.size(), 2U);
+  EXPECT_EQ(pieces[1].samples[pieces[1].runs[1].first].instant, 120);
+  EXPECT_EQ(pieces[2].samples.size(), 151U) << "nothing to do";
+}
+
+TEST(GroundCut, LosesPlacesThatStrayAndComeBack) {
+  GroundTracklet strays = seen(1, 0, 150, in_left);
+  strays.runs.push_back({TrackId{2}, 100});
+  for (int k = 70; k < 73; ++k) strays.samples[static_cast<std::size_t>(k)].place[1] = 3;
+  const auto pieces = cut_where_impossible({strays}, ten_a_second());
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_LT(pieces[0].samples.size(), 149U);
+  EXPECT_GT(pieces[0].samples.size(), 138U);
+  for (const GroundSample& sample : pieces[0].samples) EXPECT_LT(sample.place[1], 1) << sample.instant;
+  EXPECT_EQ(pieces[0].samples[pieces[0].runs[1].first].instant, 100);
+}
+
+TEST(GroundCut, ATrackMayBeginOnSomebodyElse) {
+  const auto dressed = [](int others) {
+    GroundTracklet tracklet = seen(1, 0, 150, in_left);
+    for (GroundSample& sample : tracklet.samples) {
+      const bool other = sample.instant < others;
+      sample.colour = {static_cast<std::int8_t>(other ? 90 : 30), static_cast<std::int8_t>(other ? 0 : 30),
+                       static_cast<std::int8_t>(other ? 0 : -60)};
+      sample.colour_deviation = 5;
+    }
+    return tracklet;
+  };
+  const auto pieces = cut_at_appearance_changes({dressed(5)}, ten_a_second());
+  ASSERT_EQ(pieces.size(), 2U) << "half a second";
+  EXPECT_EQ(pieces[0].samples.size(), 5U);
+  EXPECT_EQ(cut_at_appearance_changes({dressed(0)}, ten_a_second()).size(), 1U);
 }
 
 TEST(GroundCut, IsCutWhereSomebodyEndsBesideIt) {

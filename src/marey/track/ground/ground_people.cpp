@@ -97,6 +97,7 @@ class Writer {
     sample.position.head<2>() = moment.place;
     sample.velocity = Vector<3>(moment.velocity.x(), moment.velocity.y(), 0);
     sample.provenance = cameras != 0 ? Provenance::measured : Provenance::filled;
+    if (cameras != 0) sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = moment.spread;
     sample.cameras = cameras;
     track.add(instant, sample);
   }

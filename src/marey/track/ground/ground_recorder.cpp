@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "marey/track/ground/ground_cut.h"
+#include "marey/track/ground/ground_doubles.h"
 #include "marey/track/ground/ground_people.h"
 #include "marey/track/ground/ground_swaps.h"
 
@@ -35,6 +36,7 @@ class JointObservation {
     places_ += weight * (seen.value + brought);
     cameras_ |= mask_of(seen.camera);
     score_ = std::max(score_, seen.score);
+    shared_ = shared_ && seen.shared;
     if (!seen.appearance) return;
     const Appearance& appearance = *seen.appearance;
     const double certainty = 1 / (static_cast<double>(appearance.deviation) * appearance.deviation);
@@ -52,6 +54,7 @@ class JointObservation {
                          static_cast<float>(covariance(1, 1))};
     sample.score = static_cast<float>(score_);
     sample.cameras = cameras_;
+    sample.shared = shared_;
     if (certainty_ == 0) return sample;
     for (int i = 0; i < 3; ++i) sample.colour[i] = rounded(colours_[i] / certainty_);
     sample.colour_deviation = static_cast<std::uint8_t>(std::clamp(std::lround(1 / std::sqrt(certainty_)), 1L, 254L));
@@ -65,6 +68,7 @@ class JointObservation {
   Vector<2> places_ = Vector<2>::Zero();
   CameraMask cameras_ = 0;
   double score_ = 0;
+  bool shared_ = true;
   double certainty_ = 0;
   Vector<3> colours_ = Vector<3>::Zero();
 };
@@ -139,6 +143,8 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   swaps.motion = options.motion;
   repair_swaps(whole, times_, swaps);
   std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(whole), times_);
+  tracklets = cut_where_impossible(std::move(tracklets), times_);
+  tracklets = merge_doubles(std::move(tracklets), times_);
   tracklets = end_before_successors(std::move(tracklets), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_, {.near = kNear * options.motion.acceleration});
   GroundMotion unseen = options.motion;

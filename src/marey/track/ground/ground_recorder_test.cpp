@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 namespace marey::track::ground {
@@ -320,12 +321,16 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 20U);
-  double place = 0, speed = 0;
+  double place = 0, speed = 0, in_sigmas = 0;
   std::map<int, double> length;
   std::map<int, Vector<2>> last;
   for (const Row& row : rows_of(joined.recording)) {
     const Runner& runner = truth[row.frame][number(*joined.person_of(row.sample.track, row.frame)) - 1];
     place += (row.place() - runner.place).squaredNorm();
+    if (row.sample.covariance) {
+      const Vector<2> off = row.place() - runner.place;
+      in_sigmas += off.dot(row.sample.covariance->topLeftCorner<2, 2>().inverse() * off);
+    }
     speed += std::pow(row.sample.velocity->norm() - runner.velocity.norm(), 2);
     const int who = static_cast<int>(row.person());
     if (last.contains(who)) length[who] += (row.place() - last[who]).norm();
@@ -334,6 +339,8 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   const auto n = static_cast<double>(joined.recording.samples());
   EXPECT_LT(std::sqrt(place / n), 0.12);
   EXPECT_LT(std::sqrt(speed / n), 0.25);
+  EXPECT_GT(in_sigmas / n, 0.5) << "two, where covariances are just right;";
+  EXPECT_LT(in_sigmas / n, 3) << "less, where errors are taken to persist and do not";
   for (const auto& [person, way] : length) EXPECT_NEAR(way / truth.back()[person].length, 1, 0.03);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -11,8 +12,9 @@ namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
 constexpr int usual_passes = 3;
-constexpr double round_moment = 0.5;  // s before and after within which pushes tell how strong they are
-constexpr double strongest = 3;       // in units of the pushes' usual power
+constexpr double round_moment = 0.5;   // s before and after within which pushes tell how strong they are
+constexpr double strongest = 3;        // in units of the pushes' usual power
+constexpr double shared_memory = 0.5;  // s for which errors persist of who is seen in one region with others
 
 constexpr int upper(int i, int j) {
   constexpr std::array<std::array<int, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
@@ -157,8 +159,9 @@ struct SmoothingPass {
   std::span<const Timestamp> times;
   const GroundMotion& motion;
   std::vector<GroundMoment> moments;
-  std::vector<double> echoes;  ///< factor on covariances
-  std::vector<double> pushes;  ///< up to the sample, in units of the usual power
+  std::vector<double> echoes;      ///< factor on covariances
+  std::vector<double> pushes;      ///< up to the sample, in units of the usual power
+  std::vector<Matrix<2>> doubted;  ///< in place of the samples' own covariances, where there are any
 
   SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
       : samples(s), times(t), motion(m), moments(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
@@ -172,7 +175,35 @@ struct SmoothingPass {
     }
   }
 
-  Matrix<2> spread(std::size_t i) const { return samples[i].spread() * (echoes[i] / moments[i].fit); }
+  /// Counts samples of regions that are shared by how long their errors really persist, and those right before and after for no
+  /// better: two who run together are seen as one before it is noticed. Paths are not found with that: too little would hold them.
+  void doubt_shared() {
+    doubted.clear();
+    for (const GroundSample& sample : samples) doubted.push_back(sample.spread());
+    const auto doubt = [&](std::size_t i, std::size_t shared) {
+      if (std::abs(seconds(times[samples[i].instant] - times[samples[shared].instant])) > shared_memory) return;
+      if (samples[shared].spread().trace() > doubted[i].trace()) doubted[i] = samples[shared].spread();
+      const double before = i > 0 ? seconds_to(i) : seconds_to(1);
+      const double after = i + 1 < samples.size() ? seconds_to(i + 1) : before;
+      echoes[i] = std::max(echoes[i], 1 / std::tanh((before + after) / 4 / shared_memory));
+    };
+    const std::size_t none = samples.size();
+    std::size_t last = none;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (samples[i].shared) last = i;
+      if (last != none) doubt(i, last);
+    }
+    last = none;
+    for (std::size_t i = samples.size(); i-- > 0;) {
+      if (samples[i].shared) last = i;
+      if (last != none) doubt(i, last);
+    }
+  }
+
+  Matrix<2> spread(std::size_t i) const {
+    const Matrix<2> own = doubted.empty() ? samples[i].spread() : doubted[i];
+    return own * (echoes[i] / moments[i].fit);
+  }
   /// From the sample before.
   double seconds_to(std::size_t i) const { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); }
 };
@@ -189,6 +220,40 @@ void weigh_pushes(SmoothingPass& seen) {
   for (std::size_t i = n - 1; i-- > 0;) power[i] += mix(i + 1) * (power[i + 1] - power[i]);
   for (std::size_t i = 0; i < n; ++i) {
     seen.pushes[i] = std::min(strongest, seen.motion.calm + (1 - seen.motion.calm) * (seen.pushes[i] + power[i]) / 2);
+  }
+}
+
+Matrix<6> whole_covariance(const GroundState& state) {
+  Matrix<6> P;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      P.block<2, 2>(2 * i, 2 * j) = state.P[upper(i, j)];
+      P.block<2, 2>(2 * j, 2 * i) = state.P[upper(i, j)].transpose();
+    }
+  }
+  return P;
+}
+
+/// The covariance of places, given all samples: that of each state before its observation, less what this one and all later ones
+/// tell of it (the adjoint's information, Bierman 1973).
+void spread_places(SmoothingPass& seen, const std::vector<GroundState>& before) {
+  Steps steps(seen.motion);
+  Matrix<6> told = Matrix<6>::Zero();
+  for (std::size_t i = seen.samples.size(); i-- > 0;) {
+    const Matrix<6> P = whole_covariance(before[i]);
+    const Matrix<2> S_inverse = (P.topLeftCorner<2, 2>() + seen.spread(i)).inverse();
+    Matrix<6> left = Matrix<6>::Identity();
+    left.leftCols<2>() -= P.leftCols<2>() * S_inverse;
+    told = (left.transpose() * told * left).eval();
+    told.topLeftCorner<2, 2>() += S_inverse;
+    seen.moments[i].spread = P.topLeftCorner<2, 2>() - P.topRows<2>() * told * P.leftCols<2>();
+    if (i == 0) break;
+    const Matrix<3>& F = steps(seen.seconds_to(i)).F;
+    Matrix<6> forward = Matrix<6>::Zero();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = row; column < 3; ++column) forward.block<2, 2>(2 * row, 2 * column).diagonal().setConstant(F(row, column));
+    }
+    told = (forward.transpose() * told * forward).eval();
   }
 }
 
@@ -218,8 +283,19 @@ void smooth_once(SmoothingPass& seen, std::vector<GroundState>& before) {
   }
 }
 
+/// How sure the places of the last pass are; `before` are its states.
+void find_spreads(SmoothingPass& seen, std::vector<GroundState>& before) {
+  const bool shared = std::any_of(seen.samples.begin(), seen.samples.end(), [](const GroundSample& one) { return one.shared; });
+  if (!shared || seen.samples.size() < 2) return spread_places(seen, before);
+  SmoothingPass doubting = seen;
+  doubting.doubt_shared();
+  smooth_once(doubting, before);
+  spread_places(doubting, before);
+  for (std::size_t i = 0; i < seen.moments.size(); ++i) seen.moments[i].spread = doubting.moments[i].spread;
+}
+
 SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
-                       int passes) {
+                       int passes, bool with_spread) {
   SmoothingPass seen(samples, times, motion);
   std::vector<GroundState> before(samples.size());
   for (int pass = 0; pass < passes; ++pass) {
@@ -227,13 +303,14 @@ SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Ti
     if (pass > 0 && motion.calm < 1) weigh_pushes(seen);
     smooth_once(seen, before);
   }
+  if (with_spread) find_spreads(seen, before);
   return seen;
 }
 
 /// The filter alone, over all samples, from the first or from the last on. Of what comes beyond nothing is known: all push alike.
 GroundState filtered(std::span<const GroundSample> samples, std::span<const Timestamp> times, GroundMotion motion, bool forwards) {
   motion.calm = 1;
-  const SmoothingPass seen = smoothed(samples, times, motion, usual_passes);
+  const SmoothingPass seen = smoothed(samples, times, motion, usual_passes, false);
   const std::size_t n = seen.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
   Steps steps(seen.motion);
@@ -260,7 +337,7 @@ GroundState predicted(const GroundState& state, double dt, const GroundMotion& m
 std::vector<GroundMoment> smooth_ground(std::span<const GroundSample> samples, std::span<const Timestamp> times,
                                         const GroundMotion& motion, int passes) {
   assert(!samples.empty() && passes > 0 && "there is something to smooth");
-  return std::move(smoothed(samples, times, motion, passes).moments);
+  return std::move(smoothed(samples, times, motion, passes, true).moments);
 }
 
 GroundState first_state(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,

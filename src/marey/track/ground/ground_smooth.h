@@ -8,11 +8,11 @@
 // of places does not make people walk who stand. Neighbouring observations err alike (the same foot ahead, the same shadow), and
 // count as so much less. Observations that do not fit (half a body hidden, the wrong foot) count for less: after each pass the
 // covariance of each grows by its distance from the path, as Student's distribution would have it. The way back is taken in the
-// form of Bryson & Frazier (Bierman 1973): an adjoint of four numbers instead of a covariance to invert. Cost: about 15 products of
-// 2 × 2 matrices a sample and pass; 150 bytes a sample of one person while that one is smoothed. References: Rauch, Tung &
-// Striebel, "Maximum likelihood estimates of linear dynamic systems", AIAA Journal 3 (1965); Bierman, "Fixed interval smoothing
-// with discrete measurements", Int. J. Control 18 (1973); Lange, Little & Taylor, "Robust statistical modeling using the t
-// distribution", JASA 84 (1989).
+// form of Bryson & Frazier (Bierman 1973): an adjoint of six numbers instead of a covariance to invert. Cost: about 15 products of
+// 2 × 2 matrices a sample and pass, and a few of 6 × 6 in the last one, for the covariance of places; 180 bytes a sample of one
+// person while that one is smoothed. References: Rauch, Tung & Striebel, "Maximum likelihood estimates of linear dynamic systems",
+// AIAA Journal 3 (1965); Bierman, "Fixed interval smoothing with discrete measurements", Int. J. Control 18 (1973); Lange, Little &
+// Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989).
 #pragma once
 
 #include <array>
@@ -57,6 +57,7 @@ struct GroundMoment {
   Vector<2> velocity = Vector<2>::Zero();
   Vector<2> acceleration = Vector<2>::Zero();
   double fit = 1;  ///< weight of the observation, in (0, 1.5]: 1 where it fits as expected, small where it does not
+  Matrix<2> spread = Matrix<2>::Zero();  ///< covariance of `place`, m²
 };
 
 /// The state at every sample, given all of them. `times` by instant; samples in the order of instants, at least one. The weights of

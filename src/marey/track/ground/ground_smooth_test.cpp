@@ -94,11 +94,13 @@ std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
       }
     }
   }
-  const Eigen::VectorXd x = A.fullPivLu().solve(b);
+  const Eigen::MatrixXd covariance = A.fullPivLu().inverse();
+  const Eigen::VectorXd x = covariance * b;
   std::vector<GroundMoment> moments(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) {
     moments[i].place = x.segment<2>(6 * i);
     moments[i].velocity = x.segment<2>(6 * i + 2);
+    moments[i].spread = covariance.block<2, 2>(6 * i, 6 * i);
   }
   return moments;
 }
@@ -113,6 +115,8 @@ TEST(GroundSmooth, IsTheLeastSquaresPath) {
       // The first place is not quite unknown to the filter; the dense twin knows nothing, and takes small steps of Euler's.
       EXPECT_NEAR((path[i].place - expected[i].place).norm(), 0, 0.01) << "seed " << seed << ", sample " << i;
       EXPECT_NEAR((path[i].velocity - expected[i].velocity).norm(), 0, 0.02) << "seed " << seed << ", sample " << i;
+      EXPECT_NEAR((path[i].spread - expected[i].spread).norm(), 0, 0.01 * expected[i].spread.norm())
+          << "seed " << seed << ", sample " << i;
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace marey::track::ground {
 
@@ -16,6 +17,19 @@ GroundTracklet split(GroundTracklet& tracklet, std::size_t from) {
   for (auto it = run; it != tracklet.runs.end(); ++it) later.runs.push_back({it->track, it->first - from});
   tracklet.runs.erase(run, tracklet.runs.end());
   return later;
+}
+
+void erase(GroundTracklet& tracklet, std::size_t from, std::size_t end) {
+  assert(from < end && end <= tracklet.samples.size() && end - from < tracklet.samples.size() && "something is left");
+  tracklet.samples.erase(tracklet.samples.begin() + static_cast<std::ptrdiff_t>(from),
+                         tracklet.samples.begin() + static_cast<std::ptrdiff_t>(end));
+  std::vector<GroundTracklet::Run> runs;
+  for (GroundTracklet::Run run : tracklet.runs) {
+    run.first = run.first >= end ? run.first - (end - from) : std::min(run.first, from);
+    if (!runs.empty() && runs.back().first == run.first) runs.pop_back();
+    if (run.first < tracklet.samples.size()) runs.push_back(run);
+  }
+  tracklet.runs = std::move(runs);
 }
 
 void append(GroundTracklet& tracklet, const GroundTracklet& later) {

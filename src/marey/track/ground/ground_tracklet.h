@@ -21,6 +21,7 @@ struct GroundSample {
   CameraMask cameras = 0;
   std::array<std::int8_t, 3> colour{};   ///< L*a*b*, of what was seen
   std::uint8_t colour_deviation = none;  ///< `none` where the colour is not known
+  bool shared = false;                   ///< each camera that saw it saw it within a region that others share
 
   static constexpr std::uint8_t none = 255;
 
@@ -45,6 +46,9 @@ struct GroundTracklet {
 
 /// Takes from sample `from` on off and gives it back as a tracklet of its own. 0 < from < samples.
 GroundTracklet split(GroundTracklet& tracklet, std::size_t from);
+
+/// Takes samples out: from `from` up to before `end`, not all of them.
+void erase(GroundTracklet& tracklet, std::size_t from, std::size_t end);
 
 /// Puts `later`, whose samples are all later, at the end.
 void append(GroundTracklet& tracklet, const GroundTracklet& later);

@@ -1,0 +1,162 @@
+#include "marey/detect/background/background_uncovered.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+namespace marey::detect::background {
+namespace {
+
+constexpr double kUnlikeLuma = 10, kUnlikeChroma = 7;  // levels: what differs by less is noise or shade
+constexpr double kNoiseSigmas = 5;                     // deviations of the noise; likewise
+constexpr double kOfGaussian = 1.4826;                 // standard deviations in a median distance from the median, of a Gaussian
+constexpr double kLeastArea = 0.15, kMostArea = 2;     // of the body's box; with its shadow it is larger than the body
+constexpr double kLeastHeight = 0.5;                   // of the body's
+constexpr double kGap = 1.0 / 15;                      // of the body's height: what is nearer together is one thing
+constexpr double kSharper = 1.3, kSharperLevels = 2;   // how much sharper the border is in the scene, and by how many levels more
+constexpr double kSameLevels = 8;                      // mean difference of what is the same
+constexpr int kBlurReach = 2;                          // px about a region that its blur reaches
+
+double middle_value(std::vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
+  std::vector<float> values;
+  for (int y = 0; y < plane.rows; ++y) {
+    for (int x = 0; x < plane.cols; ++x) {
+      if (mask.at<std::uint8_t>(y, x) != 0) values.push_back(plane.at<float>(y, x));
+    }
+  }
+  return values;
+}
+
+/// Luma and, for colour, chroma at full size, 32 bit, in levels of 8 bit.
+std::vector<cv::Mat> levels_of(const Picture& picture) {
+  std::vector<cv::Mat> planes(1);
+  picture.luma().convertTo(planes[0], CV_32F, picture.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+  if (!picture.is_colour()) return planes;
+  for (const cv::Mat* chroma : {&picture.cb(), &picture.cr()}) {
+    cv::Mat full;
+    cv::resize(*chroma, full, picture.size(), 0, 0, cv::INTER_LINEAR);
+    full.convertTo(planes.emplace_back(), CV_32F);
+  }
+  return planes;
+}
+
+cv::Rect pixels_of(const Box& box, cv::Size size) {
+  const cv::Rect rect(cv::Point(static_cast<int>(std::floor(box.left)), static_cast<int>(std::floor(box.top))),
+                      cv::Point(static_cast<int>(std::ceil(box.right())), static_cast<int>(std::ceil(box.bottom()))));
+  return rect & cv::Rect({}, size);
+}
+
+cv::Mat round_element(int radius) {
+  return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1});
+}
+
+/// Where the two differ by more than the noise about the body does, once both are in one light.
+cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& beside) {
+  cv::Mat mask = cv::Mat::zeros(scene.front().size(), CV_8UC1);
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    cv::Mat difference = now[i] - scene[i];
+    cv::blur(difference, difference, {3, 3});
+    std::vector<float> values = values_of(difference, beside);
+    const double shade = middle_value(values);
+    for (float& value : values) value = static_cast<float>(std::abs(value - shade));
+    const double least = std::max(i == 0 ? kUnlikeLuma : kUnlikeChroma, kNoiseSigmas * kOfGaussian * middle_value(values));
+    mask |= cv::abs(difference - shade) > least;
+  }
+  return mask;
+}
+
+/// How sharp the pictures are along a band, levels: of each pixel its sharpest plane.
+double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
+  cv::Mat sharpest = cv::Mat::zeros(band.size(), CV_32F);
+  for (const cv::Mat& plane : planes) {
+    cv::Mat smooth, gradient;
+    cv::blur(plane, smooth, {3, 3});
+    cv::morphologyEx(smooth, gradient, cv::MORPH_GRADIENT, round_element(1));
+    sharpest = cv::max(sharpest, gradient);
+  }
+  return cv::mean(sharpest, band)[0];
+}
+
+/// Of the connected regions the one that has most pixels in the body's box; nothing where it is no body.
+std::optional<cv::Mat> region_at(const cv::Mat& mask, const Box& body) {
+  cv::Mat labels, stats, centres;
+  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centres, 8);
+  std::vector<int> within(static_cast<std::size_t>(count), 0);
+  const cv::Rect box = pixels_of(body, mask.size());
+  for (int y = box.y; y < box.br().y; ++y) {
+    for (int x = box.x; x < box.br().x; ++x) ++within[static_cast<std::size_t>(labels.at<int>(y, x))];
+  }
+  within[0] = 0;
+  const int best = static_cast<int>(std::max_element(within.begin(), within.end()) - within.begin());
+  if (within[static_cast<std::size_t>(best)] == 0) return std::nullopt;
+  const int area = stats.at<int>(best, cv::CC_STAT_AREA), height = stats.at<int>(best, cv::CC_STAT_HEIGHT);
+  if (area < kLeastArea * body.area() || area > kMostArea * body.area() || height < kLeastHeight * body.height) return std::nullopt;
+  return cv::Mat(labels == best);
+}
+
+void lay(const cv::Mat& patch, const cv::Mat& mask, cv::Mat plane) {
+  cv::Mat there, put;
+  plane.convertTo(there, CV_32F);
+  patch.convertTo(put, CV_32F);
+  std::vector<float> shades = values_of(there - put, mask == 0);
+  put += cv::Scalar(middle_value(shades));
+  put.convertTo(put, plane.type());
+  put.copyTo(plane, mask);
+}
+
+}  // namespace
+
+std::optional<cv::Mat> uncovered(const Picture& scene, const Picture& now, const Box& body) {
+  if (scene.size() != now.size() || scene.is_colour() != now.is_colour() || scene.empty()) return std::nullopt;
+  const std::vector<cv::Mat> before = levels_of(scene), after = levels_of(now);
+  cv::Mat beside(scene.size(), CV_8UC1, cv::Scalar(255));
+  beside(pixels_of(body, scene.size())) = 0;
+  cv::Mat mask = differing(before, after, beside);
+  const int gap = std::max(1, static_cast<int>(std::lround(kGap * body.height / 2)));
+  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, round_element(gap));
+  auto region = region_at(mask, body);
+  if (!region) return std::nullopt;
+  cv::Mat outer, inner;
+  cv::dilate(*region, outer, round_element(1));
+  cv::erode(*region, inner, round_element(1));
+  const cv::Mat band = outer & ~inner;
+  if (sharpness(before, band) < kSharper * sharpness(after, band) + kSharperLevels) return std::nullopt;
+  cv::dilate(*region, *region, round_element(kBlurReach));
+  return region;
+}
+
+bool same_within(const Picture& a, const Picture& b, const cv::Mat& mask) {
+  if (a.size() != b.size() || a.empty()) return false;
+  cv::Mat difference = levels_of(a).front() - levels_of(b).front();
+  std::vector<float> beside = values_of(difference, mask == 0);
+  difference -= cv::Scalar(middle_value(beside));
+  return cv::mean(cv::abs(difference), mask)[0] < kSameLevels;
+}
+
+Picture patched(const Picture& picture, const Picture& patch, const cv::Mat& mask, cv::Point corner) {
+  const cv::Rect place(corner, mask.size());
+  cv::Mat luma = picture.luma().clone();
+  lay(patch.luma(), mask, luma(place));
+  if (!picture.is_colour()) return Picture(luma);
+  cv::Mat half_mask;
+  cv::dilate(mask, half_mask, round_element(1));
+  const cv::Rect half(place.x / 2, place.y / 2, patch.cb().cols, patch.cb().rows);
+  cv::resize(half_mask, half_mask, half.size(), 0, 0, cv::INTER_NEAREST);
+  cv::Mat cb = picture.cb().clone(), cr = picture.cr().clone();
+  lay(patch.cb(), half_mask, cb(half));
+  lay(patch.cr(), half_mask, cr(half));
+  return {luma, cb, cr, picture.range()};
+}
+
+}  // namespace marey::detect::background

@@ -1,0 +1,55 @@
+// How well a gap can be filled: each method is tried on test holes in the marker's path, where the truth is known.
+//
+// Holes as long as the gap tell it best. In a short take there is room for few or none of them. Then test holes are laid round the
+// gap itself: they are longer by up to the gap's length, and the truth is known at their rims, from where errors are brought to
+// the middle by how they grow towards it (as of a Brownian bridge). If there is no room for these either, shorter holes tell, whose
+// errors are scaled up by how they grow with the length.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "marey/edit/gap_methods.h"
+#include "marey/edit/operation.h"
+
+namespace marey::edit {
+
+/// The hole's places by one method, as the functions of gap_methods.h have them.
+std::optional<std::vector<Vector<3>>> filled(FillMethod method, const Places& places, const Hole& hole,
+                                             std::span<const std::size_t> donors, const Hole& hidden);
+
+struct FillScore {
+  double mean_square = 0;  ///< m²: by which methods are compared
+  double expected_m = 0;   ///< standard deviation of the distance from the true place, in the middle of the gap
+};
+
+class FillTrials {
+ public:
+  /// Of the first marker of `places`. The arguments must outlive it.
+  FillTrials(const Places& places, const Hole& gap, std::span<const std::size_t> donors);
+
+  FillScore score(FillMethod method) const;
+
+ private:
+  /// Holes of one length.
+  struct Group {
+    std::size_t length = 0;
+    std::vector<Hole> holes;
+  };
+
+  Group inside(std::size_t length) const;
+  std::vector<Hole> around() const;
+  std::vector<double> errors(FillMethod method, std::span<const Hole> holes) const;
+  FillScore of(FillMethod method, std::span<const Hole> holes) const;
+  FillScore scaled(FillMethod method) const;
+  FillScore untried(FillMethod method) const;
+
+  const Places& places_;
+  Hole gap_;
+  std::span<const std::size_t> donors_;
+  std::vector<Group> groups_;  // inside what was seen; of the gap's length, a half, a quarter
+  std::vector<Hole> around_;
+};
+
+}  // namespace marey::edit

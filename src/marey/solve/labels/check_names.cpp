@@ -1,0 +1,243 @@
+#include "marey/solve/labels/check_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "marey/assign/no_index.h"
+
+namespace marey::solve::labels {
+namespace {
+
+using assign::kNoIndex;
+
+constexpr std::size_t kNear = 6;        // neighbours with which names are exchanged
+constexpr std::size_t kLongestRow = 5;  // names that shift by one at once
+constexpr double kLooseShare = 0.2;     // of a distance that is not among the tightest
+constexpr std::size_t kSideInstants = 5;
+constexpr int kMostChanges = 40;
+constexpr std::size_t kTightest = 3;
+
+using Holders = std::vector<int>;  // by name: whose points it has
+
+class Check {
+ public:
+  Check(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options,
+        std::size_t neighbours, double margin)
+      : model_(model), seen_(chains.named_distances()), neighbours_(neighbours), margin_(margin), holders_(model.size(), kNoIndex) {
+    for (std::size_t name = 0; name < model.size(); ++name) {
+      for (std::size_t other = 0; other < model.size(); ++other) {
+        if (other != name && between(name, other).count > 0) holders_[name] = static_cast<int>(name);
+      }
+    }
+    add_sides(chains, learned, options);
+    near_.resize(model.size());
+    for (std::size_t name = 0; name < model.size(); ++name) {
+      const auto& partners = model.partners(name);
+      near_[name].assign(partners.begin(), partners.begin() + static_cast<std::ptrdiff_t>(std::min(kNear, partners.size())));
+    }
+  }
+
+  CheckedNames run() {
+    for (int change = 0; change < kMostChanges; ++change) {
+      best_ = {};
+      try_all();
+      if (!(best_.loss < -1e-6)) break;
+      holders_ = best_.holders;
+    }
+    undecided_.assign(model_.size(), kNoIndex);
+    marking_ = true;
+    try_all();
+    return {holders_, undecided_};
+  }
+
+ private:
+  struct Best {
+    double loss = 0;
+    Holders holders;
+  };
+
+  const DistanceSeen& between(std::size_t a, std::size_t b) const { return seen_[LearnedMarkers::index_of(a, b)]; }
+
+  void add_sides(const NamedChains& chains, const LearnedMarkers& learned, const BootOptions& options) {
+    for (std::size_t part = 0; part < kSideInstants; ++part) {
+      const std::size_t begin = part * chains.instants() / kSideInstants, end = (part + 1) * chains.instants() / kSideInstants;
+      std::size_t best = begin, most = 0;
+      for (std::size_t instant = begin; instant < end; instant += std::max<std::size_t>(1, (end - begin) / 20)) {
+        std::size_t count = 0;
+        for (std::size_t name = 0; name < model_.size(); ++name) count += chains.holder(instant, name).chain != kNoIndex;
+        if (count > most) most = count, best = instant;
+      }
+      if (most < 4) continue;
+      BootScene scene;
+      std::vector<int> point_of(model_.size(), kNoIndex);
+      std::vector<std::size_t> names;
+      for (std::size_t name = 0; name < model_.size(); ++name) {
+        if (chains.holder(best, name).chain == kNoIndex) continue;
+        point_of[name] = static_cast<int>(names.size());
+        for (const std::size_t other : names) scene.seen.push_back(between(name, other));
+        names.push_back(name);
+        scene.places.push_back(chains.holder(best, name).place);
+      }
+      sides_.push_back({std::make_unique<SideCosts>(std::move(scene), learned, model_, options), std::move(point_of)});
+    }
+  }
+
+  /// How well a name fits the points that it has.
+  double fit(const Holders& holders, std::size_t name) const {
+    if (holders[name] == kNoIndex) return 0;
+    const auto its = static_cast<std::size_t>(holders[name]);
+    double sum = 0;
+    std::size_t asked = 0;
+    for (const std::size_t other : model_.partners(name)) {
+      if (holders[other] == kNoIndex) continue;
+      const DistanceSeen& seen = between(its, static_cast<std::size_t>(holders[other]));
+      if (seen.count == 0) continue;
+      sum += (asked++ < neighbours_ ? 1 : kLooseShare) * model_.ratio(name, other, seen);
+    }
+    return sum;
+  }
+
+  double side_cost(const Holders& holders, std::span<const std::size_t> moved) const {
+    double sum = 0;
+    for (const auto& [costs, point_of] : sides_) {
+      std::vector<int> points(holders.size(), kNoIndex);
+      for (std::size_t name = 0; name < holders.size(); ++name) {
+        if (holders[name] != kNoIndex) points[name] = point_of[static_cast<std::size_t>(holders[name])];
+      }
+      for (const std::size_t name : moved) sum += costs->of(points, name);
+    }
+    return sides_.empty() ? 0 : sum / static_cast<double>(sides_.size());
+  }
+
+  /// What is lost if each of `moved` gets the points of the next, and the last those of the first; or, if the first has none, the
+  /// last gets none.
+  void try_ring(std::span<const std::size_t> moved) {
+    try_change([&](Holders& holders) { turn(holders, moved); }, moved);
+  }
+
+  void turn(Holders& holders, std::span<const std::size_t> ring) const {
+    const int first = holders_[ring.front()];
+    for (std::size_t i = 0; i + 1 < ring.size(); ++i) holders[ring[i]] = holders_[ring[i + 1]];
+    holders[ring.back()] = first;
+  }
+
+  template <typename Change>
+  void try_change(const Change& change, std::span<const std::size_t> moved) {
+    Holders other = holders_;
+    change(other);
+    double loss = 0;
+    for (const std::size_t name : moved) loss += fit(holders_, name) - fit(other, name);
+    if (loss > (marking_ ? margin_ : 0) + 1000) return;
+    loss += side_cost(other, moved) - side_cost(holders_, moved);
+    if (marking_) {
+      if (loss < margin_) mark(other, moved);
+    } else if (loss < best_.loss) {
+      best_ = {loss, std::move(other)};
+    }
+  }
+
+  void mark(const Holders& other, std::span<const std::size_t> moved) {
+    for (const std::size_t name : moved) {
+      if (holders_[name] == kNoIndex || undecided_[name] != kNoIndex) continue;
+      const auto its = std::find(other.begin(), other.end(), holders_[name]);
+      undecided_[name] = its == other.end() ? static_cast<int>(name) : static_cast<int>(its - other.begin());
+    }
+  }
+
+  void try_all() {
+    for (std::size_t a = 0; a < model_.size(); ++a) {
+      if (holders_[a] == kNoIndex) {
+        std::vector<std::size_t> row{a};
+        try_rows(row);
+        continue;
+      }
+      for (std::size_t b = 0; b < a; ++b) {
+        if (holders_[b] != kNoIndex) try_ring(std::array{a, b});
+      }
+      for (const std::size_t b : near_[a]) {
+        for (const std::size_t c : near_[b]) {
+          if (c != a && holders_[b] != kNoIndex && holders_[c] != kNoIndex) try_ring(std::array{a, b, c});
+        }
+      }
+      try_two_pairs(a);
+    }
+  }
+
+  /// A cluster turned over: two pairs of neighbours at once.
+  void try_two_pairs(std::size_t a) {
+    for (const std::size_t b : near_[a]) {
+      for (const std::size_t c : near_[a]) {
+        for (const std::size_t d : near_[a]) {
+          if (b >= a || c >= d || b == c || b == d) continue;
+          if (holders_[b] == kNoIndex || holders_[c] == kNoIndex || holders_[d] == kNoIndex) continue;
+          const std::array moved{a, b, c, d};
+          try_change(
+              [&](Holders& holders) {
+                turn(holders, std::span(moved).first(2));
+                turn(holders, std::span(moved).last(2));
+              },
+              moved);
+        }
+      }
+    }
+  }
+
+  /// The first of a row has no points: it gets those of the next, and so on; the last is left without.
+  void try_rows(std::vector<std::size_t>& row) {
+    if (row.size() > 1) try_ring(row);
+    if (row.size() > kLongestRow) return;
+    for (const std::size_t next : near_[row.back()]) {
+      if (holders_[next] == kNoIndex || std::find(row.begin(), row.end(), next) != row.end()) continue;
+      row.push_back(next);
+      try_rows(row);
+      row.pop_back();
+    }
+  }
+
+  const DistanceModel& model_;
+  std::vector<DistanceSeen> seen_;  // by those whose points they are
+  std::size_t neighbours_;
+  double margin_;
+  Holders holders_;
+  std::vector<std::vector<std::size_t>> near_;
+  std::vector<std::pair<std::unique_ptr<SideCosts>, std::vector<int>>> sides_;  // at some instants, with the points by name
+  Best best_;
+  bool marking_ = false;
+  std::vector<int> undecided_;
+};
+
+}  // namespace
+
+CheckedNames check_names(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& learned_model,
+                         const BootOptions& options, std::size_t neighbours, double margin) {
+  return Check(chains, learned, learned_model, options, neighbours, margin).run();
+}
+
+Misfit misfit_of(const std::vector<DistanceSeen>& named, const DistanceModel& learned_model) {
+  std::vector<double> ratios, off;
+  for (std::size_t name = 0; name < learned_model.size(); ++name) {
+    std::size_t asked = 0;
+    for (const std::size_t other : learned_model.partners(name)) {
+      const DistanceSeen& seen = named[LearnedMarkers::index_of(name, other)];
+      const auto deviation = learned_model.rigid_deviation(name, other, seen);
+      if (seen.count == 0 || !deviation) continue;
+      off.push_back(std::abs(seen.mean - learned_model.mean(name, other)));
+      ratios.push_back(off.back() / *deviation);
+      if (++asked == kTightest) break;
+    }
+  }
+  if (off.empty()) return {};
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  constexpr double kMedianOfNormal = 0.6745;
+  return {.ratio = median(ratios) / kMedianOfNormal, .off_m = median(off)};
+}
+
+}  // namespace marey::solve::labels
