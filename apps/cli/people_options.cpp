@@ -31,11 +31,8 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   const Option detector =
       command.input_file("--detector", flags.detector,
                          "a detection network beside the background model: the file that describes it (docs/network.md)");
-  command
-      .whole("--every", flags.every, "N", 1, 1000,
-             "the network searches every N-th frame; without a background model the others are interpolated")
-      .needs(detector);
-  command.flag("--without-background", flags.without_background, "the network alone").needs(detector);
+  const Option every = command.whole("--every", flags.every, "N", 1, 1000, "the network looks at every N-th frame").needs(detector);
+  command.flag("--without-background", flags.without_background, "the network alone").needs(detector).excludes(every);
   const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
       .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,

@@ -126,13 +126,6 @@ void check_for_blobs(const RigCamera& camera, const GroundView& view, bool pictu
                 camera.name);
 }
 
-/// On the ground every frame of every camera counts.
-void check_every(const detect::DetectorOptions& options) {
-  const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
-  if (network != nullptr && network->every > 1 && !network->background)
-    throw Error("{}", "--every with --without-background skips frames, which --ground needs; leave out one of the two");
-}
-
 /// A camera that turns has no empty scene to learn: a network looks at every frame.
 detect::DetectorOptions for_turning(detect::DetectorOptions options, const std::string& name) {
   auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
@@ -167,7 +160,6 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   const auto* asked = std::get_if<detect::blobs::BlobDetectorOptions>(&options.detector);
   if (asked != nullptr) check_for_blobs(camera_, view, feed.has_pictures(), turning_ != nullptr);
   if (feed.has_pictures()) {
-    check_every(options.detector);
     detect::DetectorOptions detector = turning_ ? for_turning(options.detector, camera_.name) : options.detector;
     if (whole != nullptr && !turning_) {
       const cv::Rect part = part_with_people(view, area);

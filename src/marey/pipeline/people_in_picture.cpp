@@ -64,13 +64,6 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
   return tracker;
 }
 
-/// A network without a background model is shown only the frames that it searches.
-detect::DetectorOptions searching_every_frame(detect::DetectorOptions options) {
-  auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
-  if (network != nullptr && !network->background) network->every = 1;
-  return options;
-}
-
 void leave_out_unseen(Instant& instant) {
   std::erase_if(instant.samples, [](const Sample& sample) { return !sample.measured(); });
 }
@@ -131,7 +124,7 @@ class PeopleInPicture final : public Stage {
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
     if (header_.rig->cameras.front().name.empty()) header_.rig->cameras.front().name = "camera";  // a rig's cameras have names
     if (feed.has_pictures() && feed.detector() == nullptr) {
-      detector_ = detect::make_detector(searching_every_frame(options.detector));
+      detector_ = detect::make_detector(options.detector);
       if (!options.live) prime(feed);
       standing_.emplace(options.live ? Picture() : detector_->scene());
     }
@@ -150,7 +143,6 @@ class PeopleInPicture final : public Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
-    if (skips_frame(given)) return pass_over(given.frame);
     const detect::Detections seen = detect(given);
     if (detector_) doubts_.add(given.frame, seen);
     const auto tracks = follow(given.frame, seen);
@@ -268,7 +260,7 @@ class PeopleInPicture final : public Stage {
     Feed feed = open_again_();
     std::vector<Frame> samples = feed.sample_beginning();
     for (Frame& sample : samples) sample.picture = standing_->without_them(sample.picture);
-    detector_ = detect::make_detector(searching_every_frame(options_.detector));
+    detector_ = detect::make_detector(options_.detector);
     detector_->prime(samples);
     const std::int64_t count = outlines_ ? std::ssize(moments_) : looked_at_again_;
     std::int64_t number = 0;
@@ -297,22 +289,6 @@ class PeopleInPicture final : public Stage {
     detect::Detections seen = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
     if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
     return seen;
-  }
-
-  /// Whether this is a frame between those that a network without a background model searches.
-  bool skips_frame(const CameraFrame& given) {
-    const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options_.detector);
-    return detector_ != nullptr && !given.detections && network != nullptr && !network->background &&
-           frames_++ % network->every != 0;
-  }
-
-  /// A frame that was not searched: targets are where they are expected, and what nobody saw counts against none of them.
-  std::span<const Instant> pass_over(const Frame& frame) {
-    if (live_) return told(frame, tracker_->expected(frame.time));
-    recording_.add(std::ssize(moments_), frame.time, {});
-    if (outlines_) outlines_->add(std::ssize(moments_), {});
-    moments_.push_back({frame.index, frame.time});
-    return {};
   }
 
   /// What is seen makes tracks; outlines are searched before and put right after, so that each tells the other what it found.
@@ -355,7 +331,7 @@ class PeopleInPicture final : public Stage {
   std::vector<Observed> after_;             // of the frames that follow those
   int added_ = 0;                           // people who are in the results because of that
   std::set<TrackId> begun_, believed_;
-  std::int64_t detections_ = 0, frames_ = 0;
+  std::int64_t detections_ = 0;
   PictureDoubts doubts_;
   std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
 };

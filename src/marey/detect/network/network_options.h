@@ -13,7 +13,7 @@ struct NetworkDetectorOptions {
 
   std::string model = {};   ///< a file that describes a network (model_file.h)
   bool background = true;   ///< a background model beside it, which sees whoever moves between the frames that the network looks at
-  int every = 1;            ///< the network looks at every n-th frame; without a background model a stage skips the others
+  int every = 1;            ///< the network looks at every n-th frame
   double everywhere_s = 2;  ///< the network looks all over the picture this often, or up to four times as seldom
   double first_height = 84;                   ///< px: as high people are taken to be until some were found
   people::PeopleDetectorOptions people = {};  ///< the background model and, where they are known, the sizes of people
