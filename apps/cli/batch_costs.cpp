@@ -3,12 +3,14 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <string_view>
 
 #include "marey/core/error.h"
+#include "marey/core/time.h"
 #include "marey/source/open_source.h"
 
 #include "batch_plan.h"
@@ -21,22 +23,33 @@ namespace fs = std::filesystem;
 constexpr double kMega = 1e6;
 
 struct CostModel {
-  double program_mb;   ///< the program twice: the one that works, and the one that waits for it
-  double camera_mb;    ///< a decoder, a queue
-  double pixel_bytes;  ///< of a camera's picture: eight frames that are read ahead, and what is learned of the empty scene
-  double frame_bytes;  ///< that stay until the end of the recording
-  double input_bytes;  ///< of a byte of a text that is read as a whole
-  double pixel_ns;     ///< to decode a pixel and look at it
-  double frame_ns;     ///< of an instant, whatever its pictures
-  double input_ns;     ///< of a byte of a text
+  double program_mb;     ///< the program twice: the one that works, and the one that waits for it
+  double camera_mb;      ///< a decoder, a queue
+  double pixel_bytes;    ///< of a camera's picture: eight frames that are read ahead, the background, the detector's own
+  double learned_bytes;  ///< of a pixel of each frame that the background is learned from
+  double frame_bytes;    ///< that stay until the end of the recording
+  double input_bytes;    ///< of a byte of a text that is read as a whole
+  double pixel_ns;       ///< to decode a pixel and look at it
+  double frame_ns;       ///< of an instant, whatever its pictures
+  double input_ns;       ///< of a byte of a text
 };
 
 /// Of one thread.
 CostModel model_of(const std::string& job) {
-  if (job == "ground") return {80, 3, 33.5, 7200, 0, 7, 3e5, 0};  // frames with 25 people
-  if (job == "reconstruct") return {80, 2, 14.2, 0, 0, 9, 3e5, 0};
-  if (job == "measure") return {67, 0, 0, 0, 1.5, 0, 0, 12};
-  return {80, 3, 29, 0, 0, 5, 1e6, 0};
+  if (job == "ground") return {90, 3, 28.5, 0.85, 7200, 0, 7, 3e5, 0};     // frames with 25 people
+  if (job == "reconstruct") return {85, 2, 14.3, 0, 45000, 0, 9, 3e5, 0};  // frames with 50 markers
+  if (job == "measure") return {74, 0, 0, 0, 0, 1.3, 0, 0, 12};
+  return {94, 3, 23, 3.2, 0, 0, 5, 1e6, 0};
+}
+
+/// How many frames of a film the background is learned from (pipeline::Feed::sample_beginning): up to 30, evenly out of the first
+/// 30 seconds, of which 300 frames are read at most.
+double learned_frames(const SourceInfo& film) {
+  constexpr double kLearned = 30, kSeconds = 30, kRead = 300;
+  if (!film.frame_count) return kLearned;
+  const double span = std::min(kSeconds * film.rate_hz.value_or(kUsualRate), kRead);
+  const double step = std::max(1.0, std::floor(span / kLearned));
+  return std::min(kLearned, std::ceil(static_cast<double>(*film.frame_count) / step));
 }
 
 /// The last frame of detections, a text in which each line begins with its frame; 0 where it is none.
@@ -65,7 +78,7 @@ void add_input(const std::string& path, const CostModel& model, double& mb, doub
     const SourceInfo info = source::open_source(path)->info();
     const auto count = static_cast<double>(info.frame_count.value_or(0));
     frames = std::max(frames, count);
-    mb += model.camera_mb + model.pixel_bytes * info.size.area() / kMega;
+    mb += model.camera_mb + (model.pixel_bytes + model.learned_bytes * learned_frames(info)) * info.size.area() / kMega;
     ns += model.pixel_ns * count * info.size.area();
   } else if (model.frame_bytes > 0 && fs::path(path).extension() == ".txt") {
     frames = std::max(frames, frames_of_boxes(path));

@@ -136,7 +136,8 @@ TaskOutcome do_task(const BatchPlan& plan, const BatchTask& task, std::optional<
   record.exit_code = WIFEXITED(ended.status) ? WEXITSTATUS(ended.status) : 128 + WTERMSIG(ended.status);
   record.done = record.exit_code == 0;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  record.peak_mb = static_cast<int>((ended.used.ru_maxrss + own.ru_maxrss) / 1024);
+  constexpr double kKibi = 1024, kMegabyte = 1e6;  // the kernel counts KiB, a plan MB
+  record.peak_mb = static_cast<int>(kKibi * static_cast<double>(ended.used.ru_maxrss + own.ru_maxrss) / kMegabyte);
   record.host = host_name();
   record.sentence = sentence_of(ended);
   write_record(plan.record_of(task), record);

@@ -71,11 +71,17 @@ void print_solved(const SolveSummary& summary, const std::vector<std::string>& o
   fmt::print(stderr, "markers lie {:.2f} mm RMS from where the skeleton has them (worst {:.1f} mm): {}\n", 1000 * summary.rms_m,
              1000 * summary.worst_m, verdict(summary));
   print_worst(summary);
-  std::vector<std::string> hidden;
+  std::vector<std::string> hidden, at_times;
   for (const SolveSummary::Coordinate& coordinate : summary.coordinates) {
-    if (coordinate.observed < 0.5) hidden.push_back(coordinate.name);
+    if (coordinate.observed < 0.5) {
+      hidden.push_back(coordinate.name);
+    } else if (coordinate.observed < 1) {
+      at_times.push_back(
+          fmt::format("{} ({:.0f} % of the frames)", coordinate.name, std::max(1.0, 100 * (1 - coordinate.observed))));
+    }
   }
   if (!hidden.empty()) fmt::print(stderr, "not observed, no marker shows them to 10°: {}\n", joined(hidden, 12));
+  if (!at_times.empty()) fmt::print(stderr, "at times no marker shows these to 10°: {}\n", joined(at_times, 12));
   if (summary.overall_scale) {
     fmt::print(stderr, "calibrated: {:.3f} times as large as the skeleton was; markers lay {:.1f} mm RMS away before\n",
                *summary.overall_scale, 1000 * summary.rms_before_m);
@@ -195,9 +201,7 @@ void add_solve(Command& program) {
       "beside --static: the same person moving hips, knees and elbows through their range; says where the joints are");
   command.flag("--calibrate", options->options.calibrate,
                "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
-  command.flag(
-      "--smooth", options->options.smooth,
-      "a second pass over the whole motion: what was hidden is bent to both ends, and joints move as smoothly as people do");
+  command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
   command.output_file("--write-skeleton", options->options.write_skeleton, "skeleton.toml of the skeleton that was used")
       .ends_in({".toml"});
   command

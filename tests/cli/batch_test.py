@@ -257,14 +257,28 @@ class Batch(Films):
         self.marey("batch", "run", "plan.tsv", "-q")
         self.assertEqual(len(self.results()), FILMS)
 
+    def memory(self, job, recording):
+        """What `plan` says of a task, and what it took, MB."""
+        (self.folder / "one.csv").write_text(f"input,name\n{recording},one\n")
+        self.marey("batch", "plan", "one.csv", "--do", job, "-o", "one.tsv", "-q")
+        self.marey("batch", "run", "one.tsv", "-q", "--task-threads", 1)
+        with open(self.folder / "one.tsv") as rows:
+            said = int(next(csv.DictReader(rows, delimiter="\t"))["memory_mb"])
+        record = dict(line.split("\t", 1) for line in (self.folder / "one.tsv.results/tasks/000001.tsv").read_text().splitlines())
+        shutil.rmtree(self.folder / "one.tsv.results")
+        print(f"\nmemory of {job}, {recording}: {said} MB said, {record['peak_mb']} MB taken", file=sys.stderr)
+        return said, int(record["peak_mb"])
+
     def test_memory_is_said_beforehand(self):
-        self.plan()
-        self.marey("batch", "run", "plan.tsv", "--task", 1, "-q", "--task-threads", 1)
-        said = int((self.folder / "plan.tsv").read_text().splitlines()[1].split("\t")[-2])
-        record = dict(line.split("\t", 1) for line in (self.folder / "plan.tsv.results/tasks/000001.tsv").read_text().splitlines())
-        print(f"\nmemory: {said} MB said, {record['peak_mb']} MB taken", file=sys.stderr)
-        if not os.environ.get("MAREY_SANITIZE"):  # sanitizers take several times as much
-            self.assertLess(abs(said / int(record["peak_mb"]) - 1), 0.3)
+        """Short and long films: the background is learned from up to 30 frames, one in ten."""
+        cases = [("track", "people", "--people", 5, "--frames", 20, "--size", 320, 240), ("track", "people", "--people", 5, "--frames", 120, "--size", 640, 480),
+                 ("ground", "match", "--render", "--seconds", 2, "--cameras", 2, "--size", 480, 270), ("reconstruct", "room", "--videos", "--frames", 20, "--cameras", 3)]
+        for number, (job, *words) in enumerate(cases):
+            self.marey("simulate", *words, "-o", f"scene{number}", "-q")
+            said, taken = self.memory(job, f"scene{number}/" + ("video.mp4" if job == "track" else "rig.toml"))
+            if not os.environ.get("MAREY_SANITIZE"):  # sanitizers take several times as much
+                self.assertGreater(said, 0.95 * taken, "Slurm is asked for 1.3 times as much")
+                self.assertLess(said, 1.3 * taken)
 
     def test_full_disk(self):
         if os.geteuid() != 0:

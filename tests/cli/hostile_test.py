@@ -122,8 +122,8 @@ class Hostile(unittest.TestCase):
 
     def test_foreign_bytes_in_names(self):
         head = b"frame,time,id,label,team,x,y\n"
-        row = b"%d,%.2f,%d,a\x01\xff<&,=1+1,%d,3\n"
-        self.write("match.csv", head + b"".join(row % (i, i / 25, k, i % 50 + k) for i in range(60) for k in (1, 2)))
+        row = b"%d,%.2f,%d,a\x01\xff<&,=1+1,%.1f,3\n"
+        self.write("match.csv", head + b"".join(row % (i, i / 25, k, i / 10 + k) for i in range(60) for k in (1, 2)))
         said = self.accepted("measure", "match.csv", "-o", "measured.csv", "--json").stdout
         json.loads(said.decode())
         for name in ("out.csv", "out.txt"):

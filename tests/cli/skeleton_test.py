@@ -214,6 +214,35 @@ class Skeleton(unittest.TestCase):
         self.assertIn("standing.csv: the pelvis is not known", done.stderr)
         self.assertIn("SACR, LPSI, RPSI are not seen", done.stderr)
 
+    def test_the_second_pass_says_its_own_rms_and_what_was_hidden(self):
+        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
+        self.marey("convert", "walk.c3d", "walk.csv", "-q")
+        head, *rows = (self.folder / "walk.csv").read_text().splitlines()
+        frame, label = head.split(",").index("frame"), head.split(",").index("label")
+        hidden = {"LFRM", "LWRA", "LWRB", "LFIN", "RTIB", "RTHI", "RHEE"}
+        kept = [row for row in rows if not (row.split(",")[label] in hidden and 200 <= int(row.split(",")[frame]) < 250)]
+        (self.folder / "hidden.csv").write_text("\n".join([head, *kept]) + "\n")
+        told, angles = {}, {}
+        for way in ([], ["--smooth"]):
+            solve = ("solve", "hidden.csv", "--skeleton", "person.toml", *way, "-o", "hidden.marey", "-o", "hidden.mot")
+            summary = json.loads(self.marey(*solve, "--json").stdout)
+            told[bool(way)] = summary["rms_mm"]
+            markers = {marker["label"] for marker in summary["markers"]}
+            seen = {}
+            for row in kept:
+                if row.split(",")[label] in markers:
+                    seen[int(row.split(",")[frame])] = seen.get(int(row.split(",")[frame]), 0) + 1
+            self.marey("convert", "hidden.marey", "poses.csv", "--format", "poses", "-q")
+            with open(self.folder / "poses.csv", newline="") as file:
+                residuals = {int(row["frame"]): float(row["residual_mm"]) for row in csv.DictReader(file)}
+            by_frames = (sum(residual ** 2 * seen[at] for at, residual in residuals.items()) / sum(seen[at] for at in residuals)) ** 0.5
+            self.assertAlmostEqual(summary["rms_mm"], by_frames, delta=0.002 * by_frames, msg=way)
+            angles[bool(way)] = self.column("hidden.mot", "left_elbow_flexion", "\t")
+        self.assertNotEqual(told[False], told[True])
+        steps = [abs(b - a) for a, b in zip(angles[True], angles[True][1:])]
+        self.assertLess(max(steps), 10)
+        self.assertIn("at times no marker shows these to 10°: ", self.marey(*solve).stderr)
+
     def test_gait_of_who_stands_is_refused(self):
         done = self.marey("gait", "standing.c3d", code=1)
         self.assertIn("standing.c3d: no steps were found", done.stderr)

@@ -43,7 +43,9 @@ class Unsuited(unittest.TestCase):
 
     def test_a_camera_that_stands_is_not_warned_of(self):
         here = scene(1)
-        self.assertEqual(self.warnings("still", [window(here, 0, 0)] * 60), [])
+        said = self.warnings("still", [window(here, 0, 0)] * 60)
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("nobody was found", said[0])  # which is so, and all there is to say
 
     def test_a_camera_that_pans_and_what_to_do(self):
         here = scene(4)

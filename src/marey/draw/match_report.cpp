@@ -224,7 +224,8 @@ class ReportPage {
       svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
       svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
-    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s, where it is known; {} sprints are marked", end - begin, person.sprints.size()),
+    svg.text({left, height - 1},
+             fmt::format("m/s over {:.0f} s, where it is known; {} sprints are marked", end - begin, person.sprints.size()),
              {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;

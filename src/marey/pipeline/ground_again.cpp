@@ -59,10 +59,11 @@ class GroundAgain final : public PeopleOnGround {
   }
 
  private:
+  /// Not with a ball: in a scene that was corrected, what is left of people's borders was followed as one.
   bool may_look_again() const {
-    return std::any_of(found_.begin(), found_.end(),
-                       [](const auto& one) { return one != nullptr && one->since_beginning() > 0; }) &&
-           std::all_of(openers_.begin(), openers_.end(), [](const auto& opener) { return static_cast<bool>(opener); });
+    return !options_.ball && std::any_of(found_.begin(), found_.end(), [](const auto& one) {
+      return one != nullptr && one->since_beginning() > 0;
+    }) && std::all_of(openers_.begin(), openers_.end(), [](const auto& opener) { return static_cast<bool>(opener); });
   }
 
   void look_again(const Hooks& hooks) {

@@ -17,6 +17,7 @@
 #include "marey/pipeline/skeleton_in_space.h"
 #include "marey/solve/skeleton/calibrate.h"
 #include "marey/solve/skeleton/smooth.h"
+#include "marey/solve/skeleton/whole.h"
 
 namespace marey::pipeline {
 namespace {
@@ -34,7 +35,7 @@ bool ends_with_any(const std::string& path, std::initializer_list<std::string_vi
 class SolveCounts {
  public:
   explicit SolveCounts(const Skeleton& skeleton)
-      : skeleton_(skeleton),
+      : skeleton_(&skeleton),
         markers_(skeleton.markers.size()),
         deviations_(skeleton.coordinates.size()),
         observed_(skeleton.coordinates.size()) {}
@@ -57,6 +58,13 @@ class SolveCounts {
     }
   }
 
+  /// All but the starts is forgotten.
+  void begin_anew() {
+    const std::int64_t starts = starts_;
+    *this = SolveCounts(*skeleton_);
+    starts_ = starts;
+  }
+
   void write(const SkeletonMotion& motion, SolveSummary& summary) {
     summary.starts = starts_;
     summary.empty = empty_;
@@ -65,7 +73,7 @@ class SolveCounts {
     for (std::size_t j = 0; j < markers_.size(); ++j) {
       SolveSummary::Marker& marker = markers_[j];
       if (marker.seen == 0) continue;
-      marker.label = skeleton_.markers[j].label;
+      marker.label = skeleton_->markers[j].label;
       sum += marker.rms_m;
       count += marker.seen;
       marker.rms_m = std::sqrt(marker.rms_m / static_cast<double>(marker.seen));
@@ -76,14 +84,14 @@ class SolveCounts {
     const std::int64_t with_any = std::ssize(motion.rows) - empty_;
     summary.markers_a_frame = with_any > 0 ? static_cast<double>(count) / static_cast<double>(with_any) : 0;
     summary.rms_m = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
-    for (std::size_t c = 0; c < skeleton_.coordinates.size(); ++c) {
-      if (skeleton_.coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
+    for (std::size_t c = 0; c < skeleton_->coordinates.size(); ++c) {
+      if (skeleton_->coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
     }
   }
 
  private:
   SolveSummary::Coordinate coordinate(std::size_t c, const SkeletonMotion& motion) {
-    SolveSummary::Coordinate said{.name = skeleton_.coordinates[c].name, .turns = skeleton_.coordinates[c].turns};
+    SolveSummary::Coordinate said{.name = skeleton_->coordinates[c].name, .turns = skeleton_->coordinates[c].turns};
     for (std::size_t r = 0; r < motion.rows.size(); ++r) {
       said.lowest = r == 0 ? motion.rows[r][c] : std::min(said.lowest, motion.rows[r][c]);
       said.highest = r == 0 ? motion.rows[r][c] : std::max(said.highest, motion.rows[r][c]);
@@ -97,12 +105,32 @@ class SolveCounts {
     return said;
   }
 
-  const Skeleton& skeleton_;
+  const Skeleton* skeleton_;
   std::vector<SolveSummary::Marker> markers_;
   std::vector<std::vector<float>> deviations_;
   std::vector<std::int64_t> observed_;
   std::int64_t starts_ = 0, empty_ = 0;
 };
+
+/// The frames together: which way limbs are bent, and where it is asked for the second pass. What is said of the motion is then of
+/// the new one.
+void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::SeenMarkers>& seen, const SolveOptions& options,
+                 SolveCounts& counts) {
+  const double rate_hz = solved.motion.rate_hz;
+  const std::vector<bool> settled = solve::skeleton::settle_folds(solved.skeleton, solved.motion.rows, seen, rate_hz, options.pose);
+  const bool any = std::find(settled.begin(), settled.end(), true) != settled.end();
+  if (!any && !options.smooth) return;
+  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, seen, rate_hz);
+  counts.begin_anew();
+  solve::skeleton::PoseSolver judge(solved.skeleton, options.pose);
+  judge.learn_noise_of(solved.motion.rows, seen);
+  for (std::size_t f = 0; f < seen.size(); ++f) {
+    const auto& pose = judge.look_at(solved.motion.rows[f], seen[f]);
+    counts.add(pose);
+    solved.observed[f] = pose.observed;
+    solved.residual_m[f] = pose.rms_m;
+  }
+}
 
 UpAxis up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
   if (options.up) return *options.up;
@@ -191,7 +219,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
     solved.motion.rows.push_back(pose.coordinates);
     solved.observed.push_back(pose.observed);
     solved.residual_m.push_back(pose.rms_m);
-    if (options.smooth) all.push_back(solver.seen());
+    all.push_back(solver.seen());
     if (hooks.report({.step = "solving", .done = ++summary.frames, .total = reader->instant_count()}) == Continue::no) {
       summary.stopped = true;
       break;
@@ -199,7 +227,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   }
   const SkeletonMarkers& labels = solver.markers();
   if (!labels.any()) throw Error("{}: {}", recording, labels.none_known(solved.skeleton.name));
-  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, all, solved.motion.rate_hz);
+  if (!summary.stopped) solve_again(solved, all, options, counts);
   for (const std::string& warning : reader->warnings()) summary.warnings.push_back(warning);
   summary.not_recorded = labels.not_recorded();
   summary.not_known = labels.unknown();

@@ -214,7 +214,9 @@ TEST(VideoSource, TheStreetVideo) {
   if (!std::filesystem::exists(test::vtest())) GTEST_SKIP() << test::vtest() << " is not here: install opencv-doc";
   const Reading reading = read_all(test::vtest(), 7);
   EXPECT_EQ(reading.frames.size(), 795u);
-  EXPECT_TRUE(reading.warnings.empty()) << reading.warnings.front();
+  ASSERT_EQ(reading.warnings.size(), 1u);
+  EXPECT_NE(reading.warnings.front().find("its header says 10 frames per second, the given rate is 7"), std::string::npos)
+      << reading.warnings.front();
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ class Calibrator {
 
   void solve_poses() {
     apply();
-    PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m, .robust_m = 0.2});
+    PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m, .robust_m = 0.2, .shift_s = 0});
     poses_.clear();
     double sum = 0;
     int count = 0;

@@ -14,9 +14,11 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kSmallestSigmaM = 1e-4, kLargestSigmaM = 0.03;
-constexpr double kSmallestStep = 1e-6;  // rad, m
-constexpr double kWeakest = 1;          // 1/rad²: what is not seen at all deviates by a radian
+constexpr double kSmallestStep = 1e-6;      // rad, m
+constexpr double kWeakPrior = 1;            // 1/rad²
+constexpr double kWeakPriorOfShift = 1e-4;  // 1/m²
+constexpr double kShortestS = 1e-6;
+constexpr double kPlainM = 1e6;  // a robust scale beyond which none is
 
 double geman_mcclure(double squared, double scale) {
   return squared * scale * scale / (scale * scale + squared);
@@ -33,12 +35,25 @@ PoseSolver::PoseSolver(const Skeleton& skeleton, const PoseOptions& options)
   if (skeleton.markers.empty()) throw Error("{}: the skeleton has no markers; without them nothing shows its pose", skeleton.name);
   const int n = articulation_.dofs();
   if (n == 0) throw Error("{}: no joint of the skeleton moves", skeleton.name);
-  for (Eigen::VectorXd* v : {&velocity_, &variance_, &prior_information_, &step_, &difference_, &dof_deviation_}) v->setZero(n);
+  for (Eigen::VectorXd* v : {&velocity_, &step_, &difference_, &dof_deviation_}) v->setZero(n);
+  prior_information_.setZero(n, n);
   equations_.information.setZero(n, n);
   equations_.gradient.setZero(n);
   damped_.setZero(n, n);
   covariance_.setZero(n, n);
   dof_observed_.assign(static_cast<std::size_t>(n), false);
+  away_s_.assign(skeleton.markers.size(), options.hidden_s);
+  found_.assign(skeleton.markers.size(), Vector<3>::Zero());
+  shifts_ = found_;
+  missed_s_.assign(skeleton.segments.size(), 0);
+  near_.resize(skeleton.segments.size());
+  for (std::size_t s = 0; s < skeleton.segments.size(); ++s) {
+    near_[s].push_back(s);
+    if (const auto parent = skeleton.segments[s].parent) {
+      near_[s].push_back(static_cast<std::size_t>(*parent));
+      near_[static_cast<std::size_t>(*parent)].push_back(s);
+    }
+  }
   solver_.compute(Eigen::MatrixXd::Identity(n, n));  // its room, taken once
   pose_.residuals.resize(skeleton.markers.size());
   pose_.coordinates = skeleton.rest();
@@ -50,23 +65,72 @@ PoseSolver::PoseSolver(const Skeleton& skeleton, const PoseOptions& options)
 void PoseSolver::start_from(std::vector<double> coordinates) {
   state_ = articulation_.state_of(std::move(coordinates));
   velocity_.setZero();
-  variance_.setConstant(1);
   dof_observed_.assign(dof_observed_.size(), true);
   known_ = true;
 }
 
-void PoseSolver::predict(double seconds) {
+double PoseSolver::scale_of(int dof) const {
+  return articulation_.dof()[static_cast<std::size_t>(dof)].turns ? options_.not_observed_rad : options_.not_observed_m;
+}
+
+/// In `covariance_` (1 + H)⁻² of a pose: what the markers that are seen leave open of it, all of them counted, for what is far from
+/// the prediction is no less seen.
+void PoseSolver::find_open(const SkeletonState& state, Seen seen) {
+  const int n = articulation_.dofs();
+  articulation_.place(state);
+  const double robust = std::exchange(robust_m_, kPlainM);
+  gather_markers(seen);
+  robust_m_ = robust;
+  gather(equations_);
+  for (int d = 0; d < n; ++d) {
+    for (int e = 0; e < n; ++e) damped_(d, e) = scale_of(d) * equations_.information(d, e) * scale_of(e) + (d == e ? 1 : 0);
+  }
+  solver_.compute(damped_);
+  damped_.setIdentity();
+  solver_.solveInPlace(damped_);
+  covariance_.noalias() = damped_ * damped_;
+}
+
+/// Holds what is open at `predicted_`, so strongly.
+void PoseSolver::set_prior(Seen seen, double strength) {
+  find_open(predicted_, seen);
   for (int d = 0; d < articulation_.dofs(); ++d) {
-    const bool turns = articulation_.dof()[static_cast<std::size_t>(d)].turns;
-    const bool observed = dof_observed_[static_cast<std::size_t>(d)];
-    const double off = (turns ? options_.acceleration_rad_s2 : options_.acceleration_m_s2) * seconds * seconds;
-    const double hidden = observed ? 0 : options_.hidden_rad_s * seconds;
-    if (!observed) velocity_[d] *= std::exp(-seconds / options_.decay_s);
+    for (int e = 0; e < articulation_.dofs(); ++e)
+      prior_information_(d, e) = strength * covariance_(d, e) / (scale_of(d) * scale_of(e));
+    prior_information_(d, d) += articulation_.dof()[static_cast<std::size_t>(d)].turns ? kWeakPrior : kWeakPriorOfShift;
+  }
+}
+
+const Eigen::MatrixXd& PoseSolver::openness(const SkeletonState& state, Seen seen) {
+  find_open(state, seen);
+  return covariance_;
+}
+
+SkeletonState PoseSolver::solve_near(const SkeletonState& start, Seen seen) {
+  state_ = predicted_ = start;
+  set_prior(seen, 1);
+  minimise(seen, options_.max_iterations);
+  articulation_.take_angles(state_);
+  return state_;
+}
+
+/// Where the pose is heading.
+void PoseSolver::predict(double seconds, Seen seen) {
+  const double slower = std::exp(-seconds / options_.decay_s);
+  for (int d = 0; d < articulation_.dofs(); ++d) {
+    if (!dof_observed_[static_cast<std::size_t>(d)]) velocity_[d] *= slower;
     step_[d] = velocity_[d] * seconds;
-    variance_[d] = std::min(10.0, variance_[d] + off * off + hidden * hidden);
-    prior_information_[d] = 1 / std::max(1e-12, variance_[d]);
   }
   articulation_.move(state_, step_, predicted_);
+  shift_markers(seconds, seen);
+  set_prior(seen, options_.memory_s / seconds);
+}
+
+/// So little that a pose comes from its markers alone.
+void PoseSolver::set_weak_prior() {
+  prior_information_.setZero();
+  for (int d = 0; d < articulation_.dofs(); ++d)
+    prior_information_(d, d) = articulation_.dof()[static_cast<std::size_t>(d)].turns ? kWeakPrior : kWeakPriorOfShift;
 }
 
 double PoseSolver::gather_markers(Seen seen) {
@@ -78,7 +142,7 @@ double PoseSolver::gather_markers(Seen seen) {
   for (std::size_t j = 0; j < markers.size(); ++j) {
     if (!seen[j]) continue;
     const auto s = static_cast<std::size_t>(markers[j].segment);
-    const Vector<3> p = world_from[s] * markers[j].position, off = *seen[j] - p;
+    const Vector<3> p = world_from[s] * (markers[j].position + shifts_[j]), off = *seen[j] - p;
     const double squared = off.squaredNorm(), share = robust_m_ * robust_m_ / (robust_m_ * robust_m_ + squared);
     cost += markers[j].weight * information * geman_mcclure(squared, robust_m_);
     const double weight = markers[j].weight * information * share * share;
@@ -135,13 +199,13 @@ void PoseSolver::linearise(const SkeletonState& state, Seen seen, PoseEquations&
 
 double PoseSolver::prior_cost(const SkeletonState& state) {
   articulation_.difference(state, predicted_, difference_);
-  return (prior_information_.array() * difference_.array().square()).sum();
+  return difference_.dot(prior_information_ * difference_);
 }
 
 void PoseSolver::add_prior(const SkeletonState& state) {
   articulation_.difference(state, predicted_, difference_);
-  equations_.information.diagonal() += prior_information_;
-  equations_.gradient.array() += prior_information_.array() * difference_.array();
+  equations_.information += prior_information_;
+  equations_.gradient.noalias() += prior_information_ * difference_;
 }
 
 double PoseSolver::limit_cost(const SkeletonState& state) const {
@@ -214,46 +278,27 @@ double PoseSolver::minimise(Seen seen, int most) {
   return cost;
 }
 
-double PoseSolver::rms_of(Seen seen) {
-  articulation_.place(state_);
-  const auto& markers = articulation_.skeleton().markers;
-  double sum = 0;
-  int count = 0;
-  for (std::size_t j = 0; j < markers.size(); ++j) {
-    pose_.residuals[j].reset();
-    if (!seen[j]) continue;
-    const double off =
-        (*seen[j] - articulation_.world_from_segment()[static_cast<std::size_t>(markers[j].segment)] * markers[j].position).norm();
-    pose_.residuals[j] = off;
-    sum += off * off;
-    ++count;
-  }
-  pose_.seen = count;
-  pose_.rms_m = count > 0 ? std::sqrt(sum / count) : 0;
-  return pose_.rms_m;
+/// From the prediction to the least sum of squares, and on from there.
+double PoseSolver::least_squares_start(Seen seen) {
+  const double robust = std::exchange(robust_m_, kPlainM);
+  state_ = predicted_;
+  minimise(seen, options_.max_iterations);
+  robust_m_ = robust;
+  return minimise(seen, options_.max_iterations);
 }
 
-/// Most markers are far away: that is no wrong label.
-bool PoseSolver::lost() const {
-  const auto far =
-      std::count_if(pose_.residuals.begin(), pose_.residuals.end(), [&](const auto& off) { return off && *off > options_.lost_m; });
-  return pose_.seen >= 6 && 2 * far > pose_.seen;
-}
-
-/// σ of a marker's coordinate, from what is left over; markers beyond the robust scale do not count.
-void PoseSolver::learn_noise(Seen seen) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t j = 0; j < seen.size(); ++j) {
-    if (!pose_.residuals[j] || *pose_.residuals[j] > robust_m_) continue;
-    sum += *pose_.residuals[j] * *pose_.residuals[j];
-    count += 3;
-  }
-  const int free = count - articulation_.dofs();
-  if (free < 3) return;
-  const double now = std::clamp(std::sqrt(sum / free), kSmallestSigmaM, kLargestSigmaM);
-  sigma_m_ = pose_.started ? now : std::sqrt(0.9 * sigma_m_ * sigma_m_ + 0.1 * now * now);
-  robust_m_ = std::max(options_.robust_m, 6 * sigma_m_);
+/// From the prediction. Where markers are left so far off that they hardly count, a whole segment may have been given up: then the
+/// least sum of squares is another start. Returns the cost.
+double PoseSolver::solve_frame(Seen seen) {
+  const double cost = minimise(seen, options_.max_iterations);
+  rms_of(seen);
+  if (std::none_of(pose_.residuals.begin(), pose_.residuals.end(), [&](const auto& off) { return off && *off > robust_m_; }))
+    return cost;
+  const SkeletonState found = state_;
+  const double other = least_squares_start(seen);
+  if (other < cost) return other;
+  state_ = found;
+  return cost;
 }
 
 const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
@@ -266,13 +311,13 @@ const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
   } else if (!known_) {
     cold_start(seen);
     rms_of(seen);
-    learn_noise(seen);
+    learn_noise(seen, seconds);
     minimise(seen, options_.max_iterations);
   } else {
     last_ = state_;
-    predict(std::max(1e-6, seconds));
+    predict(std::max(kShortestS, seconds), seen);
     state_ = predicted_;
-    if (any) minimise(seen, options_.max_iterations);
+    if (any) solve_frame(seen);
     rms_of(seen);
     if (lost() && since_start_s_ >= options_.sought_anew_s) {
       pose_.started = true;
@@ -283,78 +328,19 @@ const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
       if (rms_of(seen) > 0.7 * rms) state_ = before;
     }
     if (any) mind_limits(seconds, seen);
+    if (any) mind_returns(seen);
   }
   articulation_.take_angles(state_);
   rms_of(seen);
-  learn_noise(seen);
+  learn_noise(seen, seconds);
   judge(seen);
   learn_velocity(seconds);
+  remember(seconds, seen);
   known_ = known_ || any;
   pose_.coordinates = state_.coordinates;
   pose_.world_from_segment = articulation_.world_from_segment();
   pose_.iterations = iterations_;
   return pose_;
-}
-
-/// What this frame's markers alone say of each coordinate.
-void PoseSolver::judge(Seen seen) {
-  gather_markers(seen);
-  gather(equations_);
-  const int n = articulation_.dofs();
-  equations_.information.diagonal().array() += kWeakest;
-  solver_.compute(equations_.information);
-  covariance_.setIdentity();
-  solver_.solveInPlace(covariance_);
-  for (int d = 0; d < n; ++d) {
-    const auto at = static_cast<std::size_t>(d);
-    dof_deviation_[d] = std::sqrt(std::max(0.0, covariance_(d, d)));
-    dof_observed_[at] = dof_deviation_[d] < (articulation_.dof()[at].turns ? options_.not_observed_rad : options_.not_observed_m);
-    variance_[d] = 1 / (1 / std::max(1e-12, covariance_(d, d)) + 1 / std::max(1e-12, variance_[d] > 0 ? variance_[d] : 1.0));
-    if (const auto& c = articulation_.dof()[at].coordinate) pose_.deviations[static_cast<std::size_t>(*c)] = dof_deviation_[d];
-  }
-  judge_balls();
-  const auto& coordinates = articulation_.skeleton().coordinates;
-  for (std::size_t c = 0; c < coordinates.size(); ++c) {
-    if (coordinates[c].locked) {
-      pose_.observed[c] = true;
-      continue;
-    }
-    const std::size_t from = coordinates[c].coupling ? static_cast<std::size_t>(coordinates[c].coupling->to) : c;
-    pose_.deviations[c] = pose_.deviations[from];
-    pose_.observed[c] = pose_.deviations[c] < (coordinates[c].turns ? options_.not_observed_rad : options_.not_observed_m);
-  }
-}
-
-/// Of joints that turn freely: how far each of their angles may be off.
-void PoseSolver::judge_balls() {
-  for (const Articulation::Ball& ball : articulation_.balls()) {
-    // The small turn's part in each angle: turns about the axes as they now stand, seen from the segment.
-    Matrix<3> axes, turned = Matrix<3>::Identity();
-    for (int i = 2; i >= 0; --i) {
-      const auto c = static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)]);
-      axes.col(i) = turned.transpose() * ball.axes.col(i);
-      turned = Eigen::AngleAxisd(ball.signs[i] * state_.coordinates[c], ball.axes.col(i)).toRotationMatrix() * turned;
-    }
-    Matrix<3> spread = Matrix<3>::Identity();
-    if (std::abs(axes.determinant()) > 1e-6) {
-      const Matrix<3> back = axes.inverse();
-      spread = back * covariance_.block<3, 3>(ball.first_dof, ball.first_dof) * back.transpose();
-    }
-    for (int i = 0; i < 3; ++i)
-      pose_.deviations[static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)])] =
-          std::sqrt(std::max(0.0, spread(i, i)));
-  }
-}
-
-void PoseSolver::learn_velocity(double seconds) {
-  if (!known_ || seconds <= 0 || pose_.started) {
-    velocity_.setZero();
-    return;
-  }
-  articulation_.difference(last_, state_, difference_);
-  for (int d = 0; d < articulation_.dofs(); ++d) {
-    if (dof_observed_[static_cast<std::size_t>(d)]) velocity_[d] = difference_[d] / seconds;
-  }
 }
 
 }  // namespace marey::solve::skeleton

@@ -1,11 +1,18 @@
 // Inverse kinematics: the pose of a skeleton in which its markers lie nearest to where they were seen.
 //
-// Each frame minimises Σ w ρ(|p(x) − m|) / σ² + |x − predicted|² / P + limits over the free coordinates x, by Levenberg–Marquardt
-// from the predicted pose. ρ is Geman and McClure's, so that a swapped marker does not drag a limb along; the prediction (constant
-// velocity) holds what no marker shows, and is so weak beside a marker that it does not bias what is seen. Derivatives are the
+// Each frame minimises Σ w ρ(|p(x) − m|) / σ² + (x − predicted)ᵀ P (x − predicted) + limits over the free coordinates x, by
+// Levenberg–Marquardt from the predicted pose. ρ is Geman and McClure's, so that a swapped marker does not drag a limb along; where
+// it leaves markers far off, the plain sum of squares is tried as a start too, and what costs less is taken. Derivatives are the
 // skeleton's own: a turn about axis a through c moves p by a × (p − c). The normal equations are gathered over the tree (of every
 // segment's markers only weight, sum and second moment count, as of a rigid body's mass: Featherstone's composite bodies), so that
 // an iteration costs the sum of the depths of the coordinates, and the solution of one small system.
+//
+// The prediction (constant velocity) holds what no marker shows, and only that. With H the markers' information in units in which 1
+// is "just not observed", P = (memory / Δt) (1 + H)⁻²: a direction with information h follows its markers within
+// memory / (h (1 + h)²), whatever the frame rate; what is observed is the least-squares solution of this frame alone.
+//
+// Where markers are hidden, those left say something else than all did together, for none fits exactly (skin, the model). So a
+// marker whose segment, or one beside it, misses one is taken to sit where it was found when none was, and ever less so.
 //
 // The posterior deviation of a coordinate is what this frame's markers alone say of it, given the residuals there are; a forearm's
 // turn with one marker has none. Beyond `not_observed_rad` it counts as not observed.
@@ -25,10 +32,12 @@ namespace marey::solve::skeleton {
 
 struct PoseOptions {
   double marker_sigma_m = 0.005;          ///< of a marker, at first; then as the residuals are
-  double robust_m = 0.05;                 ///< residuals beyond count less and less; at least 6 σ
-  double acceleration_rad_s2 = 300;       ///< of a joint: how far the prediction may be off
-  double acceleration_m_s2 = 30;          ///< of a root
-  double hidden_rad_s = 5;                ///< what an angle that no marker shows may turn
+  double robust_m = 0.05;                 ///< residuals beyond count less and less; at least 10 σ
+  double memory_s = 0.02;                 ///< what is hardly observed follows its markers within it
+  double velocity_s = 0.01;               ///< over which speeds are averaged
+  double noise_s = 0.1;                   ///< over which the markers' σ is
+  double away_s = 0.05, hidden_s = 2;     ///< a marker that returns after so long, and not later, has the poses looked at again
+  double shift_s = 1;                     ///< within which markers beside hidden ones go back to where the skeleton has them
   double decay_s = 0.1;                   ///< within which an angle that no marker shows comes to rest
   double limit_rad = 0.005;               ///< how far a limit gives way to one σ of a marker
   double not_observed_rad = 0.174532925;  ///< 10°
@@ -71,6 +80,9 @@ class PoseSolver {
   void forget() { known_ = false; }
   /// The next step starts from here.
   void start_from(std::vector<double> coordinates);
+  /// The pose with these coordinates as this frame's markers see it: nothing is solved, and the next step goes on from where the
+  /// last one was.
+  const SolvedPose& look_at(std::vector<double> coordinates, std::span<const std::optional<Vector<3>>> seen);
   const SolvedPose& pose() const { return pose_; }
   double marker_sigma_m() const { return sigma_m_; }
 
@@ -78,6 +90,20 @@ class PoseSolver {
   const SkeletonState& state() const { return state_; }
   /// Linearises the markers at a state.
   void linearise(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen, PoseEquations& equations);
+  /// How many limbs may lie nearly the same in two poses; and the others of one of them, to start from.
+  std::size_t limbs() const { return limbs_.size(); }
+  std::vector<SkeletonState> other_poses(std::size_t limb, const SkeletonState& state);
+  /// Of markers, limits and how unlike a person's the limbs are folded, in σ² of a marker.
+  double cost_of(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
+  /// Of each marker: how far it sits from where the skeleton has it, m, on its segment; until frames are solved in turn.
+  std::span<Vector<3>> shifts() { return shifts_; }
+  /// σ of a marker's coordinate, as all frames of a solved recording together have it; until frames are solved in turn.
+  void learn_noise_of(std::span<const std::vector<double>> rows, std::span<const std::vector<std::optional<Vector<3>>>> frames);
+  /// Of a pose, in units of what just counts as not observed: the identity in directions that no marker shows, near 0 in others:
+  /// (1 + H)⁻². Valid until the next call.
+  const Eigen::MatrixXd& openness(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
+  /// From a pose to where the markers are; what they leave open stays. Forgets the motion.
+  SkeletonState solve_near(const SkeletonState& start, std::span<const std::optional<Vector<3>>> seen);
   /// Adds what pulls coordinates back that are beyond their limits.
   void add_limits(const SkeletonState& state, PoseEquations& equations) const;
 
@@ -100,9 +126,17 @@ class PoseSolver {
     Vector<3> along;          ///< in the ball's frame
     Matrix<3> rest;           ///< of the ball
     double at_limit_s = 0;
+    std::vector<bool> near;  ///< of each segment: its markers say something of this limb
+    bool asked = false;
   };
 
-  void predict(double seconds);
+  void predict(double seconds, Seen seen);
+  void find_open(const SkeletonState& state, Seen seen);
+  void set_prior(Seen seen, double strength);
+  void set_weak_prior();
+  double scale_of(int dof) const;
+  double solve_frame(Seen seen);
+  double least_squares_start(Seen seen);
   double evaluate(const SkeletonState& state, Seen seen);
   double gather_markers(Seen seen);
   void gather(PoseEquations& equations);
@@ -116,13 +150,18 @@ class PoseSolver {
   double oddness(const Limb& limb) const;
   double cost_of_pose(const Limb& limb, Seen seen);
   std::vector<SkeletonState> turned_about(const Limb& limb) const;
-  bool turn_limbs(Seen seen, bool all);
+  bool turn_limbs(Seen seen);
   void mind_limits(double seconds, Seen seen);
+  void mind_returns(Seen seen);
+  void try_as_it_was(const std::vector<bool>& returned, Seen seen);
+  double oddness_of_limbs() const;
+  void remember(double seconds, Seen seen);
+  void shift_markers(double seconds, Seen seen);
   std::vector<SkeletonState> starts(Seen seen);
   std::optional<Rigid3> root_from(Seen seen, bool root_alone, const SkeletonState& rest);
   double rms_of(Seen seen);
   bool lost() const;
-  void learn_noise(Seen seen);
+  void learn_noise(Seen seen, double seconds);
   void judge(Seen seen);
   void judge_balls();
   void learn_velocity(double seconds);
@@ -133,11 +172,19 @@ class PoseSolver {
   double since_start_s_ = 0;
   double sigma_m_, robust_m_;
   SkeletonState state_, predicted_, trial_, last_;
-  Eigen::VectorXd velocity_, variance_, prior_information_, step_, difference_;
+  Eigen::VectorXd velocity_, step_, difference_;
+  Eigen::MatrixXd prior_information_;
   std::vector<bool> dof_observed_;
   Eigen::VectorXd dof_deviation_;
   std::vector<Moments> moments_;
   std::vector<Limb> limbs_;
+  std::vector<double> away_s_;  // of each marker: since when it is not seen
+  SkeletonState whole_;         // the last pose in which none was missed
+  bool returned_ = false;
+  std::vector<std::vector<std::size_t>> near_;  // of each segment: itself, its parent and its children
+  std::vector<bool> beside_;
+  std::vector<double> missed_s_;           // of each segment: since when one of the markers near it is hidden
+  std::vector<Vector<3>> found_, shifts_;  // of each marker: where it sat, from where the skeleton has it, and is taken to sit
   PoseEquations equations_;
   Eigen::MatrixXd damped_, covariance_;
   Eigen::LDLT<Eigen::MatrixXd> solver_;

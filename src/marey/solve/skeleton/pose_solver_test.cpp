@@ -1,13 +1,18 @@
 #include "marey/solve/skeleton/pose_solver.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
+#include "marey/solve/skeleton/whole.h"
 
 namespace marey::solve::skeleton {
 namespace {
@@ -140,6 +145,68 @@ TEST(PoseSolver, FindsAMotionFromNothing) {
   }
 }
 
+/// The plain least-squares pose of one frame, from a pose near it.
+double least_squares_rms(const Skeleton& skeleton, std::vector<double> near, std::span<const std::optional<Vector<3>>> seen) {
+  PoseSolver solver(skeleton, {.marker_sigma_m = 1, .robust_m = 1e6});
+  SkeletonState state = solver.articulation().state_of(std::move(near)), moved;
+  PoseEquations equations;
+  for (int round = 0; round < 30; ++round) {
+    solver.linearise(state, seen, equations);
+    equations.information.diagonal().array() += 1e-9;
+    solver.articulation().move(state, equations.information.ldlt().solve(equations.gradient), moved);
+    std::swap(state, moved);
+  }
+  solver.linearise(state, seen, equations);
+  return std::sqrt(equations.cost / static_cast<double>(std::count_if(seen.begin(), seen.end(), [](const auto& m) { return m; })));
+}
+
+/// At several rates a body whose markers sit up to 20 mm from where the skeleton has them: as near as the least squares of each
+/// frame, and in the end in one pose. All joints at once turn by up to 0.6 rad × `speed`.
+void follow_at_rates(double speed, std::span<const double> rates) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  const Skeleton skeleton = body(random);
+  Skeleton person = skeleton;
+  for (SkeletonMarker& marker : person.markers) marker.position += anywhere(random, 0.02);
+  const std::vector<double> centre = pose_near_rest(skeleton, random, 0.3);
+  const auto truth_at = [&](double time) {
+    std::vector<double> truth = centre;
+    for (std::size_t c = 0; c < truth.size(); ++c)
+      truth[c] += (skeleton.coordinates[c].turns ? 0.6 : 0.1) * std::sin(speed * time + static_cast<double>(c));
+    truth[0] += 9 * time;
+    skeleton.couple(truth);
+    return truth;
+  };
+  std::vector<double> at_the_end;
+  for (const double rate : rates) {
+    PoseSolver solver(skeleton);
+    solver.start_from(truth_at(0));
+    double found = 0, least = 0;
+    const int frames = static_cast<int>(0.4 * rate);
+    for (int frame = 0; frame <= frames; ++frame) {
+      const std::vector<double> truth = truth_at(frame / rate);
+      const auto seen = markers_at(person, truth);
+      found += std::pow(solver.step(1 / rate, seen).rms_m, 2);
+      least += std::pow(least_squares_rms(skeleton, truth, seen), 2);
+    }
+    EXPECT_LT(std::sqrt(found), 1.1 * std::sqrt(least)) << rate << " Hz";
+    if (at_the_end.empty()) at_the_end = solver.pose().coordinates;
+    for (std::size_t c = 0; c < at_the_end.size(); ++c) {
+      if (!skeleton.coordinates[c].turns) continue;
+      EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)),
+                0.02 + solver.pose().deviations[c])
+          << rate << " Hz";
+    }
+  }
+}
+
+/// A prediction that counted for more the shorter the frames are would win over the markers here.
+TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
+  follow_at_rates(40, std::array{200.0, 500.0, 1000.0});
+  follow_at_rates(8, std::array{25.0, 50.0, 100.0, 250.0});
+}
+
 TEST(PoseSolver, HoldsWhatNoMarkerShowsAndSaysSo) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
@@ -221,6 +288,30 @@ TEST(PoseSolver, TurnsAnArmThatIsBentBackwards) {
   };
   EXPECT_LT(elbow(1e9), 0) << "no trap: the test shows nothing";
   EXPECT_NEAR(elbow(0.25), 0.6, 0.01);
+}
+
+/// The same trap over a whole recording, in which the elbow never was at its limit for long enough to be asked.
+TEST(PoseSolver, TheRecordingDecidesHowALimbIsBent) {
+  const Skeleton skeleton = arm();
+  std::vector<std::vector<double>> rows;
+  std::vector<std::vector<std::optional<Vector<3>>>> frames;
+  PoseSolver solver(skeleton, {.at_limit_s = 1e9});
+  for (int f = 0; f < 100; ++f) {
+    std::vector<double> truth = skeleton.rest();
+    truth[9] = 0.6 + 0.1 * std::sin(0.1 * f);
+    frames.push_back(markers_at(skeleton, truth));
+    if (f == 0) {
+      truth[8] = std::numbers::pi;
+      truth[9] = -0.26;
+      truth[10] = 3.1;
+      solver.start_from(truth);
+    }
+    rows.push_back(solver.step(0.01, frames.back()).coordinates);
+  }
+  ASSERT_LT(rows.back()[9], 0) << "no trap: the test shows nothing";
+  const std::vector<bool> settled = settle_folds(skeleton, rows, frames, 100, {.at_limit_s = 1e9});
+  EXPECT_EQ(std::count(settled.begin(), settled.end(), true), std::ssize(frames));
+  for (int f = 0; f < 100; ++f) EXPECT_NEAR(rows[static_cast<std::size_t>(f)][9], 0.6 + 0.1 * std::sin(0.1 * f), 0.01) << f;
 }
 
 TEST(PoseSolver, RefusesASkeletonThatCannotBeSolved) {

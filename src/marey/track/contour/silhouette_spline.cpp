@@ -130,14 +130,14 @@ bool is_above(const Vector<2>& a, const Vector<2>& b) {
 /// progressive iterative approximation (Lin, Bao & Wang, "Totally positive bases and progressive iteration approximation", 2005),
 /// ended early.
 std::optional<geometry::ClosedSpline> drawn_to(std::span<const Vector<2>> edge, int order, int count) {
-  constexpr int kSteps = 12;
+  constexpr int kDrawingSteps = 12;
   std::vector<Vector<2>> corners(edge.begin(), edge.end());
   if (geometry::polygon_area(corners) < 0) std::reverse(corners.begin(), corners.end());
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_above), corners.end());
   const std::vector<Vector<2>> goals = evenly_along(corners, count);
   geometry::ClosedSpline spline(order, goals);
   if (is_knotted(spline) || !is_simple(spline) || !(spline.area() > kLeastArea)) return std::nullopt;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kDrawingSteps; ++step) {
     std::vector<Vector<2>> points = std::as_const(spline).control_points();
     for (int i = 0; i < count; ++i) points[i] += goals[i] - spline.at(i);
     geometry::ClosedSpline nearer(order, std::move(points));
