@@ -6,8 +6,10 @@
 
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
+#include "marey/detect/network/network_cost.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/track_in_picture.h"
+#include "marey/source/open_source.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -121,6 +123,20 @@ void check_steady(const TrackCommand& command) {
     throw WrongUsage("{}", "--steady steadies pictures, and --detections brings none; leave it out");
 }
 
+/// What the network costs on this computer, before a run over a video or a folder of pictures.
+void print_network_cost(const detect::DetectorOptions& detector, const std::string& source) {
+  const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&detector);
+  if (network == nullptr || !(std::filesystem::is_regular_file(source) || std::filesystem::is_directory(source))) return;
+  const cv::Size size = source::open_source(source)->info().size;
+  if (size.empty()) return;
+  const detect::network::NetworkCost cost = detect::network::network_cost(*network, size);
+  fmt::print(stderr,
+             "network: {:.0f} ms per tile with {} thread{}; searching a whole frame of {}x{} px takes about {} tiles ({:.1f} s), "
+             "every {:g} to {:g} s of the video; in between, a tile around each group of people\n",
+             1000 * cost.tile_s, cost.threads, cost.threads == 1 ? "" : "s", size.width, size.height, cost.tiles, cost.look_s(),
+             network->everywhere_s, 4 * network->everywhere_s);
+}
+
 void run(const TrackCommand& command) {
   check_live(command);
   check_steady(command);
@@ -144,6 +160,7 @@ void run(const TrackCommand& command) {
     options.masks = command.masks;
     if (!command.masks.empty() && command.people.without_background)
       throw WrongUsage("{}", "--masks shows what the background model sees; leave out --without-background");
+    if (!command.quiet && !command.json) print_network_cost(options.detector, command.input.source);
     run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
   }
 }

@@ -13,7 +13,12 @@ constexpr double kFlattest = 1.4, kTallest = 4.5;  // height over width of who s
 constexpr double kSure = 0.55;                     // score from which on a find teaches the size of people
 constexpr double kSeenByBoth = 0.4;                // intersection over union
 constexpr double kInRegion = 0.6;                  // of a find's area that lies in a region: it is one of those who share it
-constexpr double kKnownAlready = 0.7;              // of a find's area that lies in a moving person's box: the same person
+constexpr double kKnownAlready = 0.7;              // of a find's area that lies in moving people's boxes: it is they
+constexpr double kApart = 0.3;                     // intersection over union of two people who stand beside each other, at most
+constexpr double kMadeUp = 0.6;                    // of a moving region's area that people found in it cover: it is they
+constexpr double kThere = 0.3;                     // intersection over union of somebody expected and who is found there
+constexpr double kRoom = 0.25;                     // heights about somebody expected in which what changes is theirs
+constexpr double kSeldom = 4;                      // times as long from one search of the whole picture to the next, at most
 
 std::unique_ptr<people::PeopleDetector> moving_people(const NetworkDetectorOptions& options) {
   if (!options.background) return nullptr;
@@ -33,24 +38,29 @@ Detection detection_of_find(const Candidate& one, cv::Size picture) {
   return detection;
 }
 
-bool touches(const cv::Rect& tile, const Box& box) {
-  const Box part{static_cast<double>(tile.x), static_cast<double>(tile.y), static_cast<double>(tile.width),
-                 static_cast<double>(tile.height)};
-  return geometry::intersection(part, box).area() > 0;
-}
-
 double share_in(const Box& inner, const Box& outer) {
   return inner.empty() ? 0 : geometry::intersection(inner, outer).area() / inner.area();
+}
+
+/// Whether several people who stand beside each other are what a region is.
+bool makes_up(const Box& region, std::span<const std::size_t> inside, std::span<const Detection> seen) {
+  double covered = 0;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    covered += geometry::intersection(seen[inside[i]].box, region).area();
+    for (std::size_t j = 0; j < i; ++j) {
+      if (geometry::iou(seen[inside[i]].box, seen[inside[j]].box) > kApart) return false;
+    }
+  }
+  return covered > kMadeUp * region.area();
 }
 
 }  // namespace
 
 NetworkDetector::NetworkDetector(const NetworkDetectorOptions& options)
-    : options_(options), network_(read_network_model(options.model)), moving_(moving_people(options)) {
-  if (options_.every > 1 && !options_.background)
-    throw Error("a network that looks at every {}th frame needs the background model beside it, which sees people in between",
-                options_.every);
-}
+    : options_(options),
+      network_(read_network_model(options.model)),
+      moving_(moving_people(options)),
+      until_everywhere_(options.everywhere_s) {}
 
 void NetworkDetector::prime(std::span<const Frame> samples) {
   if (moving_ != nullptr) moving_->prime(samples);
@@ -80,17 +90,26 @@ std::vector<cv::Rect> NetworkDetector::tiles_of(cv::Size picture) const {
     const auto size = size_at(x, y);
     return size ? std::optional<double>(size->height) : std::nullopt;
   };
-  return tiles_over(picture, height_at, options_.first_height);
+  std::vector<cv::Rect> tiles = tiles_over(picture, height_at, options_.first_height);
+  // Somebody close to the camera may be larger than all before.
+  for (const cv::Rect& tile : tiles_over(picture, {}, picture.height)) {
+    if (std::find(tiles.begin(), tiles.end(), tile) == tiles.end()) tiles.push_back(tile);
+  }
+  return tiles;
 }
 
 std::vector<Detection> NetworkDetector::look_at(const Frame& frame, std::span<const cv::Rect> tiles) {
   const cv::Mat bgr = frame.picture.bgr();
+  std::vector<cv::Mat> parts;
+  for (const cv::Rect& tile : tiles) parts.push_back(bgr(tile));
+  const std::vector<std::vector<Candidate>> found = network_.find_all(parts);
+  tiles_ += std::ssize(tiles);
   std::vector<TileFinds> finds;
-  for (const cv::Rect& tile : tiles) {
-    TileFinds& one = finds.emplace_back(TileFinds{tile, network_.find(bgr(tile))});
-    for (Candidate& found : one.found) {
-      found.left += tile.x, found.right += tile.x;
-      found.top += tile.y, found.bottom += tile.y;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    TileFinds& one = finds.emplace_back(TileFinds{tiles[i], found[i]});
+    for (Candidate& candidate : one.found) {
+      candidate.left += tiles[i].x, candidate.right += tiles[i].x;
+      candidate.top += tiles[i].y, candidate.bottom += tiles[i].y;
     }
   }
   std::vector<Detection> people;
@@ -127,6 +146,91 @@ std::vector<Detection> NetworkDetector::look(const Frame& frame) {
   return people;
 }
 
+void NetworkDetector::forget_changed(const PictureCells& cells) {
+  std::erase_if(standing_, [&](const Standing& one) { return !is_unchanged(one.cells, cells, one.found.box); });
+}
+
+std::vector<Detection> NetworkDetector::standing() const {
+  std::vector<Detection> people;
+  for (const Standing& one : standing_) people.push_back(one.found);
+  return people;
+}
+
+/// Whether somebody who stands as before is there.
+bool NetworkDetector::stands(const Box& box) const {
+  return std::any_of(standing_.begin(), standing_.end(),
+                     [&](const Standing& one) { return geometry::iou(one.found.box, box) > kThere; });
+}
+
+/// Where the network may tell something new, one box for each person it may be, px.
+std::vector<Box> NetworkDetector::asked(const PictureCells& cells, std::span<const Expected> expected,
+                                        std::span<const Detection> moving, cv::Size picture) const {
+  const Box whole{0, 0, static_cast<double>(picture.width), static_cast<double>(picture.height)};
+  std::vector<Box> boxes;
+  const auto ask = [&](const Box& box) { boxes.push_back(geometry::intersection(box, whole)); };
+  const auto is_expected = [&](const Box& box) {
+    return std::any_of(expected.begin(), expected.end(), [&](const Expected& one) { return geometry::iou(one.box, box) > kThere; });
+  };
+  const auto moves = [&](const Box& box) {
+    return std::any_of(moving.begin(), moving.end(), [&](const Detection& one) {
+      return geometry::iou(one.box, box) > kThere || share_in(box, one.box) > kKnownAlready;
+    });
+  };
+  for (const Detection& one : moving) {
+    if (one.group || !is_expected(one.box)) ask(one.box);
+  }
+  for (const Expected& one : expected) {
+    if (!stands(one.box) && !moves(one.box)) ask(one.box);
+  }
+  if (moving_ != nullptr) return boxes;
+  std::vector<Box> explained;
+  for (const Expected& one : expected) {
+    const double by = kRoom * one.box.height;
+    explained.push_back({one.box.left - by, one.box.top - by, one.box.width + 2 * by, one.box.height + 2 * by});
+  }
+  for (const Box& part : changed_parts(before_, cells, explained)) {
+    const auto size = size_at(part.centre().x(), part.bottom());
+    const double height = std::max(part.height, size ? size->height : options_.first_height);
+    ask(geometry::hull(part, Box::from_centre(part.centre(), 0.4 * height, height)));
+  }
+  return boxes;
+}
+
+/// Whom the network sees, or saw where nothing has changed since.
+std::vector<Detection> NetworkDetector::search(const Frame& frame, const PictureCells& cells, std::span<const Expected> expected,
+                                               std::span<const Detection> moving) {
+  const cv::Size picture = frame.picture.size();
+  const bool everywhere = !looked_everywhere_ || seconds(frame.time - *looked_everywhere_) >= until_everywhere_;
+  const std::vector<cv::Rect> tiles =
+      everywhere ? tiles_of(picture) : tiles_round(picture, asked(cells, expected, moving, picture));
+  std::vector<Detection> people = tiles.empty() ? std::vector<Detection>() : look_at(frame, tiles);
+  learn(people, picture);
+  const auto is_new = [&](const Detection& found) {
+    const auto there = [&](const auto& one) { return geometry::iou(one.box, found.box) > kThere; };
+    return !stands(found.box) && std::none_of(expected.begin(), expected.end(), there) &&
+           std::none_of(moving.begin(), moving.end(), there);
+  };
+  if (everywhere) {
+    const bool news = !looked_everywhere_ || std::any_of(people.begin(), people.end(), is_new);
+    until_everywhere_ = news ? options_.everywhere_s : std::min(2 * until_everywhere_, kSeldom * options_.everywhere_s);
+    looked_everywhere_ = frame.time;
+    standing_.clear();
+  }
+  // Who stands where this search did not reach is there as before.
+  std::erase_if(standing_, [&](const Standing& one) {
+    const auto holds = [&](const cv::Rect& tile) {
+      return share_in(one.found.box, {static_cast<double>(tile.x), static_cast<double>(tile.y), static_cast<double>(tile.width),
+                                      static_cast<double>(tile.height)}) > 0.98;
+    };
+    return std::any_of(tiles.begin(), tiles.end(), holds) || std::any_of(people.begin(), people.end(), [&](const Detection& found) {
+             return geometry::iou(found.box, one.found.box) > kThere || share_in(found.box, one.found.box) > kKnownAlready;
+           });
+  });
+  for (const Detection& one : people) standing_.push_back({one, cells});
+  before_ = cells;
+  return standing();
+}
+
 /// Those whom the background model sees, put right by those whom the network sees.
 std::vector<Detection> NetworkDetector::joined(const std::vector<Detection>& moving, const std::vector<Detection>& seen) const {
   std::vector<Detection> result;
@@ -142,6 +246,10 @@ std::vector<Detection> NetworkDetector::joined(const std::vector<Detection>& mov
       for (const std::size_t i : inside) result.push_back(seen[i]), used[i] = 1;
       continue;
     }
+    if (inside.size() > 1 && makes_up(one.box, inside, seen)) {  // people who move as one region
+      for (const std::size_t i : inside) result.push_back(seen[i]), used[i] = 1;
+      continue;
+    }
     for (const std::size_t i : same) used[i] = 1;
     result.push_back(one);
     if (!same.empty()) result.back().score = std::max(one.score, seen[same.front()].score);
@@ -149,32 +257,21 @@ std::vector<Detection> NetworkDetector::joined(const std::vector<Detection>& mov
   const std::size_t movers = result.size();
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (used[i]) continue;
-    const bool known = std::any_of(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(movers),
-                                   [&](const Detection& one) { return share_in(seen[i].box, one.box) > kKnownAlready; });
-    if (!known) result.push_back(seen[i]);
+    double covered = 0;  // of it, by all who move together
+    for (std::size_t m = 0; m < movers; ++m) covered += share_in(seen[i].box, result[m].box);
+    if (covered <= kKnownAlready) result.push_back(seen[i]);
   }
   return result;
 }
 
 Detections NetworkDetector::detect(const Frame& frame, std::span<const Expected> expected) {
-  const bool looks = frames_++ % options_.every == 0;
-  if (moving_ == nullptr) return {.detections = look(frame), .foreground = {}};
-  Detections result = moving_->detect(frame, expected);
-  if (!looks) return result;
-  std::vector<cv::Rect> tiles = tiles_of(frame.picture.size());
-  const bool everywhere = !looked_everywhere_ || seconds(frame.time - *looked_everywhere_) >= options_.everywhere_s;
-  if (everywhere) {
-    looked_everywhere_ = frame.time;
-  } else {
-    std::erase_if(tiles, [&](const cv::Rect& tile) {
-      return std::none_of(expected.begin(), expected.end(), [&](const Expected& one) { return touches(tile, one.box); }) &&
-             std::none_of(result.detections.begin(), result.detections.end(),
-                          [&](const Detection& one) { return touches(tile, one.box); });
-    });
-  }
-  const std::vector<Detection> seen = look_at(frame, tiles);
-  learn(seen, frame.picture.size());
-  result.detections = joined(result.detections, seen);
+  const bool searches = frames_++ % options_.every == 0;
+  Detections result;
+  if (moving_ != nullptr) result = moving_->detect(frame, expected);
+  const PictureCells cells = cells_of(frame.picture);
+  forget_changed(cells);
+  const std::vector<Detection> seen = searches ? search(frame, cells, expected, result.detections) : standing();
+  result.detections = moving_ != nullptr ? joined(result.detections, seen) : seen;
   return result;
 }
 

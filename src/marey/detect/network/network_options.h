@@ -13,8 +13,8 @@ struct NetworkDetectorOptions {
 
   std::string model = {};   ///< a file that describes a network (model_file.h)
   bool background = true;   ///< a background model beside it, which sees whoever moves between the frames that the network looks at
-  int every = 1;            ///< the network looks at every n-th frame; 1 where there is no background model
-  double everywhere_s = 2;  ///< beside a background model, the network looks all over the picture this often, else where people are
+  int every = 1;            ///< the network looks at every n-th frame
+  double everywhere_s = 2;  ///< the network looks all over the picture this often, or up to four times as seldom
   double first_height = 84;                   ///< px: as high people are taken to be until some were found
   people::PeopleDetectorOptions people = {};  ///< the background model and, where they are known, the sizes of people
 };

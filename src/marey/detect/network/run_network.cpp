@@ -1,7 +1,9 @@
 // OpenCV's dnn behind one source: its header and what is instantiated of it stay here.
 #include "marey/detect/network/run_network.h"
 
+#include <algorithm>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 
 #include <opencv2/core/utils/logger.hpp>
@@ -19,7 +21,8 @@ struct LoadedNetwork::Engine {
 
 namespace {
 
-constexpr double kGrey = 114;  // what is round a picture in its letterbox
+constexpr int kMostThreads = 16;  // each holds the network once
+constexpr double kGrey = 114;     // what is round a picture in its letterbox
 
 /// OpenCV writes to standard error what it also throws: not while this lives.
 class QuietOpenCv {
@@ -118,14 +121,20 @@ Tensor tensor_of(const cv::Mat& values, const std::string& name) {
 
 }  // namespace
 
-LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model), engine_(std::make_unique<Engine>()) {
+std::unique_ptr<LoadedNetwork::Engine> LoadedNetwork::load() const {
+  auto engine = std::make_unique<Engine>();
+  engine->net = cv::dnn::readNetFromONNX(model_.network);
+  engine->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+  engine->outputs = engine->net.getUnconnectedOutLayersNames();
+  return engine;
+}
+
+LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model) {
   if (!std::filesystem::is_regular_file(model_.network))
     throw Error("{}: its network {} is not there", model_.path, model_.network);
   const QuietOpenCv quiet;
   try {
-    engine_->net = cv::dnn::readNetFromONNX(model_.network);
-    engine_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    engine_->outputs = engine_->net.getUnconnectedOutLayersNames();
+    engines_.push_back(load());
   } catch (const cv::Exception& error) {
     throw Error("{}: cannot be loaded as an ONNX network ({}); export it with opset 11 or 12 and a fixed input", model_.network,
                 reason_of(error));
@@ -134,7 +143,7 @@ LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model), engine_
   if (!trial.layout) trial.layout = Layout::yolov8;
   fill_usual(trial);
   std::swap(model_, trial);
-  const std::vector<Tensor> outputs = run(cv::Mat(model_.input, CV_8UC3, cv::Scalar::all(kGrey)));
+  const std::vector<Tensor> outputs = run(*engines_.front(), cv::Mat(model_.input, CV_8UC3, cv::Scalar::all(kGrey)));
   std::swap(model_, trial);
   if (!model_.layout) model_.layout = layout_of(outputs, model_.input);
   if (!model_.layout)
@@ -151,15 +160,15 @@ LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model), engine_
 LoadedNetwork::~LoadedNetwork() = default;
 LoadedNetwork::LoadedNetwork(LoadedNetwork&&) noexcept = default;
 
-std::vector<Tensor> LoadedNetwork::run(const cv::Mat& bgr) {
+/// While a QuietOpenCv lives.
+std::vector<Tensor> LoadedNetwork::run(Engine& engine, const cv::Mat& bgr) const {
   const cv::Mat blob = planes_of(placed(bgr, fitted(bgr.size(), model_), model_), model_);
   std::vector<Tensor> tensors;
-  const QuietOpenCv quiet;
   try {
-    engine_->net.setInput(blob);
+    engine.net.setInput(blob);
     std::vector<cv::Mat> outputs;
-    engine_->net.forward(outputs, engine_->outputs);
-    for (std::size_t i = 0; i < outputs.size(); ++i) tensors.push_back(tensor_of(outputs[i], engine_->outputs[i]));
+    engine.net.forward(outputs, engine.outputs);
+    for (std::size_t i = 0; i < outputs.size(); ++i) tensors.push_back(tensor_of(outputs[i], engine.outputs[i]));
   } catch (const cv::Exception& error) {
     throw Error("{}: does not run on pictures of {}x{} px ({}); is input in {} what the network wants?", model_.network,
                 model_.input.width, model_.input.height, reason_of(error), model_.path);
@@ -167,12 +176,46 @@ std::vector<Tensor> LoadedNetwork::run(const cv::Mat& bgr) {
   return tensors;
 }
 
-std::vector<Candidate> LoadedNetwork::find(const cv::Mat& bgr) {
-  std::vector<Candidate> found = candidates_of(run(bgr), *model_.layout, model_.input, model_.person, model_.score);
+std::vector<Candidate> LoadedNetwork::find(Engine& engine, const cv::Mat& bgr) const {
+  std::vector<Candidate> found = candidates_of(run(engine, bgr), *model_.layout, model_.input, model_.person, model_.score);
   const Fitted fit = fitted(bgr.size(), model_);
   for (Candidate& one : found) {
     one.left = (one.left - fit.left) / fit.scale_x, one.right = (one.right - fit.left) / fit.scale_x;
     one.top = (one.top - fit.top) / fit.scale_y, one.bottom = (one.bottom - fit.top) / fit.scale_y;
+  }
+  return found;
+}
+
+std::vector<Candidate> LoadedNetwork::find(const cv::Mat& bgr) {
+  return find_all({&bgr, 1}).front();
+}
+
+std::vector<std::vector<Candidate>> LoadedNetwork::find_all(std::span<const cv::Mat> pictures) {
+  const QuietOpenCv quiet;
+  std::vector<std::vector<Candidate>> found(pictures.size());
+  const auto threads =
+      std::min<std::size_t>(pictures.size(), static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMostThreads)));
+  while (engines_.size() < threads) engines_.push_back(load());
+  std::vector<std::exception_ptr> failed(threads);
+  const auto search = [&](std::size_t thread) {
+    try {
+      for (std::size_t i = thread; i < pictures.size(); i += threads) found[i] = find(*engines_[thread], pictures[i]);
+    } catch (...) {
+      failed[thread] = std::current_exception();
+    }
+  };
+  if (threads == 1) {
+    search(0);
+  } else if (threads > 1) {  // within it OpenCV computes each network on one thread
+    cv::parallel_for_(
+        cv::Range(0, static_cast<int>(threads)),
+        [&](const cv::Range& range) {
+          for (int i = range.start; i < range.end; ++i) search(static_cast<std::size_t>(i));
+        },
+        static_cast<double>(threads));
+  }
+  for (const std::exception_ptr& error : failed) {
+    if (error) std::rethrow_exception(error);
   }
   return found;
 }

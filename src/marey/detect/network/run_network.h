@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -9,7 +10,8 @@
 
 namespace marey::detect::network {
 
-/// A network that is loaded, its layout known. Runs on one thread: the same picture gives the same bits.
+/// A network that is loaded, its layout known. Several pictures are searched on as many threads as OpenCV has (--threads), each on
+/// one: the same picture gives the same bits.
 class LoadedNetwork {
  public:
   /// Throws Error, with the model's file, where the network cannot be loaded or run, or its outputs are of no known layout.
@@ -22,13 +24,17 @@ class LoadedNetwork {
 
   /// People in a picture, CV_8UC3, blue first, of any size: boxes in px of that picture, edges counted from its edge.
   std::vector<Candidate> find(const cv::Mat& bgr);
+  /// The same of each picture, in their order.
+  std::vector<std::vector<Candidate>> find_all(std::span<const cv::Mat> pictures);
 
  private:
   struct Engine;
-  std::vector<Tensor> run(const cv::Mat& bgr);
+  std::unique_ptr<Engine> load() const;
+  std::vector<Tensor> run(Engine& engine, const cv::Mat& bgr) const;
+  std::vector<Candidate> find(Engine& engine, const cv::Mat& bgr) const;
 
   NetworkModel model_;
-  std::unique_ptr<Engine> engine_;
+  std::vector<std::unique_ptr<Engine>> engines_;  // one a thread, loaded when it is needed
 };
 
 }  // namespace marey::detect::network

@@ -9,9 +9,12 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kProbes = 9;            // places along each side of a picture or tile where sizes are asked for
-constexpr double kSmallestTile = 64;  // px
-constexpr double kLowestPerson = 8;   // px: lower people are not searched for
+constexpr int kProbes = 9;                       // places along each side of a picture or tile where sizes are asked for
+constexpr double kSmallestTile = 64;             // px
+constexpr double kLowestPerson = 8;              // px: lower people are not searched for
+constexpr double kSmaller = 1.6;                 // people so much smaller than one are too small in a tile round that one
+constexpr double kWidest = 2, kNarrowest = 3.6;  // height over width of a person, beyond which a box is less likely one
+constexpr double kShapeSpread = 0.25;            // of its logarithm
 
 Box box_of(const Candidate& one) {
   return {one.left, one.top, one.right - one.left, one.bottom - one.top};
@@ -67,6 +70,22 @@ void add_tiles(cv::Size picture, const HeightAt& height_at, double height, const
   }
 }
 
+/// The square round a box, within the picture.
+cv::Rect square_round(const Box& box, int side, cv::Size picture) {
+  const auto begin = [side](double middle, int length) {
+    return std::clamp(static_cast<int>(std::lround(middle - side / 2.0)), 0, std::max(0, length - side));
+  };
+  return {begin(box.left + box.width / 2, picture.width), begin(box.top + box.height / 2, picture.height),
+          std::min(side, picture.width), std::min(side, picture.height)};
+}
+
+/// How well a find is one person: its score, less where two side by side, or a part, would have its shape.
+double likeness(const Candidate& one) {
+  const double tall = (one.bottom - one.top) / (one.right - one.left);
+  const double off = std::max({0.0, std::log(kWidest / tall), std::log(tall / kNarrowest)}) / kShapeSpread;
+  return one.score * std::exp(-0.5 * off * off);
+}
+
 bool cut_off(const Candidate& one, const cv::Rect& tile, cv::Size picture, double border) {
   const double near = border * tile.width;
   return (tile.x > 0 && one.left < tile.x + near) || (tile.y > 0 && one.top < tile.y + near) ||
@@ -80,13 +99,44 @@ std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, do
   std::vector<cv::Rect> tiles;
   const auto range = height_at ? heights_over(picture, height_at) : std::nullopt;
   if (!range) {
-    add_tiles(picture, {}, usual, options, tiles);
+    const double largest = options.share * std::min(picture.width, picture.height);
+    for (double height = std::min(usual, largest); height < largest; height *= options.levels)
+      add_tiles(picture, {}, height, options, tiles);
+    add_tiles(picture, {}, largest, options, tiles);
     return tiles;
   }
   const double ratio = range->second / range->first;
   const int levels = std::max(1, static_cast<int>(std::ceil(std::log(ratio) / std::log(options.apart))));
   for (int level = 0; level < levels; ++level)
     add_tiles(picture, height_at, range->first * std::pow(ratio, (level + 0.5) / levels), options, tiles);
+  return tiles;
+}
+
+std::vector<cv::Rect> tiles_round(cv::Size picture, std::span<const Box> people, const TileOptions& options) {
+  const int shorter = std::min(picture.width, picture.height);
+  const auto grown = [&](const Box& box) {
+    const double by = options.margin * box.height;
+    return Box{box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
+  };
+  std::vector<Box> left(people.begin(), people.end());
+  std::erase_if(left, [](const Box& box) { return box.empty(); });
+  std::stable_sort(left.begin(), left.end(), [](const Box& a, const Box& b) { return a.height > b.height; });
+  std::vector<cv::Rect> tiles;
+  while (!left.empty()) {
+    const Box first = left.front();
+    Box all = grown(first);
+    const double wanted = std::max({first.height / options.share, all.width, all.height, kSmallestTile});
+    const int side = static_cast<int>(std::lround(std::min<double>(wanted, shorter)));
+    std::vector<Box> others;
+    for (std::size_t i = 1; i < left.size(); ++i) {
+      const Box with = geometry::hull(all, grown(left[i]));
+      const bool fits = with.width <= side && with.height <= side && left[i].height * kSmaller >= first.height;
+      if (fits) all = with;
+      if (!fits) others.push_back(left[i]);
+    }
+    tiles.push_back(square_round(all, side, picture));
+    left = std::move(others);
+  }
   return tiles;
 }
 
@@ -97,7 +147,7 @@ std::vector<Candidate> join_finds(std::span<const TileFinds> tiles, cv::Size pic
       return find.right > find.left && find.bottom > find.top && !cut_off(find, one.tile, picture, options.border);
     });
   }
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return likeness(a) > likeness(b); });
   std::vector<Candidate> joined;
   for (const Candidate& one : all) {
     const Box box = box_of(one);
@@ -106,7 +156,9 @@ std::vector<Candidate> join_finds(std::span<const TileFinds> tiles, cv::Size pic
       return geometry::iou(box, other) > options.same ||
              geometry::intersection(box, other).area() > options.within * std::min(box.area(), other.area());
     });
-    if (!known) joined.push_back(one);
+    double covered = 0;
+    for (const Candidate& before : joined) covered += geometry::intersection(box, box_of(before)).area();
+    if (!known && covered < options.spanned * box.area()) joined.push_back(one);
   }
   return joined;
 }

@@ -19,13 +19,20 @@ struct TileOptions {
   double share = 0.28;    ///< a person's height over the tile's: SSD-MobileNet finds most at 0.2 to 0.35
   double apart = 1.6;     ///< sizes of people that differ by more get tiles of their own
   double overlap = 1.25;  ///< of neighbouring tiles, in heights of a person
+  double levels = 3.2;    ///< of tiles of several sizes, each so much larger than the one before: where sizes are not known
+  double margin = 0.12;   ///< that a person keeps from the edges of a tile round them, in heights
 };
 
 /// How high a person with feet at (x, y) is, px; nothing where nobody can stand.
 using HeightAt = std::function<std::optional<double>(double, double)>;
 
-/// The tiles of a picture; without `height_at`, people are taken to be seen as `usual` px high everywhere.
+/// The tiles of a picture; without `height_at`, tiles of several sizes: for people of `usual` px, and larger ones up to the
+/// picture's height.
 std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, double usual, const TileOptions& options = {});
+
+/// Few tiles in which everybody of `people` (px of the picture) lies whole, or as far as the picture allows; people of like size
+/// who stand together share one.
+std::vector<cv::Rect> tiles_round(cv::Size picture, std::span<const Box> people, const TileOptions& options = {});
 
 /// What one tile gave; candidates in px of the whole picture.
 struct TileFinds {
@@ -37,10 +44,11 @@ struct JoinOptions {
   double same = 0.5;      ///< intersection over union from which on two finds are one person
   double within = 0.75;   ///< of the smaller one's area, that lies in the other: likewise
   double border = 0.015;  ///< of the tile's side: who comes so near an inner edge is cut off by it
+  double spanned = 0.75;  ///< of its area that others' boxes cover together: it spans them
 };
 
-/// One find a person, the surest of all tiles; who is cut off by an inner edge is left to the tile that holds it whole. The surest
-/// first.
+/// One find a person, of all tiles the surest that is shaped like one; a box that spans several people is none of them; who is cut
+/// off by an inner edge is left to the tile that holds it whole. The surest first.
 std::vector<Candidate> join_finds(std::span<const TileFinds> tiles, cv::Size picture, const JoinOptions& options = {});
 
 }  // namespace marey::detect::network

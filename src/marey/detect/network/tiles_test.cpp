@@ -38,6 +38,57 @@ TEST(Tiles, ASmallPictureIsOneTile) {
   EXPECT_EQ(tiles[0], cv::Rect(0, 0, 200, 200));
 }
 
+TEST(Tiles, SearchEverySizeWhereNoneIsKnown) {
+  const cv::Size picture(768, 432);
+  const std::vector<cv::Rect> tiles = tiles_over(picture, {}, 84);
+  for (const double height : {60.0, 84.0, 200.0, 410.0}) {
+    const cv::Rect2d person(350, 428 - height, height / 3, height);
+    bool good = false;
+    for (const cv::Rect& tile : tiles)
+      good |= (person & cv::Rect2d(tile)).area() > 0.999 * person.area() && height / tile.height > 0.18;
+    EXPECT_TRUE(good) << height << " px high";
+  }
+}
+
+TEST(Tiles, RoundPeopleAreFewAndHoldEachWhole) {
+  const cv::Size picture(768, 576);
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<Box> people;
+    for (int i = 0; i < 6; ++i) {
+      const double height = std::uniform_real_distribution<double>(40, 140)(random);
+      people.push_back({std::uniform_real_distribution<double>(0, 768 - height / 3)(random),
+                        std::uniform_real_distribution<double>(0, 576 - height)(random), height / 3, height});
+    }
+    const std::vector<cv::Rect> tiles = tiles_round(picture, people);
+    EXPECT_LE(tiles.size(), people.size());
+    for (const Box& one : people) {
+      bool good = false;
+      for (const cv::Rect& tile : tiles) {
+        const cv::Rect2d person(one.left, one.top, one.width, one.height);
+        good |= (person & cv::Rect2d(tile)).area() > 0.999 * person.area() && one.height > 0.17 * tile.height;
+      }
+      EXPECT_TRUE(good) << "seed 7, trial " << trial;
+    }
+    for (const cv::Rect& tile : tiles) EXPECT_EQ(tile & cv::Rect(cv::Point(), picture), tile);
+  }
+  const std::vector<Box> together = {{100, 100, 30, 80}, {140, 105, 30, 78}, {170, 98, 28, 82}};
+  EXPECT_EQ(tiles_round(picture, together).size(), 1u);
+  EXPECT_TRUE(tiles_round(picture, {}).empty());
+}
+
+TEST(JoinFinds, ABoxThatSpansTwoPeopleIsNeitherOfThem) {
+  const cv::Size picture(500, 300);
+  // Two people side by side, 50 px in all, and a box round both that the network is surest of; another over halves of both.
+  const std::vector<TileFinds> tiles = {
+      {{0, 0, 300, 300},
+       {{100, 100, 152, 190, 0.7}, {100, 102, 127, 188, 0.65}, {125, 100, 152, 190, 0.62}, {112, 100, 140, 190, 0.5}}}};
+  const std::vector<Candidate> joined = join_finds(tiles, picture);
+  ASSERT_EQ(joined.size(), 2U);
+  EXPECT_EQ(joined[0].score, 0.65);
+  EXPECT_EQ(joined[1].score, 0.62);
+}
+
 TEST(JoinFinds, TwoTilesSeeOnePersonOnceAndWhoIsCutOffNotAtAll) {
   const cv::Size picture(500, 300);
   const std::vector<TileFinds> tiles = {{{0, 0, 300, 300}, {{210, 100, 250, 200, 0.9}, {270, 50, 299, 150, 0.8}}},
