@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <opencv2/core.hpp>
 #include <tbb/concurrent_queue.h>
 
 #include "marey/core/error.h"
@@ -179,12 +180,17 @@ void Sinks::finish() {
   for (const auto& lane : lanes_) {
     if (!lane->failed()) whole.push_back(lane->name());
   }
+  const auto add_what_is_whole = [&](const auto& lane) {
+    if (!lane->ended_run() || whole.empty()) throw;
+    throw Error("{}; the run ended there, and what was known until then is in {}", lane->trouble(), fmt::join(whole, ", "));
+  };
   for (const auto& lane : lanes_) {
     try {
       lane->rethrow();
     } catch (const Error&) {  // what a program's own sink throws reaches it as it is
-      if (!lane->ended_run() || whole.empty()) throw;
-      throw Error("{}; the run ended there, and what was known until then is in {}", lane->trouble(), fmt::join(whole, ", "));
+      add_what_is_whole(lane);
+    } catch (const cv::Exception&) {  // memory that OpenCV did not get
+      add_what_is_whole(lane);
     }
   }
 }
