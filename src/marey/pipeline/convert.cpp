@@ -6,13 +6,13 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/ground_orientation.h"
 
 namespace marey::pipeline {
 namespace {
@@ -22,15 +22,10 @@ using format::Format;
 using format::UpAxis;
 using format::match::GroundMatch;
 
-format::match::GroundFrame user_frame(const ConvertOptions& options) {
-  format::match::GroundFrame frame = options.frame;
-  if (options.rig.empty()) return frame;
-  const Rig rig = format::rig::read_rig(options.rig);
-  if (!rig.ground_from_world)
-    throw Error("{}: says nothing of the ground; `marey calibrate pitch` makes a rig that does", options.rig);
-  // A reflection: seen from above, y grows to the right of x, downwards.
-  frame.y_down = rig.ground_from_world->topLeftCorner<2, 2>().determinant() < 0;
-  return frame;
+/// Whether y grows downwards in the user's frame; nothing where the user does not say.
+std::optional<bool> stated_y_down(const ConvertOptions& options) {
+  if (!options.rig.empty()) return rig_has_y_down(options.rig);
+  return options.frame.y_down ? std::optional(true) : std::nullopt;
 }
 
 /// The axes that are up in the two files.
@@ -72,9 +67,14 @@ ConvertSummary convert_match(GroundMatch match, const std::string& to, const For
   if (!options.away.empty()) match.away = options.away;
   if (!options.periods.empty()) match.periods = options.periods;
   if (options.labelled) match.recording.erase_tracks_if([](const TrackColumns& track) { return track.name.label.empty(); });
+  const std::optional<bool> y_down = stated_y_down(options);
   if (from.from_corner != format.from_corner) {
     const auto turned = format.from_corner ? format::match::to_corner : format::match::from_corner;
-    match.recording = turned(std::move(match.recording), match.pitch, user_frame(options));
+    const format::match::GroundFrame frame{.y_down = y_down.value_or(format.from_corner && y_grows_down(match.recording.header)),
+                                           .centred = options.frame.centred};
+    match.recording = turned(std::move(match.recording), match.pitch, frame);
+  } else if (y_down && match.recording.header.frame.kind == FrameOfReference::Kind::user_ground) {
+    set_y_down(match.recording.header, *y_down);
   }
   ConvertSummary summary{.format = std::string(format.name), .counted = {}, .warnings = match.warnings};
   const std::vector<std::string> lost = format::write_whole(to, format, match);

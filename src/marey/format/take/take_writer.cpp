@@ -15,6 +15,7 @@
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
+#include "marey/core/other_ground.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_joiner.h"
@@ -65,11 +66,18 @@ class TakeWriter::Recorder {
     set("frame", name_of(header.frame.kind));
     if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
     set("smoothed", std::int64_t{header.smoothed});
-    if (header.rig) set("rig", rig::rig_text(*header.rig));
+    set_rig(header);
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
     set_bodies(header.bodies);
     flush();
+  }
+
+  /// A rig file has a camera at least.
+  void set_rig(const RecordingHeader& header) {
+    if (!header.rig) return;
+    if (!header.rig->cameras.empty()) return set("rig", rig::rig_text(*header.rig));
+    if (header.frame.kind == FrameOfReference::Kind::user_ground) set("y_down", std::int64_t{y_grows_down(header)});
   }
 
   void set_name(const TrackName& name) {
