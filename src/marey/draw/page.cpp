@@ -53,6 +53,16 @@ std::string chip(const std::string& text, const std::string& colour) {
   return fmt::format("<span class=\"chip\"><i style=\"--c:{}\"></i>{}</span>", xml_escaped(colour), xml_escaped(text));
 }
 
+/// A range, "4-5.5", is not broken in two.
+std::string unbroken(const std::string& head) {
+  std::string result;
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    const bool range = head[i] == '-' && i + 1 < head.size() && head[i + 1] >= '0' && head[i + 1] <= '9';
+    result.append(range ? "\u2011" : std::string(1, head[i]));
+  }
+  return result;
+}
+
 class TableHtml {
  public:
   explicit TableHtml(const PageTable& table) : table_(table) {
@@ -96,14 +106,14 @@ class TableHtml {
       const PageColumn& column = columns_[c];
       fmt::format_to(std::back_inserter(text_), "<th class=\"{}{}\" data-label=\"{}\"><button>{}</button></th>",
                      column.numbers ? "n" : "t", begins(c) ? " from" : "", label_of(column),
-                     xml_escaped(table_.head[column.index]));
+                     xml_escaped(unbroken(table_.head[column.index])));
     }
     text_ += "</tr>";
   }
 
   /// What a column is called where its group is not above it.
   std::string label_of(const PageColumn& column) const {
-    const std::string& head = table_.head[column.index];
+    const std::string head = unbroken(table_.head[column.index]);
     return xml_escaped(column.group.empty() ? head : column.group + ": " + head);
   }
 

@@ -4,16 +4,16 @@
 namespace marey::draw {
 
 inline constexpr const char* kPageStyle = R"(
-:root { color-scheme: light dark; --ground: #fff; --text: #1a2129; --faint: #5d6770; --line: #dfe3e6; --bar: #d3e9da; --head: #f3f5f6; --mark: #d9480f }
+:root { color-scheme: light dark; --ground: #fff; --text: #1a2129; --faint: #5d6770; --line: #dfe3e6; --bar: #58a873; --head: #f3f5f6; --mark: #d9480f }
 @media (prefers-color-scheme: dark) {
-  :root { --ground: #14181c; --text: #e6e9eb; --faint: #9aa3aa; --line: #30373d; --bar: #264a34; --head: #1d2328; --mark: #ff922b }
+  :root { --ground: #14181c; --text: #e6e9eb; --faint: #9aa3aa; --line: #30373d; --bar: #3f8f5c; --head: #1d2328; --mark: #ff922b }
 }
 * { box-sizing: border-box }
 body { font: 15px/1.45 system-ui, sans-serif; margin: 0 auto; max-width: 84em; padding: 1.6em 1.2em 4em; color: var(--text); background: var(--ground); overflow-wrap: break-word }
 h1 { font-size: 1.7em; line-height: 1.2; margin: 0 0 .2em } h2 { margin: 2em 0 .6em; font-size: 1.25em } h3 { margin: 1em 0 .4em; font-size: 1em } p, ul { max-width: 50em } h1 + p { margin-top: 0; color: var(--faint) }
 .scroll { overflow-x: auto } table { border-collapse: collapse; min-width: min(100%, 34em); font-variant-numeric: tabular-nums } table.wide { width: 100% }
 th, td { padding: .34em .6em; border-bottom: 1px solid var(--line); text-align: left }
-td.n, th.n { text-align: right } td.n { white-space: nowrap; background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) }
+td.n, th.n { text-align: right } table.wide th.n { width: 5% } td.n { white-space: nowrap; background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) .4em calc(100% - 2px) / calc(100% - .8em) 3px no-repeat }
 th { background: var(--head); padding: 0; vertical-align: bottom; font-size: .87em; line-height: 1.25; font-weight: 600; hyphens: manual }
 th.group { padding: .34em .7em 0; border: 0; text-align: left; color: var(--faint); font-weight: 400; white-space: nowrap } .from { border-left: 1px solid var(--line) }
 th button { all: unset; box-sizing: border-box; cursor: pointer; padding: .34em .7em; display: block; width: 100% } th button:focus-visible { outline: 2px solid var(--mark) }
@@ -36,7 +36,7 @@ figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-
 }
 @page { margin: 12mm }
 @media print {
-  :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #dcdcdc; --head: #eee }
+  :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #777; --head: #eee }
   body { max-width: none; margin: 0; padding: 0; font-size: 11px; print-color-adjust: exact; -webkit-print-color-adjust: exact }
   .scroll { overflow: visible } table.wide { font-size: 9px } th { font-size: 1em } th, td, th.group, th button { padding: 2px 3px } th.group { white-space: normal }
   details, figure, tr { break-inside: avoid } h2, h3, summary { break-after: avoid } thead { display: table-header-group } .four { grid-template-columns: repeat(3, 1fr) } .two { grid-template-columns: repeat(2, 1fr) }
