@@ -262,6 +262,7 @@ Json info_json(const format::Format& format, const format::match::GroundMatch& m
               {"away", match.away},
               {"pitch", {match.pitch.length, match.pitch.width}},
               {"cameras", cameras_of(recording)}};
+  if (y_grows_down(recording.header)) result["y_down"] = true;
   if (recording.samples() > 0) {
     const Extent extent = extent_of(recording);
     result["first_frame"] = recording.instants().front().index;
@@ -288,6 +289,7 @@ void print_match(const std::string& path, const format::Format& format, const fo
   const char* unit = recording.header.frame.metric() ? "m" : "px";
   print_row("places", fmt::format("{0}, x {2:.2f} to {3:.2f} {1}, y {4:.2f} to {5:.2f} {1}", recording.samples(), unit,
                                   extent.low.x(), extent.high.x(), extent.low.y(), extent.high.y()));
+  if (y_grows_down(recording.header)) print_row("axes", "y grows downwards, seen from above with x to the right");
   if (!match.home.empty() || !match.away.empty()) print_row("teams", fmt::format("{} at home, {}", match.home, match.away));
   fmt::print("\n  {:>6}  {:<24}  {:<24}  {:>9}\n", "id", "label", "team", "instants");
   for (const std::size_t i : format::match::listed_tracks(match)) {
