@@ -22,10 +22,12 @@ class SeasonTable {
   explicit SeasonTable(const Season& season) {
     for (std::size_t i = 0; i < season.columns.size(); ++i) column_.emplace(season.columns[i], i);
     for (const auto& row : season.rows) {
-      if (recordings_.empty() || recordings_.back() != row.front()) recordings_.push_back(row.front());
+      if (index_.try_emplace(row.front(), recordings_.size()).second) recordings_.push_back(row.front());
     }
   }
 
+  /// By the plan's order, from 0.
+  std::size_t index_of(const std::string& recording) const { return index_.at(recording); }
   bool has(const std::string& column) const { return column_.contains(column); }
   const std::vector<std::string>& recordings() const { return recordings_; }
 
@@ -50,6 +52,7 @@ class SeasonTable {
  private:
   std::map<std::string, std::size_t> column_;
   std::vector<std::string> recordings_;  // in the plan's order
+  std::map<std::string, std::size_t> index_;
 };
 
 struct Total {
@@ -86,8 +89,8 @@ draw::PageTable table_of(const Totals& totals) {
 
 /// The lines whose values are largest in all. A chart of one recording would be points: nothing.
 void add_chart(std::string title, std::string y, const std::map<std::string, std::map<std::size_t, double>>& values,
-               const std::vector<std::string>& recordings, std::vector<draw::LineChart>& charts) {
-  if (recordings.size() < 2 || values.empty()) return;
+               std::size_t recordings, std::vector<draw::LineChart>& charts) {
+  if (recordings < 2 || values.empty()) return;
   std::vector<std::pair<double, std::string>> by_size;
   for (const auto& [name, line] : values) {
     double sum = 0;
@@ -96,7 +99,7 @@ void add_chart(std::string title, std::string y, const std::map<std::string, std
   }
   std::sort(by_size.begin(), by_size.end());
   draw::LineChart& chart = charts.emplace_back();
-  chart.title = std::move(title), chart.y_label = std::move(y), chart.x_names = recordings;
+  chart.title = std::move(title), chart.y_label = std::move(y), chart.x_label = "recording";
   for (std::size_t i = 0; i < std::min(by_size.size(), kMostLines); ++i) {
     draw::LineChart::Line& line = chart.lines.emplace_back();
     line.name = by_size[i].second;
@@ -109,11 +112,9 @@ using Values = std::map<std::string, std::map<std::size_t, double>>;
 Values by_recording(const Season& season, const SeasonTable& table,
                     const std::function<std::string(const std::vector<std::string>&)>& name,
                     const std::function<double(double before, const std::vector<std::string>&)>& together) {
-  std::map<std::string, std::size_t> place;
-  for (std::size_t i = 0; i < table.recordings().size(); ++i) place.emplace(table.recordings()[i], i);
   Values values;
   for (const auto& row : season.rows) {
-    double& value = values[name(row)][place.at(row.front())];
+    double& value = values[name(row)][table.index_of(row.front())];
     value = together(value, row);
   }
   return values;
@@ -155,9 +156,22 @@ std::string rounded_figure(const std::string& field, const std::string& column) 
   return fmt::format("{:.0f}", value);
 }
 
+/// Whether recordings are called by their numbers where there is little room: a table lists their names.
+bool by_number(const std::vector<std::string>& recordings) {
+  constexpr std::size_t kMostBytes = 16;
+  return std::any_of(recordings.begin(), recordings.end(), [](const std::string& name) { return name.size() > kMostBytes; });
+}
+
+draw::PageTable recordings_of(const SeasonTable& table) {
+  draw::PageTable all{.title = "Recordings", .head = {"no.", "recording"}, .rows = {}, .bars_end = 0};
+  for (std::size_t i = 0; i < table.recordings().size(); ++i) all.rows.push_back({std::to_string(i + 1), table.recordings()[i]});
+  return all;
+}
+
 draw::PageTable everybody_of(const Season& season, const SeasonTable& table) {
   draw::PageTable all{.title = "Everybody", .head = {}, .rows = {}, .bars_from = 4};
   const std::vector<ShownColumn> shown = shown_columns(season);
+  const bool numbered = by_number(table.recordings());
   for (const ShownColumn& column : shown) {
     all.head.push_back(column.head);
     all.groups.push_back(column.group);
@@ -168,6 +182,7 @@ draw::PageTable everybody_of(const Season& season, const SeasonTable& table) {
       const std::string field = table.text(row, shown[i].column);
       cells.push_back(i < 4 ? field : rounded_figure(field, shown[i].column));
     }
+    if (numbered) cells.front() = std::to_string(table.index_of(row.front()) + 1);
   }
   return all;
 }
@@ -182,9 +197,11 @@ void add_measured(draw::Page& page, const Season& season, const SeasonTable& tab
     return std::max(before, table.number(row, "top_mps"));
   };
   std::vector<draw::LineChart> charts;
-  add_chart("Distance from recording to recording", "km", by_recording(season, table, who, sum), table.recordings(), charts);
-  add_chart("Top speed from recording to recording", "m/s", by_recording(season, table, who, top), table.recordings(), charts);
+  add_chart("Distance from recording to recording", "km", by_recording(season, table, who, sum), table.recordings().size(), charts);
+  add_chart("Top speed from recording to recording", "m/s", by_recording(season, table, who, top), table.recordings().size(),
+            charts);
   page.add(charts);
+  page.add(recordings_of(table));
   page.add(everybody_of(season, table));
 }
 
@@ -192,8 +209,10 @@ void add_counted(draw::Page& page, const Season& season, const SeasonTable& tabl
   const auto tracks = [](const auto&) { return std::string("tracks"); };
   const auto count = [](double before, const auto&) { return before + 1; };
   std::vector<draw::LineChart> charts;
-  add_chart("Tracks from recording to recording", "number", by_recording(season, table, tracks, count), table.recordings(), charts);
+  add_chart("Tracks from recording to recording", "number", by_recording(season, table, tracks, count), table.recordings().size(),
+            charts);
   page.add(charts);
+  page.add(recordings_of(table));
   draw::PageTable all{.title = "Everybody", .head = season.columns, .rows = season.rows};
   for (std::string& head : all.head) std::replace(head.begin(), head.end(), '_', ' ');
   all.bars_from = 4;

@@ -70,7 +70,7 @@ await page.pdf({ path: join(folder, `${name}.pdf`), format: "A4", preferCSSPageS
 
 // On a phone, where a table's heads are not seen, it is sorted by a list.
 await check("phone", 390, 844, "screen");
-for (const table of await page.locator("table.wide").all()) {
+for (const table of await page.locator("table.cards").all()) {
   const select = table.locator("xpath=preceding-sibling::label/select");
   assert(await select.isVisible(), "nothing sorts the table on a phone");
   const label = await table.locator("th.n[data-label]").last().getAttribute("data-label");

@@ -11,7 +11,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr std::size_t kMostNames = 10;  // under a part of a page
+constexpr double kMostXTicks = 12;  // under a part of a page
 constexpr double kHeight = 520, kLeft = 110, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
 // Okabe & Ito's colours, which the colour-blind tell apart as well.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
@@ -102,6 +102,8 @@ class XScale {
       }
     }
   }
+  double least() const { return least_; }
+  double most() const { return most_; }
   double operator()(double x) const {
     constexpr double indent = 10;
     return plot_.left + indent + (plot_.right - plot_.left - 2 * indent) * (most_ > least_ ? (x - least_) / (most_ - least_) : 0.5);
@@ -124,15 +126,6 @@ void add_lines(Svg& svg, const LineChart& chart, const Axis& axis, const XScale&
           .add("title", {}, fmt::format("{}: {:g}, {:g}", chart.lines[i].name, x, y));
     }
   }
-}
-
-/// Its end, which tells recordings apart.
-std::string shortened(const std::string& name) {
-  constexpr std::size_t kMostBytes = 20;
-  if (name.size() <= kMostBytes) return name;
-  std::size_t begin = name.size() - kMostBytes;
-  while (begin < name.size() && (static_cast<unsigned char>(name[begin]) & 0xC0) == 0x80) ++begin;  // no half character
-  return "…" + name.substr(begin);
 }
 
 }  // namespace
@@ -196,10 +189,10 @@ std::string to_svg(const LineChart& chart) {
 }
 
 std::string part_svg(const LineChart& chart) {
-  constexpr double kWidth = 480, kNames = 62;
+  constexpr double kWidth = 480, kBelow = 40;
   Axis axis = value_axis(chart);
   axis.plot = {.left = 40, .right = kWidth - 8, .top = 12, .height = 210};
-  Svg svg({{"viewBox", fmt::format("0 0 {} {}", kWidth, axis.plot.baseline() + kNames)},
+  Svg svg({{"viewBox", fmt::format("0 0 {} {}", kWidth, axis.plot.baseline() + kBelow)},
            {"font-family", "sans-serif"},
            {"font-size", 12}});
   for (const double tick : axis.ticks) {
@@ -209,12 +202,11 @@ std::string part_svg(const LineChart& chart) {
   }
   const XScale x(chart, axis.plot);
   add_lines(svg, chart, axis, x);
-  const std::size_t step = (chart.x_names.size() + kMostNames - 1) / kMostNames;
-  for (std::size_t i = 0; i < chart.x_names.size(); i += step) {
-    const std::string turn =
-        fmt::format("translate({:.1f} {:.1f}) rotate(-30)", x(static_cast<double>(i + 1)) + 4, axis.plot.baseline() + 16);
-    svg.add("text", {{"transform", turn}, {"class", "axis"}, {"text-anchor", "end"}}, shortened(chart.x_names[i]));
-  }
+  const double step = std::ceil((x.most() - x.least() + 1) / kMostXTicks);
+  for (double value = x.least(); value <= x.most(); value += step)
+    svg.text({x(value), axis.plot.baseline() + 17}, fmt::format("{:g}", value), {{"class", "axis"}, {"text-anchor", "middle"}});
+  svg.text({(axis.plot.left + axis.plot.right) / 2, axis.plot.baseline() + 34}, chart.x_label,
+           {{"class", "axis"}, {"text-anchor", "middle"}});
   return svg.str();
 }
 

@@ -35,14 +35,13 @@ struct LineChart {
     std::vector<std::pair<double, double>> points;  ///< in the order of x
   };
   std::vector<Line> lines;
-  std::vector<std::string> x_names = {};  ///< what stands at x = 1, 2, …; none: the first line's x as numbers
 };
 
 /// A self-contained SVG picture that a browser shows.
 std::string to_svg(const BarChart& chart);
 std::string to_svg(const LineChart& chart);
 
-/// A part of a page (draw/page.h), which is its paper and writes title and legend: it is read on a phone too.
+/// A part of a page (draw/page.h), which is its paper and writes title and legend: it is read on a phone too. x are whole numbers.
 std::string part_svg(const LineChart& chart);
 /// The CSS colour of the line of that index.
 const char* line_colour(std::size_t index);

@@ -59,7 +59,7 @@ std::string panel_svg(const GaitReport::Panel& panel) {
   }
   for (const int percent : {0, 25, 50, 75, 100}) {
     svg.text({kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0, kPanelHeight - 12},
-             fmt::format("{}{}", percent, percent == 100 ? " %" : ""), {{"text-anchor", "middle"}});
+             fmt::format("{}{}", percent, percent == 100 ? " %" : ""), {{"text-anchor", percent == 100 ? "end" : "middle"}});
   }
   add_band(svg, panel.left, scale, kLeftColour);
   add_band(svg, panel.right, scale, kRightColour);
@@ -68,15 +68,18 @@ std::string panel_svg(const GaitReport::Panel& panel) {
 
 std::string figure_cell(const GaitReport::Figure& figure, std::size_t side) {
   if (!figure.mean[side]) return "–";
-  return figure.deviation[side] ? fmt::format("{:.3g} ± {:.2g}", *figure.mean[side], *figure.deviation[side])
-                                : fmt::format("{:.3g}", *figure.mean[side]);
+  const double mean = *figure.mean[side];
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(mean), 1e-9)))), 0, 3);
+  return figure.deviation[side] ? fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, *figure.deviation[side], decimals)
+                                : fmt::format("{:.{}f}", mean, decimals);
 }
 
 PageTable figures_of(const GaitReport& report) {
-  PageTable table{.title = "The walk", .head = {"", "left", "right", "unit"}, .rows = {}};
+  PageTable table{.title = "The walk", .head = {"", "left", "right"}, .rows = {}};
   table.bars_end = 0;
   for (const GaitReport::Figure& figure : report.figures)
-    table.rows.push_back({figure.name, figure_cell(figure, 0), figure_cell(figure, 1), figure.unit});
+    table.rows.push_back(
+        {figure.unit.empty() ? figure.name : figure.name + ", " + figure.unit, figure_cell(figure, 0), figure_cell(figure, 1)});
   return table;
 }
 

@@ -1,6 +1,7 @@
 #include "marey/draw/match_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "marey/core/text_safety.h"
-#include "marey/draw/canvas.h"
 #include "marey/draw/pitch_svg.h"
 #include "marey/draw/svg.h"
 
@@ -24,13 +24,18 @@ constexpr double kLongestPath = 2000;  // points drawn of a path: more is not se
 constexpr double kTerritoryCell = 5;  // m
 constexpr double kTerritory = 0.5;    // of a team's time on the pitch is spent in its territory
 
+// Of Okabe and Ito's colours those that are seen on grass, for teams whose shirts are not known.
+constexpr std::array<const char*, 5> kTeamColours{"#e69f00", "#cc79a7", "#56b4e9", "#f0e442", "#bbbbbb"};
+
 class ReportPage {
  public:
   explicit ReportPage(const MatchReport& report) : report_(report) {
     for (const MatchReport::Person& person : report.people) {
       if (colours_.contains(person.team)) continue;
-      const auto number = static_cast<int>(colours_.size());
-      colours_[person.team] = person.appearance ? colour_on_grass(*person.appearance) : colour_on_grass(colour_of(number));
+      if (person.appearance)
+        colours_[person.team] = colour_on_grass(*person.appearance);
+      else
+        colours_[person.team] = kTeamColours[colours_.size() % kTeamColours.size()];
     }
   }
 
@@ -151,7 +156,7 @@ class ReportPage {
       }
     }
     const double covered = length * width / (report_.pitch.size.length * report_.pitch.size.width);
-    return 0.8 / (1 + 8 * covered);
+    return 0.95 / (1 + 5 * covered);
   }
 
   void draw_paths(SvgElement& svg, const MatchReport::Person& person, double width, double opacity) const {
@@ -176,6 +181,11 @@ class ReportPage {
     }
   }
 
+  static std::string sprints_of(const MatchReport::Person& person) {
+    const std::size_t count = person.sprints.size();
+    return count == 0 ? "no sprint" : count == 1 ? "1 sprint is marked" : fmt::format("{} sprints are marked", count);
+  }
+
   void draw_speeds(const MatchReport::Person& person) {
     constexpr double width = 105, height = 68, left = 8, bottom = 8;
     double begin = 1e300, end = -1e300, fastest = 8;
@@ -197,8 +207,7 @@ class ReportPage {
       svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
       svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
-    svg.text({left, height - 1},
-             fmt::format("m/s over {:.0f} s, where it is known; {} sprints are marked", end - begin, person.sprints.size()),
+    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s, where it is known; {}", end - begin, sprints_of(person)),
              {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;

@@ -14,7 +14,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr std::size_t kMostNarrow = 6;  // columns that fit on a phone
+constexpr std::size_t kMostNarrow = 6, kMostHalf = 9;  // columns that fit on a phone, and on half a screen
 constexpr std::string_view kUnknown = "–", kPlusMinus = " ± ";
 
 /// The number of "7.5" and "7.5 ± 0.2".
@@ -29,13 +29,13 @@ std::optional<double> number_of(const std::string& cell) {
 struct PageColumn {
   std::size_t index = 0;
   bool numbers = false;
-  double largest = 0;
+  double least = 0, largest = 0;
   std::string group;
 };
 
-/// Empty cells say nothing; a column without any other is left out.
+/// Empty cells tell nothing; a column without any other is left out.
 std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
-  PageColumn column{.index = index, .numbers = true, .largest = 0, .group = {}};
+  PageColumn column{.index = index, .numbers = true, .least = HUGE_VAL, .largest = 0, .group = {}};
   if (index < table.groups.size()) column.group = table.groups[index];
   bool empty = true;
   for (const auto& row : table.rows) {
@@ -44,7 +44,9 @@ std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
     if (row[index] == kUnknown) continue;
     const auto value = number_of(row[index]);
     column.numbers &= value.has_value();
-    if (value) column.largest = std::max(column.largest, *value);
+    if (!value) continue;
+    column.least = std::min(column.least, *value);
+    column.largest = std::max(column.largest, *value);
   }
   return empty ? std::nullopt : std::optional(column);
 }
@@ -73,7 +75,9 @@ class TableHtml {
 
   std::string html() {
     text_ = fmt::format("<h2>{}</h2><div class=\"scroll\"><table{}><thead>", xml_escaped(table_.title),
-                        columns_.size() > kMostNarrow ? " class=\"wide\"" : "");
+                        columns_.size() > kMostHalf     ? " class=\"wide cards\""
+                        : columns_.size() > kMostNarrow ? " class=\"cards\""
+                                                        : "");
     write_groups();
     write_head();
     text_ += "</thead><tbody>\n";
@@ -121,7 +125,9 @@ class TableHtml {
     auto out = std::back_inserter(text_);
     const auto at = static_cast<int>(column.index);
     const auto number =
-        column.numbers && column.largest > 0 && at >= table_.bars_from && at < table_.bars_end ? number_of(cell) : std::nullopt;
+        column.numbers && column.largest > std::max(0.0, column.least) && at >= table_.bars_from && at < table_.bars_end
+            ? number_of(cell)
+            : std::nullopt;
     const auto colour = table_.colours.find(cell);
     fmt::format_to(out, "<td class=\"{}\"", column.numbers ? "n" : table_.head[column.index] == "why" ? "why" : "t");
     if (number) fmt::format_to(out, " style=\"--w:{:.0f}%\"", 100 * std::max(0.0, *number) / column.largest);

@@ -11,7 +11,8 @@
 
 namespace marey::draw {
 
-/// A table that its reader sorts by any column. A column of numbers alone gets bars, as long as its number's share of the largest;
+/// A table that its reader sorts by any column. A column of numbers alone gets bars, as long as its number's share of the largest,
+/// unless all are equal;
 /// "7 ± 2" and "–" are numbers too. Columns that are empty in every row are left out.
 struct PageTable {
   std::string title;

@@ -28,17 +28,17 @@ figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-
 .speed { stroke: var(--text) } .sprint { fill: var(--mark); fill-opacity: .25 }
 @media screen and (max-width: 46em) {
   body { padding: 1em 1em 3em } table { min-width: 100% } th, td, th button { padding-left: .4em; padding-right: .4em }
-  table.wide, table.wide tbody { display: block } table.wide thead { display: none } .sort { display: block }
-  table.wide tr { display: grid; grid-template-columns: repeat(3, 1fr); border: 1px solid var(--line); border-radius: 8px; padding: .3em; margin-bottom: .7em }
-  table.wide td { border: 0; padding: .2em .35em; text-align: left; white-space: normal; min-width: 0; border-radius: 3px } table.wide td.why { grid-column: 1 / -1 }
-  table.wide td:not(.n) { font-weight: 600 }
-  table.wide td::before { content: attr(data-label); display: block; color: var(--faint); font-size: .72em; font-weight: 400; line-height: 1.25 } table.wide td:empty { display: none }
+  table.cards, table.cards tbody { display: block } table.cards thead { display: none } .sort { display: block }
+  table.cards tr { display: grid; grid-template-columns: repeat(3, 1fr); border: 1px solid var(--line); border-radius: 8px; padding: .3em; margin-bottom: .7em }
+  table.cards td { border: 0; padding: .2em .35em; text-align: left; white-space: normal; min-width: 0; border-radius: 3px } table.cards td.why { grid-column: 1 / -1 }
+  table.cards td:not(.n) { font-weight: 600 }
+  table.cards td::before { content: attr(data-label); display: block; color: var(--faint); font-size: .72em; font-weight: 400; line-height: 1.25 } table.cards td:empty { display: none }
 }
 @page { margin: 12mm }
 @media print {
   :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #777; --head: #eee }
   body { max-width: none; margin: 0; padding: 0; font-size: 11px; print-color-adjust: exact; -webkit-print-color-adjust: exact }
-  .scroll { overflow: visible } table.wide { font-size: 9px } th { font-size: 1em } th, td, th.group, th button { padding: 2px 3px } th.group { white-space: normal }
+  .scroll { overflow: visible } table.cards { font-size: 9px } th { font-size: 1em } th, td, th.group, th button { padding: 2px 3px } td { padding-bottom: 5px } td.n { background-size: calc(100% - .8em) 2px } th.group { white-space: normal }
   details, figure, tr { break-inside: avoid } h2, h3, summary { break-after: avoid } thead { display: table-header-group } .four { grid-template-columns: repeat(3, 1fr) } .two { grid-template-columns: repeat(2, 1fr) }
 }
 )";
@@ -58,7 +58,7 @@ for (const button of document.querySelectorAll("th button")) button.onclick = ()
   const head = button.parentElement, numbers = head.classList.contains("n");
   sort(head, head.getAttribute("aria-sort") === (numbers ? "descending" : "ascending") ? !numbers : numbers);
 };
-for (const table of document.querySelectorAll("table.wide")) {
+for (const table of document.querySelectorAll("table.cards")) {
   const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells], label = document.createElement("label"), select = document.createElement("select");
   for (const head of heads) select.add(new Option(head.dataset.label));
   label.className = "sort";

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/colour.h"
+#include "marey/draw/canvas.h"
 
 namespace marey::draw {
 namespace {
@@ -81,11 +81,6 @@ std::string colour_on_grass(const Appearance& shirt) {
   }
   while (contrast_to_grass(colour_of(shown)) < kLeastContrast && shown.lightness < kPureWhite) shown.lightness += 1;
   return css_of(colour_of(shown));
-}
-
-std::string colour_on_grass(const Colour& colour) {
-  const auto lab = lab_from_srgb(colour.red, colour.green, colour.blue);
-  return colour_on_grass(Appearance{.lightness = lab[0], .a = lab[1], .b = lab[2]});
 }
 
 }  // namespace marey::draw

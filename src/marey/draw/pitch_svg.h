@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "marey/core/appearance.h"
-#include "marey/draw/canvas.h"
 #include "marey/draw/svg.h"
 #include "marey/geometry/pitch.h"
 
@@ -37,6 +36,5 @@ class PitchSvg {
 /// A team's colour on the grass, in CSS: as bright as it must be to be seen there, white and black as such, whatever shade video
 /// shows them in.
 std::string colour_on_grass(const Appearance& shirt);
-std::string colour_on_grass(const Colour& colour);
 
 }  // namespace marey::draw
