@@ -34,11 +34,11 @@ function unread() {
   const list = [];
   for (const table of document.querySelectorAll("table")) {
     const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
-    const headed = heads.every((head) => head.offsetParent);
+    const headed = heads.every((head) => head.getBoundingClientRect().width > 0);
     for (const row of table.tBodies[0].rows) {
       if (row.cells.length !== heads.length) list.push(`a row has ${row.cells.length} cells under ${heads.length} heads`);
       for (const cell of row.cells) {
-        if (cell.textContent === "") continue;
+        if (cell.textContent === "" || cell.closest("details:not([open])")) continue;
         const label = getComputedStyle(cell, "::before").content;
         if (!cell.offsetParent || !(headed || label.length > 2)) list.push(`"${cell.textContent}" has no head`);
         if (parseFloat(getComputedStyle(cell).fontSize) < 8.5) list.push(`"${cell.textContent}" is too small to read`);

@@ -20,7 +20,7 @@ NAMES = ("Neuer", "Lahm", "Schwarzenbeck-Oberhuber", "Kim", "Beckenbauer", "Brei
 
 
 def named(text):
-    """The simulator's shirts are numbers alone."""
+    """Names with the simulator's numbers, and a ball at one foot after the other's."""
     rows = list(csv.DictReader(text.splitlines()))
     out = io.StringIO()
     named_rows = csv.DictWriter(out, rows[0], lineterminator="\n")
@@ -29,6 +29,8 @@ def named(text):
         if row["label"].isdigit():
             row["label"] += " " + NAMES[(int(row["id"]) * 7) % len(NAMES)]
         named_rows.writerow(row)
+        if int(row["id"]) == 1 + int(row["frame"]) // 50 % 22:
+            named_rows.writerow(row | {"id": 99, "label": "ball", "team": ""})
     return out.getvalue()
 
 
@@ -40,7 +42,7 @@ def make_pages(marey, folder):
 
     (folder / "matches").mkdir(exist_ok=True)
     for seed in (1, 2, 3):
-        run("simulate", "match", "--stand", "football", "--seconds", 60, "--seed", seed, "--ball", "-o", "scene")
+        run("simulate", "match", "--stand", "football", "--seconds", 60, "--seed", seed, "--no-boxes", "-o", "scene")
         text = named((folder / "scene/truth.csv").read_text())
         (folder / f"matches/2026-0{seed}-14 Sportfreunde Oberwiesenfeld against Wanderers, match {seed}.csv").write_text(text)
         (folder / "match.csv").write_text(text)

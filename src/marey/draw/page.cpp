@@ -74,10 +74,12 @@ class TableHtml {
   }
 
   std::string html() {
-    text_ = fmt::format("<h2>{}</h2><div class=\"scroll\"><table{}><thead>", xml_escaped(table_.title),
-                        columns_.size() > kMostHalf     ? " class=\"wide cards\""
-                        : columns_.size() > kMostNarrow ? " class=\"cards\""
-                                                        : "");
+    const std::string title = xml_escaped(table_.title);
+    text_ = table_.folded ? fmt::format("<details><summary>{}: {}</summary>", title, table_.rows.size())
+                          : fmt::format("<h2>{}</h2>", title);
+    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMostHalf     ? " class=\"wide cards\""
+                                                                   : columns_.size() > kMostNarrow ? " class=\"cards\""
+                                                                                                   : "");
     write_groups();
     write_head();
     text_ += "</thead><tbody>\n";
@@ -86,7 +88,7 @@ class TableHtml {
       for (const PageColumn& column : columns_) write_cell(row[column.index], column);
       text_ += "</tr>\n";
     }
-    return text_ + "</tbody></table></div>\n";
+    return text_ + (table_.folded ? "</tbody></table></div></details>\n" : "</tbody></table></div>\n");
   }
 
  private:

@@ -20,6 +20,7 @@ struct PageTable {
   std::vector<std::vector<std::string>> rows;  ///< as many cells as `head` has
   int bars_from = 0, bars_end = 1000;          ///< columns outside these have no bars: they are names, or places
   std::vector<std::string> groups = {};        ///< of each column what stands above its head and its neighbours'; may be shorter
+  bool folded = false;                         ///< its title alone is shown until its reader opens it: many rows
   std::map<std::string, std::string> colours = {};  ///< CSS colours of texts that are shown with one, such as teams
 };
 

@@ -128,7 +128,7 @@ void add_ball_tables(const analyse::BallMeasure& ball, draw::MatchReport& report
   draw::PageTable& passes = report.tables.emplace_back();
   passes.title = "Passes";
   passes.head = {"at, s", "team", "from", "to", "length, m", "took, s"};
-  passes.bars_from = 4;
+  passes.bars_from = 4, passes.folded = true;
   for (const analyse::BallPass& pass : ball.passes)
     passes.rows.push_back({fmt::format("{:.1f}", pass.begin_s), pass.team, std::to_string(pass.from), std::to_string(pass.to),
                            fmt::format("{:.1f}", pass.length_m), fmt::format("{:.1f}", pass.end_s - pass.begin_s)});
