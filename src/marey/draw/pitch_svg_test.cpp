@@ -5,18 +5,14 @@
 namespace marey::draw {
 namespace {
 
-constexpr PitchFrame kFrame{.size = {100, 60}, .corner = {0, 0}};
-
 TEST(PitchSvg, HasTheSameCornerOnTheLeftAboveAsOtherViews) {
   for (const bool y_down : {true, false}) {
-    PitchFrame frame = kFrame;
-    frame.corner = {-50, 10};
-    frame.y_down = y_down;
+    const PitchFrame frame{.size = {100, 60}, .corner = {-50, 10}, .y_down = y_down};
     const std::string html = PitchSvg(frame).html();
     EXPECT_NE(html.find(y_down ? R"(viewBox="-53.00 7.00 106.00 66.00")" : R"(viewBox="-53.00 -73.00 106.00 66.00")"),
               std::string::npos)
         << html;
-    EXPECT_NE(html.find(y_down ? R"(transform="scale(1 1)")" : R"(transform="scale(1 -1)")"), std::string::npos) << html;
+    EXPECT_NE(html.find(y_down ? R"--(transform="scale(1 1)")--" : R"--(transform="scale(1 -1)")--"), std::string::npos) << html;
   }
 }
 
