@@ -115,10 +115,15 @@ std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMat
 }
 
 void add_ball_tables(const analyse::BallMeasure& ball, draw::MatchReport& report) {
+  if (ball.seconds <= 0) return;
+  report.tables.push_back({.title = "The ball",
+                           .head = {"known for, s", "of them off the pitch, s", "distance, m", "top, m/s"},
+                           .rows = {{fmt::format("{:.1f}", ball.seconds), fmt::format("{:.1f}", ball.dead_s),
+                                     fmt::format("{:.0f}", ball.distance_m), fmt::format("{:.1f}", ball.top_mps)}}});
   const auto plays = [](const analyse::TeamBall& team) { return team.possession_s > 0 || team.passes > 0; };
   if (std::none_of(ball.teams.begin(), ball.teams.end(), plays)) return;
   draw::PageTable& teams = report.tables.emplace_back();
-  teams.title = "The ball";
+  teams.title = "Possession";
   teams.head = {"team", "possession, s", "passes", "to the own team"};
   teams.bars_from = 1;
   for (const analyse::TeamBall& team : ball.teams)
