@@ -186,6 +186,24 @@ class ReportPage {
     return count == 0 ? "no sprint" : count == 1 ? "1 sprint is marked" : fmt::format("{} sprints are marked", count);
   }
 
+  /// The speeds that are known; `place(time, speed)` is where each is drawn.
+  template <typename Place>
+  static void draw_known(Svg& svg, const MatchReport::Person& person, const Place& place) {
+    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
+      const auto& path = person.speeds[p];
+      std::vector<Vector<2>> points;
+      const auto draw = [&] {
+        if (points.size() > 1) svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
+        points.clear();
+      };
+      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
+        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
+        if (!person.seen[p][i]) draw();
+      }
+      draw();
+    }
+  }
+
   void draw_speeds(const MatchReport::Person& person) {
     constexpr double width = 105, height = 68, left = 8, bottom = 8;
     double begin = 1e300, end = -1e300, fastest = 8;
@@ -215,19 +233,7 @@ class ReportPage {
       svg.rect({x, 0, std::max(narrowest, place(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
           .add("title", {}, fmt::format("{:.1f} s to {:.1f} s", from, to));
     }
-    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
-      const auto& path = person.speeds[p];
-      std::vector<Vector<2>> points;
-      const auto draw = [&] {
-        if (points.size() > 1) svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
-        points.clear();
-      };
-      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
-        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
-        if (!person.seen[p][i]) draw();
-      }
-      draw();
-    }
+    draw_known(svg, person, place);
     text_ += svg.str();
   }
 

@@ -36,9 +36,8 @@ constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
 constexpr std::size_t kLargestTransaction = std::size_t{16} << 20;
 
 void require_valid(const RecordingHeader& header, const std::string& path) {
-  if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
+  if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0))
     throw Error("{}: a rate of {} frames a second; it must be positive", path, header.rate_hz);
-  }
   for (const Body& body : header.bodies) {
     if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path, number(body.id));
   }
@@ -66,18 +65,12 @@ class TakeWriter::Recorder {
     set("frame", name_of(header.frame.kind));
     if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
     set("smoothed", std::int64_t{header.smoothed});
-    set_rig(header);
+    const bool cameras = header.rig && !header.rig->cameras.empty();  // a rig's text has one at least
+    if (header.rig) cameras ? set("rig", rig::rig_text(*header.rig)) : set("y_down", std::int64_t{y_grows_down(header)});
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
     set_bodies(header.bodies);
     flush();
-  }
-
-  /// A rig file has a camera at least.
-  void set_rig(const RecordingHeader& header) {
-    if (!header.rig) return;
-    if (!header.rig->cameras.empty()) return set("rig", rig::rig_text(*header.rig));
-    if (header.frame.kind == FrameOfReference::Kind::user_ground) set("y_down", std::int64_t{y_grows_down(header)});
   }
 
   void set_name(const TrackName& name) {
