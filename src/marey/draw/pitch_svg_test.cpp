@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/draw/pitch_drawing.h"
+
 namespace marey::draw {
 namespace {
 
@@ -31,6 +33,14 @@ TEST(PitchSvg, ShirtsCanBeSeenOnTheGrass) {
   EXPECT_GT(channel(red, 0), channel(red, 1) + 100) << "red stays red: " << red;
   const std::string green = colour_on_grass(Appearance{.lightness = 50, .a = -40, .b = 30});
   EXPECT_GT(channel(green, 1), 130) << "and green is brighter than the grass: " << green;
+}
+
+TEST(PitchSvg, AMapHasItsOriginWhereThePitchHas) {
+  const auto everywhere = [](const Vector<2>&) { return std::optional(0.01); };
+  const std::string down = pitch_map_svg("map", {100, 60}, true, everywhere),
+                    up = pitch_map_svg("map", {100, 60}, false, everywhere);
+  EXPECT_NE(down.find("translate(24,40) scale(8 8)"), std::string::npos) << down.substr(0, 800);
+  EXPECT_NE(up.find("translate(24,520) scale(8 -8)"), std::string::npos) << up.substr(0, 800);
 }
 
 }  // namespace
