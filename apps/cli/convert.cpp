@@ -111,9 +111,9 @@ void add_convert(Command& program) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", how.up, kAxes,
-                 "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
+                 "the axis that is up in B, z where it is left out (in A, where B is a take); coordinates are turned accordingly");
   command.choice("--from-up", how.from_up, kAxes,
-                 "the axis that is up in A, z where it is left out; y of a skeleton's motion (.bvh, .asf)");
+                 "the axis that is up in A; as A says where it is left out, else z; y of a skeleton's motion (.bvh, .asf)");
   command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
   command.input_file("--analog", how.analog,

@@ -167,7 +167,7 @@ void add_file_options(Command& command, SolveCommand& options) {
   constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
       {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
   command.choice("--up", options.options.up, kAxes,
-                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else z");
+                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else as it says, else z");
   command.group("BVH");
   command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
                  "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");

@@ -33,14 +33,14 @@ format::match::GroundFrame user_frame(const ConvertOptions& options) {
   return frame;
 }
 
-/// The axes that are up in the two files.
-std::pair<UpAxis, UpAxis> axes(const ConvertOptions& options, const Format& from, const Format& to) {
-  const UpAxis up = options.up.value_or(UpAxis::z);
+/// The axes that are up in the two files; nothing for the first: as it says itself.
+std::pair<std::optional<UpAxis>, UpAxis> axes(const ConvertOptions& options, const Format& from, const Format& to) {
   if (options.from_up) {
     if (from.z_up) throw format::WrongFormat("{}", "a take's z is up always; --from-up is for other files");
-    return {*options.from_up, up};
+    return {options.from_up, options.up.value_or(UpAxis::z)};
   }
-  return to.z_up ? std::pair(up, UpAxis::z) : std::pair(UpAxis::z, up);
+  if (to.z_up) return {options.up, UpAxis::z};
+  return {std::nullopt, options.up.value_or(UpAxis::z)};
 }
 
 void refuse_axes(const std::string& from, const ConvertOptions& options, const char* what) {
@@ -149,11 +149,6 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     summary.warnings = first->warnings();
   }
   plan.up = to_up;
-  // A file that says so itself is still believed only where the user says it too: many say it by mistake.
-  if (plan.info.up == UpAxis::y && from_up == UpAxis::z) {
-    summary.warnings.push_back(
-        fmt::format("{}: says that y is up; {} turns it so that z is", from, out.z_up ? "--up y" : "--from-up y"));
-  }
   if (options.labelled) {
     std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
     if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);

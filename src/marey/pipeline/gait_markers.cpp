@@ -91,9 +91,10 @@ const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::str
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
                               const gait::BodyMarkerSet& set, const std::optional<std::int64_t>& most) {
   format::ReadOptions how;
-  how.up = up.value_or(format::UpAxis::z);
+  how.up = up;
   const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
   GaitMarkers markers;
+  markers.up = format::up_axis(reader->info(), up);
   markers.rate_hz = reader->header().rate_hz;
   markers.set = &set;
   std::map<TrackId, std::string> labels;

@@ -132,15 +132,16 @@ void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::See
   }
 }
 
-UpAxis up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
-  if (options.up) return *options.up;
-  return format.name == "trc" && skeleton.ends_with(".osim") ? UpAxis::y : UpAxis::z;
+/// What is said of the recording's up; nothing: as it says itself.
+std::optional<UpAxis> up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
+  if (!options.up && format.name == "trc" && skeleton.ends_with(".osim")) return UpAxis::y;
+  return options.up;
 }
 
 std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options) {
   const format::Format& format = format::format_to_read(path, Content::space);
   format::ReadOptions how;
-  how.up = options.up.value_or(UpAxis::z);
+  how.up = options.up;
   auto reader = format::open_recording(path, format, how);
   if (reader->header().frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: holds no points in space; a skeleton is solved from markers in space", path);
@@ -324,7 +325,8 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
-  if (auto sentence = lies_on_its_side(solved, *options.up, given.up.has_value(), recording))
+  const UpAxis taken = format::up_axis(open_markers(recording, options)->info(), options.up);
+  if (auto sentence = lies_on_its_side(solved, taken, given.up.has_value(), recording))
     solved.summary.warnings.push_back(std::move(*sentence));
   solved.summary.joints = std::move(found.joints);
   solved.summary.marker_set = std::move(found.marker_set);

@@ -19,7 +19,7 @@ namespace marey::pipeline {
 
 struct SolveOptions {
   format::skeleton::SkeletonOptions read_skeleton;
-  std::optional<format::UpAxis> up;    ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else z
+  std::optional<format::UpAxis> up;    ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
   std::vector<std::string> leave_out;  ///< labels of markers that are not used
   format::skeleton::BvhDialect bvh;
   solve::skeleton::PoseOptions pose;
