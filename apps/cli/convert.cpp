@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/edit/request.h"
 #include "marey/format/register.h"
 
 #include "command_line.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct ConvertCommand {
   std::string from, to;
-  std::string size = "105x68";
+  std::string size = "105x68", frames;
   std::vector<std::string> periods;
   pipeline::ConvertOptions options;
   bool json = false;
@@ -45,6 +46,7 @@ void run(ConvertCommand& command) {
   command.options.read.pitch = parse_pitch_size(command.size);
   for (const std::string& period : command.periods)
     command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
+  if (!command.frames.empty()) command.options.frames = parse_frames(command.frames);
   const pipeline::ConvertSummary done = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::convert(command.from, command.to, command.options, hooks); });
   warn(done.warnings);
@@ -57,6 +59,12 @@ void run(ConvertCommand& command) {
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {}, {} {}\n", command.to, done.format, done.count, done.counted);
   }
+}
+
+edit::FrameRange parse_frames(const std::string& text) {
+  const auto frames = edit::parse_range(text);
+  if (!frames) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
+  return *frames;
 }
 
 /// What is read or written beside a file of a pair.
@@ -115,6 +123,9 @@ void add_convert(Command& program) {
   command.choice("--from-up", how.from_up, kAxes,
                  "the axis that is up in A; as A says where it is left out, else z; y of a skeleton's motion (.bvh, .asf)");
   command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
+  command.text("--frames", options->frames,
+               "FIRST:LAST, counted from 0, both included: these alone, with their numbers and times as they were")
+      .check(parse_frames);
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
   command.input_file("--analog", how.analog,
                      "a C3D file whose analog channels, force plates and events go along into B, a C3D file too: the one that A, a "

@@ -64,10 +64,10 @@ void print_worst(const SolveSummary& summary) {
   fmt::print(stderr, "worst markers: {}\n", fmt::join(said, ", "));
 }
 
-void print_solved(const SolveSummary& summary, const std::vector<std::string>& outputs) {
-  fmt::print(stderr, "{}: {} markers in {} frames ({:.1f} s at {:g} Hz)\n",
-             summary.skeleton.empty() ? "skeleton" : summary.skeleton, summary.markers.size(), summary.frames, summary.seconds,
-             summary.rate_hz);
+void print_solved(const std::string& recording, const SolveSummary& summary, const std::vector<std::string>& outputs) {
+  fmt::print(stderr, "{}: the skeleton{}, solved from {} markers in {} {} ({:.1f} s at {:g} Hz)\n", recording,
+             summary.skeleton.empty() ? "" : " " + summary.skeleton, summary.markers.size(), summary.frames,
+             summary.frames == 1 ? "frame" : "frames", summary.seconds, summary.rate_hz);
   fmt::print(stderr, "markers lie {:.2f} mm RMS from where the skeleton has them (worst {:.1f} mm): {}\n", 1000 * summary.rms_m,
              1000 * summary.worst_m, verdict(summary));
   print_worst(summary);
@@ -156,7 +156,7 @@ void run(SolveCommand& command) {
   if (command.json) {
     print(as_json(summary, command.outputs));
   } else if (!command.quiet) {
-    print_solved(summary, command.outputs);
+    print_solved(command.recording, summary, command.outputs);
   }
 }
 
