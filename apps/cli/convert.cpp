@@ -42,6 +42,12 @@ format::match::GroundPeriod parse_period(const std::string& text, int number) {
   return {number, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)};
 }
 
+edit::FrameRange parse_frames(const std::string& text) {
+  const auto frames = edit::parse_range(text);
+  if (!frames) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
+  return *frames;
+}
+
 void run(ConvertCommand& command) {
   command.options.read.pitch = parse_pitch_size(command.size);
   for (const std::string& period : command.periods)
@@ -59,12 +65,6 @@ void run(ConvertCommand& command) {
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {}, {} {}\n", command.to, done.format, done.count, done.counted);
   }
-}
-
-edit::FrameRange parse_frames(const std::string& text) {
-  const auto frames = edit::parse_range(text);
-  if (!frames) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
-  return *frames;
 }
 
 /// What is read or written beside a file of a pair.

@@ -191,10 +191,11 @@ void add_solve(Command& program) {
                      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
   command.input_file(
       "--static", options->options.static_trial,
-      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given");
+      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given; without either "
+      "it is made from RECORDING alone, less surely");
   command
       .text("--marker-set", options->options.marker_set,
-            "whose labels --static has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left out: known by them")
+            "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left out: known by them")
       .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
   command.input_file(
       "--motion", options->options.motion,
@@ -218,8 +219,8 @@ void add_solve(Command& program) {
   command.runs([options] {
     if (!options->skeleton.empty() && !options->options.static_trial.empty())
       throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
-    if (!options->options.marker_set.empty() && options->options.static_trial.empty())
-      throw WrongUsage("{}", "--marker-set: is of a static trial; give --static too");
+    if (!options->options.marker_set.empty() && !options->skeleton.empty())
+      throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
     if (!options->options.motion.empty() && options->options.static_trial.empty())
       throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
     run(*options);

@@ -44,6 +44,16 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
 gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
 
+/// Where the markers are at the quietest moment of a motion in which most of them are seen.
+struct QuietMoment {
+  gait::MarkerPlaces places;
+  double time_s = 0;     ///< since the first row
+  double speed_m_s = 0;  ///< of the markers there, on the mean
+  bool stands = false;   ///< for a second about it, of which the places are the means
+};
+/// Throws Error, with `name` for the file, where there is no marker at all.
+QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name);
+
 /// Where the static trial is of another person, or the markers were put on anew: the pair of one segment's markers that lies most
 /// differently far apart in the walk. Nothing where all pairs agree.
 std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk);
