@@ -48,6 +48,7 @@ assert.equal(new Set([colours["Anna:LeftUpLeg"], colours["Anna:RightUpLeg"], col
 await page.screenshot({ path: join(folder, `${scenario}.png`) });
 await page.click('#tabs [data-tab="about"]');
 assert.match(await text("#about"), /computed/);
+assert.match(await text("#about"), /holds no calibration, so that neither they nor rays can be shown/);
 await page.click("#front");
 await page.click("#labels");
 while ((await text("#trails")) !== "Trails") await page.keyboard.press("t");

@@ -90,6 +90,7 @@ export class Words {
     if (scene.made_by) rows.push(["Made by", scene.made_by]);
     if (scene.kind === "recording") rows.push(["Length", `${clock(motion.last - motion.first)}, ${scene.instants} instants at ${+scene.rate.toFixed(3)} Hz`]);
     if (scene.cameras.length) rows.push(["Cameras", scene.cameras.map((camera) => camera.name).join(", ")]);
+    else if (scene.frame === "space" && scene.kind === "recording") rows.push(["Cameras", "this file holds no calibration, so that neither they nor rays can be shown; a take does"]);
     if (scene.bodies.length) rows.push(["Bodies", scene.bodies.map((body) => body.label).join(", ")]);
     for (const step of this.status.steps ?? []) rows.push([step.name, `${ms(step.median)}, 99 % within ${ms(step.p99)}`]);
     if (this.status.overtaken !== undefined) rows.push(["Overtaken", many(this.status.overtaken, "moment")]);
