@@ -123,8 +123,9 @@ void add_convert(Command& program) {
   command.choice("--from-up", how.from_up, kAxes,
                  "the axis that is up in A; as A says where it is left out, else z; y of a skeleton's motion (.bvh, .asf)");
   command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
-  command.text("--frames", options->frames,
-               "FIRST:LAST, counted from 0, both included: these alone, with their numbers and times as they were")
+  command
+      .text("--frames", options->frames,
+            "FIRST:LAST, counted from 0, both included: these alone, with their numbers and times as they were")
       .check(parse_frames);
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
   command.input_file("--analog", how.analog,

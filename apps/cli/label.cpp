@@ -56,7 +56,7 @@ void run(LearnLabelsCommand& command) {
   if (!command.markers.empty()) {
     const bool file = std::filesystem::is_regular_file(command.markers);
     command.options.as_far_as_there = !file && command.markers.find(',') == std::string::npos;
-    command.options.labels = file ? format::motion::read_marker_set(command.markers).labels
+    command.options.labels = file                              ? format::motion::read_marker_set(command.markers).labels
                              : command.options.as_far_as_there ? analyse::gait::marker_set_labels(command.markers)
                                                                : labels_in(command.markers);
   }
@@ -95,7 +95,8 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
              "name of the set before; outliers: frames in which its distances to the others are off)\n");
   if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
   if (summary.accepted > 0)
-    fmt::print(stderr, "accepted: {} {} the name that fits best\n", summary.accepted, summary.accepted == 1 ? "piece got" : "pieces got");
+    fmt::print(stderr, "accepted: {} {} the name that fits best\n", summary.accepted,
+               summary.accepted == 1 ? "piece got" : "pieces got");
   int told = 0;
   for (const auto& piece : summary.unnamed) {
     if (piece.best.empty() || piece.last - piece.first < 10 || told++ >= 10) continue;
@@ -108,8 +109,9 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
 }
 
 Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& summary) {
-  Json json{{"frames", summary.instants}, {"points", summary.points}, {"named", summary.named},   {"renamed", summary.renamed}, {"accepted", summary.accepted},
-            {"scale", summary.scale},     {"misfit", summary.misfit}, {"recording", command.out}, {"warnings", summary.warnings}};
+  Json json{{"frames", summary.instants}, {"points", summary.points},     {"named", summary.named},
+            {"renamed", summary.renamed}, {"accepted", summary.accepted}, {"scale", summary.scale},
+            {"misfit", summary.misfit},   {"recording", command.out},     {"warnings", summary.warnings}};
   json["markers"] = Json::array();
   for (const auto& marker : summary.health)
     json["markers"].push_back({{"label", marker.label},
@@ -147,9 +149,10 @@ void add_learn(Command& label) {
   command.input_files("TAKES", options->recordings, "points in space with names: " + format::names_of_read(format::Content::space))
       .required();
   command.output_file("-o,--output", options->out, "the set, as set.toml").required();
-  command.text("--markers", options->markers,
-               "those that belong to it: commas between, a file with one a line, or a set of the field as far as they have its markers: " +
-                   marker_set_names() + " (default: all with names)");
+  command.text(
+      "--markers", options->markers,
+      "those that belong to it: commas between, a file with one a line, or a set of the field as far as they have its markers: " +
+          marker_set_names() + " (default: all with names)");
   command.also_reads([options] { return std::vector{options->markers}; });  // it may be a file
   add_leave_out(command, options->leave_out);
   command.flag("--scaled", options->options.scaled,
@@ -171,9 +174,10 @@ void add_label(Command& program) {
   command.output_file("-o,--output", options->out,
                       "the recording with names: " + format::endings_of_written(format::Content::space));
   add_leave_out(command, options->leave_out);
-  command.texts("--accept", options->accept,
-                "what stays without a name gets the one that fits it best, where nobody else bears it: all, or C7,T10; may be given "
-                "often");
+  command.texts(
+      "--accept", options->accept,
+      "what stays without a name gets the one that fits it best, where nobody else bears it: all, or C7,T10; may be given "
+      "often");
   auto& how = options->options;
   command.number("--least-fit", how.least_fit, "nats", closed(0, 100), "what fits no name better stays without one");
   command.number("--least-margin", how.least_margin, "nats", closed(0, 100), "by so much a name must be better than the next");

@@ -45,8 +45,8 @@ std::vector<std::string> told_of(const SimulatePeople& command, const simulate::
   using Situation = simulate::people::PeopleSituation;
   if (command.situation == Situation::crossing || command.situation == Situation::overlap)
     return {fmt::format("this situation is of {} people; --people {} is for the others", there, *command.film.people)};
-  return {fmt::format("{} of {} people have room to keep apart in {} x {} px: a smaller --height or a larger --size makes more", there,
-                      *command.film.people, command.size[0], command.size[1])};
+  return {fmt::format("{} of {} people have room to keep apart in {} x {} px: a smaller --height or a larger --size makes more",
+                      there, *command.film.people, command.size[0], command.size[1])};
 }
 
 std::vector<std::string> files_of(const SimulatePeople& command) {

@@ -189,13 +189,14 @@ void add_solve(Command& program) {
       .required();
   command.input_file("--skeleton", options->skeleton,
                      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
-  command.input_file(
-      "--static", options->options.static_trial,
-      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given; without either "
-      "it is made from RECORDING alone, less surely");
+  command.input_file("--static", options->options.static_trial,
+                     "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
+                     "given; without either "
+                     "it is made from RECORDING alone, less surely");
   command
       .text("--marker-set", options->options.marker_set,
-            "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left out: known by them")
+            "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
+            "out: known by them")
       .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
   command.input_file(
       "--motion", options->options.motion,

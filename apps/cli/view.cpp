@@ -65,7 +65,8 @@ void add_view(Command& program) {
   add_web_place(command, how.place);
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  command.choice("--up", how.read.up, kAxes, "the axis that is up in FILE, of points in space; as FILE says where it is left out, else z");
+  command.choice("--up", how.read.up, kAxes,
+                 "the axis that is up in FILE, of points in space; as FILE says where it is left out, else z");
   command.group("People on the ground");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");

@@ -15,8 +15,9 @@ struct AVPacket;
 
 namespace marey::draw {
 
-/// One stream of H.264 in an MP4, and in the finished one a film's sound beside it. It is written as fragments of a quarter of a second, so that at any time what was written can be
-/// read; `finish` rewrites it without encoding anew as an ordinary MP4 whose index comes first.
+/// One stream of H.264 in an MP4, and in the finished one a film's sound beside it. It is written as fragments of a quarter of a
+/// second, so that at any time what was written can be read; `finish` rewrites it without encoding anew as an ordinary MP4 whose
+/// index comes first.
 class Mp4File {
  public:
   /// `codec` is open; `sound_of` is a film whose sound goes along, empty: none. Throws Error if the file cannot be written.

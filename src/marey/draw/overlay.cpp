@@ -91,8 +91,8 @@ Colour colour_of(const TrackName& name, TrackId id) {
   return {(*name.colour)[0], (*name.colour)[1], (*name.colour)[2]};
 }
 
-/// Cameras of 10 or 12 bits write pictures of 16, of which they fill the darkest part alone: white is the lightest that so many bits
-/// hold as the pictures have shown until now, so that it hardly ever changes.
+/// Cameras of 10 or 12 bits write pictures of 16, of which they fill the darkest part alone: white is the lightest that so many
+/// bits hold as the pictures have shown until now, so that it hardly ever changes.
 Picture Overlay::lightened(const Picture& picture) {
   if (picture.luma().depth() != CV_16U) return picture;
   const double most = lightest(picture);

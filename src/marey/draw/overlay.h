@@ -39,7 +39,7 @@ class Overlay {
 
   OverlayOptions options_;
   FadingTrails trails_;
-  double white_ = 255;  // of pictures of 16 bits
+  double white_ = 255;                    // of pictures of 16 bits
   std::map<TrackId, std::size_t> sides_;  // where each name stood last
 };
 

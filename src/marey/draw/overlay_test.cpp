@@ -107,9 +107,12 @@ TEST(Overlay, PicturesOfTwelveBitsAreAsLightAsOthers) {
   deep.at<std::uint16_t>(3, 3) = 4000;
   EXPECT_NEAR(overlay.draw(Picture(deep), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 16 + 219 / 2, 2);
   // The next picture is darker, and is drawn so.
-  EXPECT_NEAR(overlay.draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
-              16 + 219 / 4, 2);
-  EXPECT_NEAR(Overlay().draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 235, 1);
+  EXPECT_NEAR(
+      overlay.draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      16 + 219 / 4, 2);
+  EXPECT_NEAR(
+      Overlay().draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      235, 1);
 }
 
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {

@@ -171,7 +171,8 @@ std::unique_ptr<FileReader> open_recording(const std::string& path, const Format
   if (format.z_up || up_axis(reader->info(), options.up) == UpAxis::z) return reader;
   std::string told;
   if (!options.up)
-    told = fmt::format("{}: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)", path);
+    told = fmt::format("{}: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)",
+                       path);
   return std::make_unique<TurningReader>(std::move(reader), std::move(told));
 }
 

@@ -152,7 +152,8 @@ gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string
 
 namespace {
 
-/// Mean speed of the markers of a row, m/s, between the rows `step` before and after it; nothing where it has too few on both sides.
+/// Mean speed of the markers of a row, m/s, between the rows `step` before and after it; nothing where it has too few on both
+/// sides.
 std::optional<double> speed_at(const GaitMarkers& markers, std::size_t row, std::size_t step) {
   if (row < step || row + step >= markers.rows.size()) return std::nullopt;
   const gait::MarkerPlaces &before = markers.rows[row - step], &after = markers.rows[row + step];

@@ -19,7 +19,7 @@ namespace gait = analyse::gait;
 struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;
   std::int64_t first_index = 0;
-  format::UpAxis up = format::UpAxis::z;  ///< the axis of the file that was taken for up
+  format::UpAxis up = format::UpAxis::z;                   ///< the axis of the file that was taken for up
   const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
   std::vector<gait::MarkerPlaces> rows;
   std::vector<std::string> warnings;

@@ -260,9 +260,10 @@ HumanSkeleton human_from_motion(const std::string& path, const HumanOptions& opt
   const std::string how = quiet.stands ? "stands still" : fmt::format("is quietest (markers move at {:.1f} m/s)", quiet.speed_m_s);
   human.warnings.insert(
       human.warnings.begin(),
-      fmt::format("{}: without --static the skeleton is calibrated from this motion alone, by the posture at {:.2f} s, where the person "
-                  "{}, then by all of it, left and right alike; one of a static trial is surer",
-                  path, quiet.time_s, how));
+      fmt::format(
+          "{}: without --static the skeleton is calibrated from this motion alone, by the posture at {:.2f} s, where the person "
+          "{}, then by all of it, left and right alike; one of a static trial is surer",
+          path, quiet.time_s, how));
   return human;
 }
 

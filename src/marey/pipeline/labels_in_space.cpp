@@ -147,7 +147,8 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   std::vector<TrackColumns> left_out = take_out(read, leave_out, fitted);
   require_fitted(leave_out, fitted, recording);
   solve::labels::Labelled labelled = solve::labels::label_recording(read, learned, options, hooks);
-  if (!accept.empty()) summary.accepted = solve::labels::accept_suggestions(labelled, is_all(accept) ? std::vector<std::string>() : accept);
+  if (!accept.empty())
+    summary.accepted = solve::labels::accept_suggestions(labelled, is_all(accept) ? std::vector<std::string>() : accept);
   Recording& named = labelled.recording;
   named.header.name = std::filesystem::path(recording).stem().string();
   named.header.made_by = {

@@ -175,8 +175,8 @@ void need_steps(const std::string& recording, const GaitMeasure& measure, const 
   throw Error("{}: no steps were found: HEE and TOE of a side are needed, and a person who walks{}", recording, hint);
 }
 
-/// Throws Error where the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said, that is
-/// returned, to be told: the person may lie down.
+/// Throws Error where the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said,
+/// that is returned, to be told: the person may lie down.
 std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& said,
                                      const GaitMarkers& markers, const gait::GaitSubject& subject) {
   constexpr double kMostly = 0.8;  // cosine

@@ -59,8 +59,8 @@ Recording part_of(const Recording& recording, const edit::FrameRange& frames, co
 void require_frames(std::int64_t count, const edit::FrameRange& frames, const std::string& name) {
   if (count > 0) return;
   const std::string last = frames.last == edit::FrameRange::kToTheEnd ? "" : fmt::format("{}", frames.last);
-  throw Error("{}: has none of the frames {}:{}; they are counted from 0, and `marey info` says which there are", name, frames.first,
-              last);
+  throw Error("{}: has none of the frames {}:{}; they are counted from 0, and `marey info` says which there are", name,
+              frames.first, last);
 }
 
 }  // namespace marey::pipeline

@@ -280,8 +280,8 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
   }
   format::skeleton::SkeletonFile file;
   const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
-  HumanSkeleton human = options.static_trial.empty() ? human_of_motion(recording, how, hooks)
-                                                     : human_from_static(options.static_trial, how, hooks);
+  HumanSkeleton human =
+      options.static_trial.empty() ? human_of_motion(recording, how, hooks) : human_from_static(options.static_trial, how, hooks);
   file.skeleton = std::move(human.skeleton);
   file.warnings = std::move(human.warnings);
   if (!options.static_trial.empty()) {

@@ -19,12 +19,14 @@ namespace marey::pipeline {
 
 struct SolveOptions {
   format::skeleton::SkeletonOptions read_skeleton;
-  std::optional<format::UpAxis> up;    ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
+  std::optional<format::UpAxis>
+      up;  ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
   std::vector<std::string> leave_out;  ///< labels of markers that are not used
   format::skeleton::BvhDialect bvh;
   solve::skeleton::PoseOptions pose;
-  bool smooth = false;         ///< a second pass over the whole motion
-  std::string static_trial;    ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
+  bool smooth = false;  ///< a second pass over the whole motion
+  std::string
+      static_trial;  ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
   std::string marker_set;      ///< its name; empty: known by the labels
   std::string motion;          ///< and of its range of motion: where its joints are; empty: none
   bool calibrate = false;      ///< first fits the skeleton to the person, from the recording itself

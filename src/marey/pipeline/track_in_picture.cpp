@@ -30,8 +30,8 @@ Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayO
   if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
-  const draw::OverlayFilm::View view{.camera = feed.id(), .size = feed.info().size, 
-                                     .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
+  const draw::OverlayFilm::View view{
+      .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
   sinks.add(std::make_unique<draw::OverlayFilm>(output.overlay, view, drawn));
   return sinks;
 }
