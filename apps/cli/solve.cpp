@@ -160,6 +160,16 @@ void run(SolveCommand& command) {
   }
 }
 
+void require_one_skeleton(const SolveCommand& command) {
+  const pipeline::SolveOptions& how = command.options;
+  if (!command.skeleton.empty() && !how.static_trial.empty())
+    throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!how.marker_set.empty() && !command.skeleton.empty())
+    throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
+  if (!how.motion.empty() && how.static_trial.empty())
+    throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
+}
+
 void add_file_options(Command& command, SolveCommand& options) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
@@ -218,12 +228,7 @@ void add_solve(Command& program) {
   add_file_options(command, *options);
   command.reports(options->json, options->quiet);
   command.runs([options] {
-    if (!options->skeleton.empty() && !options->options.static_trial.empty())
-      throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
-    if (!options->options.marker_set.empty() && !options->skeleton.empty())
-      throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
-    if (!options->options.motion.empty() && options->options.static_trial.empty())
-      throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
+    require_one_skeleton(*options);
     run(*options);
   });
 }

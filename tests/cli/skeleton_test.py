@@ -162,6 +162,26 @@ class Skeleton(unittest.TestCase):
             self.assertLess(max(offs.values()), 8, name)
             self.assertLess(shoulder, 20, name)
 
+    def test_from_the_motion_alone(self):
+        """Against the skeleton of the child's static trial: knees bend alike, and the person is as large."""
+        for name in self.CHILDREN[:4]:
+            static, walk = self.child(name, "static"), self.child(name, "straight")
+            done = self.marey("solve", walk, "-o", "alone.mot", "-o", "alone.bvh")
+            self.assertIn("without --static the skeleton is calibrated from this motion alone, by the posture at", done.stderr)
+            self.assertIn(f"{walk}: the skeleton", done.stderr)
+            told = json.loads(self.marey("solve", walk, "-o", "alone.mot", "--json").stdout)
+            known = json.loads(self.marey("solve", walk, "--static", static, "-o", "known.mot", "--json").stdout)
+            offs = {}
+            for joint in ("left_knee_flexion", "right_knee_flexion", "left_hip_flexion", "right_hip_flexion"):
+                pairs = list(zip(self.column("alone.mot", joint, "\t"), self.column("known.mot", joint, "\t")))
+                mean = sum(a - b for a, b in pairs) / len(pairs)
+                offs[joint] = (mean, (sum((a - b - mean) ** 2 for a, b in pairs) / len(pairs)) ** 0.5)
+            print(f"{name}: {told['rms_mm']:.1f} mm (static trial: {known['rms_mm']:.1f} mm); angles off by " +
+                  ", ".join(f"{joint} {mean:.1f} ± {rms:.1f} deg" for joint, (mean, rms) in offs.items()))
+            self.assertLess(told["rms_mm"], 15, name)
+            self.assertLess(max(abs(mean) for mean, _ in offs.values()), 10, name)
+            self.assertLess(max(rms for _, rms in offs.values()), 5, name)
+
     def test_bones_have_ends(self):
         self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.bvh", "-q")
         joint, ends = "", {}
@@ -466,7 +486,7 @@ class Skeleton(unittest.TestCase):
                 self.assertIn(word, done.stderr)
 
         says(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
-        says(1, ["skeleton is wanted"], "walk.trc", "-o", "x.mot")
+        says(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
         says(1, ["stands still"], "walk.c3d", "--static", "walk.c3d", "-o", "x.mot")
         says(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
         says(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
