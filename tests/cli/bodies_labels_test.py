@@ -63,7 +63,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertIn("has no marker T10", self.marey("label", "learn", "standing.csv", "--markers", "LASI,RASI,SACR,T10", "-o", "set.toml", code=1).stderr)
 
     def test_suggestions_are_accepted(self):
-        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 300, "-o", "walk", "-q")
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 120, "-o", "walk", "-q")
         self.marey("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "-o", "walk.marey", "-q")
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
         # So much better than the next that hardly any name is: most stay suggestions.
