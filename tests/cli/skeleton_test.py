@@ -73,6 +73,7 @@ class Skeleton(unittest.TestCase):
 
     def test_the_summary_says_what_fits_and_what_is_not_seen(self):
         done = self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot")
+        self.assertIn("walk.trc: the skeleton subject01, solved from 31 markers in 73 frames", done.stderr)
         self.assertIn("mm RMS", done.stderr)
         self.assertIn("not observed, no marker shows them to 10°: mtp_angle_r, mtp_angle_l", done.stderr)
         summary = json.loads(self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot", "--json").stdout)
@@ -164,12 +165,11 @@ class Skeleton(unittest.TestCase):
 
     def test_from_the_motion_alone(self):
         """Against the skeleton of the child's static trial: knees bend alike, and the person is as large."""
-        for name in self.CHILDREN[:4]:
+        for name in self.CHILDREN[:2]:
             static, walk = self.child(name, "static"), self.child(name, "straight")
-            done = self.marey("solve", walk, "-o", "alone.mot", "-o", "alone.bvh")
+            done = self.marey("solve", walk, "-o", "alone.mot", "-o", "alone.bvh", "--json")
             self.assertIn("without --static the skeleton is calibrated from this motion alone, by the posture at", done.stderr)
-            self.assertIn(f"{walk}: the skeleton", done.stderr)
-            told = json.loads(self.marey("solve", walk, "-o", "alone.mot", "--json").stdout)
+            told = json.loads(done.stdout)
             known = json.loads(self.marey("solve", walk, "--static", static, "-o", "known.mot", "--json").stdout)
             offs = {}
             for joint in ("left_knee_flexion", "right_knee_flexion", "left_hip_flexion", "right_hip_flexion"):
