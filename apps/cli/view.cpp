@@ -67,9 +67,10 @@ void add_view(Command& program) {
   command.input_file("--film", how.film, "the film that was tracked, to be shown behind tracks in a picture");
   command.flag("--edit", how.edit, "let the page change FILE, a take: what \"marey edit\" can do, each edit to be undone");
   add_web_place(command, how.place);
-  using Axis = format::UpAxis;
-  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", Axis::y}, {"z", Axis::z}}};
-  command.choice("--up", how.read.up, kAxes, "the axis that is up in FILE, of points in space");
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice("--up", how.read.up, kAxes,
+                 "the axis that is up in FILE, of points in space; as FILE says where it is left out, else z");
   command.group("People on the ground");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");

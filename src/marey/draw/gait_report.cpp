@@ -58,8 +58,9 @@ std::string panel_svg(const GaitReport::Panel& panel) {
     svg.text({kPanelLeft - 5, y + 4}, fmt::format("{:g}", std::round(v * 1000) / 1000 + 0.0), {{"text-anchor", "end"}});
   }
   for (const int percent : {0, 25, 50, 75, 100}) {
-    svg.text({kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0, kPanelHeight - 12},
-             fmt::format("{}{}", percent, percent == 100 ? " %" : ""), {{"text-anchor", percent == 100 ? "end" : "middle"}});
+    const bool last = percent == 100;  // ends at the panel's edge: about its middle it would be cut off
+    const double x = last ? kPanelWidth - 2 : kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0;
+    svg.text({x, kPanelHeight - 12}, fmt::format("{}{}", percent, last ? " %" : ""), {{"text-anchor", last ? "end" : "middle"}});
   }
   add_band(svg, panel.left, scale, kLeftColour);
   add_band(svg, panel.right, scale, kRightColour);

@@ -13,6 +13,7 @@
 #include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/solve/labels/accept_suggestions.h"
 
 namespace marey::pipeline {
 namespace {
@@ -81,6 +82,17 @@ std::vector<TrackColumns> take_out(Recording& recording, const std::vector<std::
   return out;
 }
 
+bool is_all(const std::vector<std::string>& accept) {
+  return accept == std::vector<std::string>{"all"};
+}
+
+void require_of_set(const std::vector<std::string>& accept, const LearnedMarkers& learned, const std::string& set) {
+  for (const std::string& name : accept) {
+    if (!is_all(accept) && std::find(learned.labels.begin(), learned.labels.end(), name) == learned.labels.end())
+      throw Error("{}: has no marker {}, whose name could be accepted; `all` accepts what fits best", set, name);
+  }
+}
+
 void require_fitted(const std::vector<std::string>& patterns, const std::set<std::string>& fitted, const std::string& where) {
   for (const std::string& pattern : patterns) {
     if (!fitted.contains(pattern)) throw Error("{}: no point is called {}, so that it cannot be left out", where, pattern);
@@ -124,16 +136,19 @@ std::vector<std::string> warnings_of(const LearnedMarkers& learned) {
 
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks,
-                             const std::vector<std::string>& leave_out) {
+                             const std::vector<std::string>& leave_out, const std::vector<std::string>& accept) {
   LabelSummary summary;
   const format::Format& format = format::format_to_write(out, "", format::Content::space);
   const LearnedMarkers learned = format::bodies::read_label_set(set);
+  require_of_set(accept, learned, set);
   format::BesidePoints beside;
   Recording read = points_in(recording, &summary.warnings, &beside);
   std::set<std::string> fitted;
   std::vector<TrackColumns> left_out = take_out(read, leave_out, fitted);
   require_fitted(leave_out, fitted, recording);
   solve::labels::Labelled labelled = solve::labels::label_recording(read, learned, options, hooks);
+  if (!accept.empty())
+    summary.accepted = solve::labels::accept_suggestions(labelled, is_all(accept) ? std::vector<std::string>() : accept);
   Recording& named = labelled.recording;
   named.header.name = std::filesystem::path(recording).stem().string();
   named.header.made_by = {

@@ -47,6 +47,7 @@ void add_films(Sinks& sinks, const GroundOutput& output, const std::vector<Feed>
     const draw::OverlayFilm::View view{.camera = feed.id(),
                                        .size = feed.info().size,
                                        .rate_hz = feed.info().rate_hz,
+                                       .sound_of = feed.sound_source(),
                                        .offset = duration_from_seconds(camera.offset_s.value_or(0))};
     sinks.add(std::make_unique<draw::OverlayFilm>((fs::path(output.overlays) / (camera.name + ".mp4")).string(), view,
                                                   draw::OverlayOptions{.trail_of_centres = true}));
