@@ -26,6 +26,10 @@ constexpr int kCoarse = 2;
 constexpr double kStillThere = 0.6;  // of a picture's corners: with fewer, the next ones are told against a newer picture
 constexpr int kBeforeLeast = 10;     // pictures that only the one before tells, after which new corners are taken
 constexpr int kInMedian = 15;
+constexpr double kMostSamples = 0.8;  // of the samples: with fewer by corners, all pixels are asked
+constexpr std::size_t kTooFewOf = 8;
+constexpr int kLookRounds = 3;         // of bringing samples to their median
+constexpr int kAllPixelsAtFirst = 25;  // pictures lost in turn, after which all pixels are asked as seldom as everything else
 
 std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients) {
   std::vector<cv::Mat> pyramid;
@@ -244,10 +248,10 @@ cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) co
   return result;
 }
 
-/// Whether a third of the other samples show what one of them does: they then have places and motions against it.
-bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
+/// How many of the samples show what one of them does: those then have places and motions against it.
+std::size_t StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
   corners_.clear();
-  if (!take_corners(samples[anchor].shrunk)) return false;
+  if (!take_corners(samples[anchor].shrunk)) return 0;
   last_ = {};
   std::size_t found = 0;
   for (Sampled& sample : samples) {
@@ -259,7 +263,60 @@ bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor
     last_ = fit->motion;
     ++found;
   }
-  return 3 * found >= samples.size() + 2;  // it shows itself
+  return found;
+}
+
+/// The same by all pixels: against one sample first, then against the median of those that were found, in which less moves.
+std::size_t StandingScene::begin_with_all_pixels(std::vector<Sampled>& samples, std::size_t anchor) {
+  std::vector<SceneLooks> looks;
+  for (const Sampled& sample : samples) looks.emplace_back(sample.shrunk);
+  SceneLooks scene = looks[anchor];
+  std::size_t found = 0;
+  for (int round = 0; round < kLookRounds && scene.can_be_found(); ++round) {
+    found = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto at = scene.find(looks[i], view_, options_.farthest * size_.width);
+      samples[i].places.clear();
+      samples[i].motion = at ? std::optional(at->motion) : std::nullopt;
+      found += at ? 1 : 0;
+      if (i >= kTooFewOf && found * kTooFewOf < i) return 0;  // another scene: no need to ask all of them
+    }
+    if (3 * found < samples.size() + 2) return found;
+    scene = SceneLooks(laid_over(samples, {}));
+  }
+  return found;
+}
+
+/// The median of samples as the camera at `rest` would have taken them.
+cv::Mat StandingScene::laid_over(const std::vector<Sampled>& samples, const SceneMotion& rest) const {
+  std::vector<cv::Mat> back;
+  std::vector<const Sampled*> found;
+  for (const Sampled& sample : samples) {
+    if (sample.motion) found.push_back(&sample);
+  }
+  const std::size_t step = (found.size() + kInMedian - 1) / kInMedian;
+  for (std::size_t i = 0; i < found.size(); i += step) back.push_back(at_rest(found[i]->shrunk, against(*found[i]->motion, rest)));
+  return median_picture(back);
+}
+
+/// By corners; where those tell of too few samples, by all pixels if they tell of more. Whether a third is told of.
+bool StandingScene::begin(std::vector<Sampled>& samples) {
+  if (samples.empty()) return false;
+  std::vector<Sampled> best;
+  std::size_t most = 0;
+  const auto enough = [&] { return static_cast<double>(most) >= kMostSamples * static_cast<double>(samples.size()); };
+  for (const bool all_pixels : {false, true}) {
+    for (std::size_t quarter = 0; quarter < 4 && !enough(); ++quarter) {
+      const std::size_t anchor = quarter * (samples.size() - 1) / 3;
+      const std::size_t found = all_pixels ? begin_with_all_pixels(samples, anchor) : begin_with(samples, anchor);
+      if (found <= most) continue;
+      most = found;
+      best = samples;
+    }
+  }
+  if (3 * most < samples.size() + 2) return false;  // one shows itself
+  samples = std::move(best);
+  return true;
 }
 
 bool StandingScene::learn(std::span<const Picture> pictures) {
@@ -267,17 +324,15 @@ bool StandingScene::learn(std::span<const Picture> pictures) {
   for (const Picture& picture : pictures) {
     if (picture.size() == picture_) samples.push_back({shrunk(picture), {}, {}});
   }
-  bool found = false;
-  for (std::size_t quarter = 0; quarter < 4 && !found && !samples.empty(); ++quarter)
-    found = begin_with(samples, quarter * (samples.size() - 1) / 3);
-  if (!found) {
+  if (!begin(samples)) {
     corners_.clear();
     return false;
   }
   std::erase_if(samples, [](const Sampled& sample) { return !sample.motion; });
   std::vector<std::vector<FollowedPlace>> telling;
   for (const Sampled& sample : samples) {
-    if (sample.motion->turn.head<2>().norm() * view_.focal >= kTellsFocal) telling.push_back(sample.places);
+    if (!sample.places.empty() && sample.motion->turn.head<2>().norm() * view_.focal >= kTellsFocal)
+      telling.push_back(sample.places);
   }
   if (!focal_known_ && !telling.empty()) settle_focal(telling);
   if (telling.size() >= 5) focal_known_ = true;
@@ -288,26 +343,36 @@ bool StandingScene::learn(std::span<const Picture> pictures) {
     for (int axis = 0; axis < 3; ++axis) turns[static_cast<std::size_t>(axis)].push_back(sample.motion->turn[axis]);
   }
   for (int axis = 0; axis < 3; ++axis) rest.turn[axis] = median_of(turns[static_cast<std::size_t>(axis)]);
-  std::vector<cv::Mat> laid_over;
-  const std::size_t step = (samples.size() + kInMedian - 1) / kInMedian;
-  for (std::size_t i = 0; i < samples.size(); i += step)
-    laid_over.push_back(at_rest(samples[i].shrunk, against(*samples[i].motion, rest)));
+  const cv::Mat median = laid_over(samples, rest);
   corners_.clear();
   last_ = {};
-  return take_corners(median_picture(laid_over));
+  looks_ = SceneLooks(median);
+  looks_learned_ = true;
+  return take_corners(median) || looks_.can_be_found();
 }
 
-/// The mean of recent pictures, and new corners out of it where too few of the old ones are found again.
+/// Into the mean of recent pictures; whether it has changed.
+bool StandingScene::remember(const cv::Mat& now, const SceneMotion& motion) {
+  if (++since_mean_ < kMeanEvery) return false;
+  since_mean_ = 0;
+  if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
+  ++in_mean_;
+  cv::accumulateWeighted(at_rest(now, motion), mean_, std::max(kMeanShare, 1.0 / in_mean_));
+  if (!looks_learned_ && in_mean_ == kMeanLeast) {
+    cv::Mat levels;
+    mean_.convertTo(levels, CV_8U);
+    looks_ = SceneLooks(levels);  // in which those who walk are fainter than in the first picture
+  }
+  return true;
+}
+
+/// New corners out of the mean of recent pictures where too few of the old ones are found again.
 void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
   Corners& corners = corners_[used_];
   const double share = static_cast<double>(fit.agreeing) / static_cast<double>(corners.at.size());
   agreed_ = agreed_ == 0 ? share : agreed_ + 0.05 * (share - agreed_);
   corners.agreed = std::max(corners.agreed, agreed_);
-  if (++since_mean_ < kMeanEvery) return;
-  since_mean_ = 0;
-  if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
-  ++in_mean_;
-  cv::accumulateWeighted(at_rest(now, fit.motion), mean_, std::max(kMeanShare, 1.0 / in_mean_));
+  if (!remember(now, fit.motion)) return;
   if (in_mean_ < kMeanLeast || agreed_ > options_.renew * corners.agreed) return;
   cv::Mat levels;
   mean_.convertTo(levels, CV_8U);
@@ -317,7 +382,7 @@ void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
 
 /// By the last picture whose motion is known: where somebody hides what the scene was known by, or has uncovered it, one picture
 /// still shows what the next one does. From time to time the scene's corners are taken anew then.
-std::optional<SceneFit> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+std::optional<SceneMotion> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
   if (before_picture_.empty()) return std::nullopt;
   if (before_.pyramid.empty()) {
     before_.at = corners_of(before_picture_, options_.corners, options_.least_corner);
@@ -334,35 +399,53 @@ std::optional<SceneFit> StandingScene::find_from_before(const cv::Mat& now, cons
     before_picture_ = now;
     before_motion_ = found->motion;
   }
-  if (++by_before_ < kBeforeLeast) return found;
+  if (++by_before_ < kBeforeLeast) return found->motion;
   by_before_ = 0;
   take_corners(at_rest(now, found->motion));
-  return found;
+  return found->motion;
+}
+
+/// Against the scene with all pixels.
+std::optional<SceneMotion> StandingScene::find_by_all_pixels(const cv::Mat& now) {
+  if (lost_run_ >= kAllPixelsAtFirst && lost_run_ % kSearchAgain != 0) return std::nullopt;
+  const auto found = looks_.find(SceneLooks(now), view_, options_.farthest * size_.width);
+  if (!found) return std::nullopt;
+  remember(now, found->motion);
+  return found->motion;
+}
+
+/// By corners, from where the camera was last or from anywhere.
+std::optional<SceneFit> StandingScene::find_by_corners(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+  if (corners_.empty()) return std::nullopt;
+  std::vector<FollowedPlace> places;
+  auto found = find_from(corners_[used_], pyramid, last_, &places);
+  if (!found) return lost_run_ % kSearchAgain == 0 ? find_anywhere(now, pyramid) : std::nullopt;
+  return learn_focal(places, found->motion) ? fit_motion(places, view_, options_.agree) : found;
 }
 
 std::optional<SceneMotion> StandingScene::find(const Picture& picture) {
   if (picture.size() != picture_) return std::nullopt;
   const cv::Mat now = shrunk(picture);
-  if (corners_.empty()) return take_corners(now) ? std::optional(SceneMotion{}) : std::nullopt;
-  const auto pyramid = pyramid_of(now, false);
-  std::vector<FollowedPlace> places;
-  auto found = find_from(corners_[used_], pyramid, last_, &places);
-  if (found) {
-    if (learn_focal(places, found->motion)) found = fit_motion(places, view_, options_.agree);
-  } else if (lost_run_ % kSearchAgain == 0) {
-    found = find_anywhere(now, pyramid);
+  if (corners_.empty() && looks_.empty()) {
+    SceneLooks first(now);
+    if (!take_corners(now) && !first.can_be_found()) return std::nullopt;
+    looks_ = std::move(first);
+    return SceneMotion{};
   }
-  const bool by_corners = found.has_value();
-  if (!found) found = find_from_before(now, pyramid);
-  lost_run_ = found ? 0 : lost_run_ + 1;
-  if (!found) return std::nullopt;
-  last_ = found->motion;
-  if (!by_corners) return last_;
+  const auto pyramid = pyramid_of(now, false);
+  const auto found = find_by_corners(now, pyramid);
+  std::optional<SceneMotion> motion = found ? std::optional(found->motion) : find_by_all_pixels(now);
+  const bool by_scene = motion.has_value();
+  if (!motion) motion = find_from_before(now, pyramid);
+  lost_run_ = motion ? 0 : lost_run_ + 1;
+  if (!motion) return std::nullopt;
+  last_ = *motion;
+  if (!by_scene) return last_;
   by_before_ = 0;
   before_ = {};
   before_picture_ = now;
   before_motion_ = last_;
-  keep_up(now, *found);
+  if (found) keep_up(now, *found);
   return last_;
 }
 
