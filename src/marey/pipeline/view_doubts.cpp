@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kCutsNamed = 5;
 constexpr double kScrolls = 0.04;   // of the pictures looked at
-constexpr double kLookAgain = 1.1;  // times as many pictures as at the last look: all of them are gone through each time
+constexpr double kLookMore = 1.1;  // times as many pictures as at the last look: all of them are gone through each time
 
 std::string moments(const std::vector<double>& cuts) {
   std::string text;
@@ -87,7 +87,7 @@ std::vector<std::string> ViewDoubts::news() {
     tell(cut_told_, fmt::format("the video is cut at {:.1f} s: the scene is another from there on; all cuts are named at the end",
                                 view_.cuts().front()));
   if (view_.looked_at() < next_look_ || moved_told_) return all;
-  next_look_ = 1 + static_cast<std::int64_t>(kLookAgain * static_cast<double>(view_.looked_at()));
+  next_look_ = 1 + static_cast<std::int64_t>(kLookMore * static_cast<double>(view_.looked_at()));
   const source::steady::ViewReport report = view_.report();
   if (report.scrolling > kScrolls) {
     tell(moved_told_, said_of_scrolling(report.scrolling));

@@ -16,13 +16,13 @@ constexpr double kNoise = 3;                               // grey levels of loc
 constexpr double kAlikeReach = 0.8;                        // of local contrast: what differs by more is something else
 constexpr double kByChance = 0.25;                         // share of any two pictures that is alike
 constexpr double kUnseen = 0.3;                            // of the scene, which counts as seen by chance
-constexpr std::size_t kStarts = 4;
-constexpr int kApart = 2;  // px of the smallest size between two starts
+constexpr std::size_t kStarts = 10, kFollowed = 3;         // shifts; of those, followed to the larger sizes
+constexpr int kApart = 2;                                  // px of the smallest size between two starts
 constexpr int kSteps = 8;
-constexpr double kStill = 0.03;                       // px of a step that is the last
-constexpr double kLeastAlike = 0.4, kPlainly = 0.03;  // share; and more than with another shift
-constexpr double kLeastTexture = 0.05;                // mean weight
-constexpr double kAnotherPlace = 0.02;                // of the picture's width
+constexpr double kStill = 0.03;         // px of a step that is the last
+constexpr double kLeastAlike = 0.4;     // share
+constexpr double kLeastTexture = 0.05;  // mean weight
+constexpr double kAnotherPlace = 0.02;  // of the picture's width
 
 SceneLooks::Level level_of(const cv::Mat& picture, double scale) {
   SceneLooks::Level level{.contrast = {}, .weight = {}, .scale = scale};
@@ -175,26 +175,38 @@ SceneLooks::Found SceneLooks::followed(const SceneLooks& now, SceneMotion motion
   return {motion, alike_with(levels_[last], now.levels_[last], motion, scaled_view(view, levels_[last].scale))};
 }
 
-std::optional<SceneLooks::Found> SceneLooks::find(const SceneLooks& now, const PinholeView& view, double farthest) const {
+std::optional<SceneLooks::Found> SceneLooks::find(const SceneLooks& now, const PinholeView& view, double farthest,
+                                                  double plainly) const {
   if (!can_be_found() || now.empty() || now.levels_.back().contrast.size() != levels_.back().contrast.size()) return std::nullopt;
   const Level &small = levels_.front(), &small_now = now.levels_.front();
   const std::size_t all = levels_.size(), judged = std::max<std::size_t>(1, all - 1);  // without the largest, which noise fills
+  const std::size_t chosen = std::min<std::size_t>(2, judged);
   std::vector<Found> found;
   for (const Start& start : best_shifts(small, small_now, static_cast<int>(std::ceil(farthest / small.scale)))) {
     SceneMotion motion;
     motion.turn = {-start.by.y * small.scale / view.focal, start.by.x * small.scale / view.focal, 0};
-    const Found one = followed(now, motion, view, 0, judged);
-    if (one.motion.turn.head<2>().norm() * view.focal <= farthest) found.push_back(one);
+    found.push_back(followed(now, motion, view, 0, chosen));
   }
-  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.alike > b.alike; });
-  if (found.empty() || found.front().alike < kLeastAlike) return std::nullopt;
-  const auto elsewhere = [&](const Found& other) {
-    return (other.motion.turn - found.front().motion.turn).head<2>().norm() * view.focal > kAnotherPlace * 2 * view.principal.x();
+  const auto better = [](const Found& a, const Found& b) { return a.alike > b.alike; };
+  const auto elsewhere = [&](const Found& a, const Found& b) {
+    return (a.motion.turn - b.motion.turn).head<2>().norm() * view.focal > kAnotherPlace * 2 * view.principal.x();
   };
-  const auto second = std::find_if(found.begin() + 1, found.end(), elsewhere);
-  if (second != found.end() && found.front().alike < second->alike + kPlainly) return std::nullopt;
-  if (judged == all) return found.front();
-  return Found{followed(now, found.front().motion, view, judged, all).motion, found.front().alike};
+  std::stable_sort(found.begin(), found.end(), better);
+  std::vector<Found> apart;
+  for (Found& one : found) {
+    const bool too_far = one.motion.turn.head<2>().norm() * view.focal > farthest;
+    if (too_far || apart.size() == kFollowed ||
+        !std::all_of(apart.begin(), apart.end(), [&](const Found& other) { return elsewhere(one, other); }))
+      continue;
+    apart.push_back(judged > chosen ? followed(now, one.motion, view, chosen, judged) : one);
+  }
+  std::stable_sort(apart.begin(), apart.end(), better);
+  if (apart.empty() || apart.front().alike < kLeastAlike) return std::nullopt;
+  const auto second =
+      std::find_if(apart.begin() + 1, apart.end(), [&](const Found& other) { return elsewhere(apart.front(), other); });
+  if (second != apart.end() && apart.front().alike < second->alike + plainly) return std::nullopt;
+  if (judged == all) return apart.front();
+  return Found{followed(now, apart.front().motion, view, judged, all).motion, apart.front().alike};
 }
 
 }  // namespace marey::source::steady

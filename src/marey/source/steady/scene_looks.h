@@ -37,8 +37,9 @@ class SceneLooks {
   /// Whether there is enough in it to hold on to.
   bool can_be_found() const;
 
-  /// Where `now`, of the same size, looks against this, if that can be told; not further off than `farthest` px.
-  std::optional<Found> find(const SceneLooks& now, const PinholeView& view, double farthest) const;
+  /// Where `now`, of the same size, looks against this, if that can be told: with which more is alike than with any other motion,
+  /// by a share of `plainly`. Not further off than `farthest` px.
+  std::optional<Found> find(const SceneLooks& now, const PinholeView& view, double farthest, double plainly = 0.06) const;
 
  private:
   /// From `motion` on through the levels `first` to before `end`.

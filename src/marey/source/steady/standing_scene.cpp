@@ -28,8 +28,9 @@ constexpr int kBeforeLeast = 10;     // pictures that only the one before tells,
 constexpr int kInMedian = 15;
 constexpr double kMostSamples = 0.8;  // of the samples: with fewer by corners, all pixels are asked
 constexpr std::size_t kTooFewOf = 8;
-constexpr int kLookRounds = 3;         // of bringing samples to their median
-constexpr int kAllPixelsAtFirst = 25;  // pictures lost in turn, after which all pixels are asked as seldom as everything else
+constexpr double kPlainlyInSamples = 0.03;  // a few that are wrong do not matter to their median
+constexpr int kLookRounds = 3;              // of bringing samples to their median
+constexpr int kAllPixelsAtFirst = 25;       // pictures lost in turn, after which all pixels are asked as seldom as everything else
 
 std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients) {
   std::vector<cv::Mat> pyramid;
@@ -275,7 +276,7 @@ std::size_t StandingScene::begin_with_all_pixels(std::vector<Sampled>& samples, 
   for (int round = 0; round < kLookRounds && scene.can_be_found(); ++round) {
     found = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const auto at = scene.find(looks[i], view_, options_.farthest * size_.width);
+      const auto at = scene.find(looks[i], view_, options_.farthest * size_.width, kPlainlyInSamples);
       samples[i].places.clear();
       samples[i].motion = at ? std::optional(at->motion) : std::nullopt;
       found += at ? 1 : 0;
