@@ -13,7 +13,7 @@ namespace marey::pipeline {
 namespace {
 
 constexpr std::size_t kCutsNamed = 5;
-constexpr double kScrolls = 0.04;   // of the pictures looked at
+constexpr double kScrolls = 0.04;  // of the pictures looked at
 constexpr double kLookMore = 1.1;  // times as many pictures as at the last look: all of them are gone through each time
 
 std::string moments(const std::vector<double>& cuts) {

@@ -35,6 +35,7 @@ struct StandingSceneOptions {
   double share = 0.3;          ///< of the corners within the picture that agree, or it is lost
   double least_spread = 0.05;  ///< of the picture's height that those cover, as a standard deviation
   double renew = 0.5;          ///< share of what agreed with the corners when they were new: fewer, and new ones are taken
+  double tells_focal = 1.5;    ///< px of motion, from which on the focal length shows
 };
 
 class StandingScene {
@@ -65,6 +66,7 @@ class StandingScene {
     std::optional<SceneMotion> motion;
   };
 
+  static std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients);
   cv::Mat shrunk(const Picture& picture) const;
   bool take_corners(const cv::Mat& from);
   std::vector<FollowedPlace> follow(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
