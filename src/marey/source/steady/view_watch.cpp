@@ -17,18 +17,18 @@ constexpr int kCellsAcross = 14, kCellsDown = 10;  // one corner of each
 constexpr int kFewestCorners = 12;
 constexpr float kCornerQuality = 0.003F;  // of the best corner
 constexpr int kFlowWindow = 13, kFlowLevels = 3;
-constexpr double kAgree = 0.5;                // px
-constexpr double kShareFollowed = 0.4;        // of the corners that were followed, which agree where the motion is known
-constexpr double kMuchThere = 0.7;            // of all corners
-constexpr double kShareOfAll = 0.25;          // of all corners
-constexpr double kSpread = 0.06;              // of the picture's height, standard deviation
-constexpr double kCutChange = 0.12;           // 1 - correlation of two thumbnails
-constexpr double kCutStandsOut = 4;           // times the usual change
-constexpr double kCutAlone = 2;               // times the change before and after
-constexpr double kBlack = 24, kWhite = 232;   // levels: what is empty and so dark, or so bright, is in any scene
-constexpr double kStillShownOfAll = 0.3;      // of the other cells
-constexpr int kCell = 16;                     // px
-constexpr double kSomething = 5, kAlike = 5;  // levels: standard deviation; mean difference
+constexpr double kAgree = 0.5;                   // px
+constexpr double kShareFollowed = 0.4;           // of the corners that were followed, which agree where the motion is known
+constexpr double kMuchThere = 0.7;               // of all corners
+constexpr double kShareOfAll = 0.25;             // of all corners
+constexpr double kSpread = 0.06;                 // of the picture's height, standard deviation
+constexpr double kCutChange = 0.12;              // 1 - correlation of two thumbnails
+constexpr double kCutStandsOut = 4;              // times the usual change
+constexpr double kCutMore = 1.2, kCutAlone = 2;  // times the change before; after
+constexpr double kBlack = 24, kWhite = 232;      // levels: what is empty and so dark, or so bright, is in any scene
+constexpr double kStillShownOfAll = 0.3;         // of the other cells
+constexpr int kCell = 16;                        // px
+constexpr double kSomething = 5, kAlike = 5;     // levels: standard deviation; mean difference
 constexpr double kStillShown = 0.15;  // of the cells: that much stays where somebody steps aside, and nothing of another scene
 constexpr double kLost_s = 2;         // s without a motion, after which the watch begins anew
 constexpr double kStood_s = 2;        // s over which the place of a camera that shakes is the mean
@@ -168,7 +168,7 @@ bool ViewWatch::was_cut(const Picture& picture, double time) {
   const double change = previous_.empty() ? 0 : change_between(previous_thumb_, thumb);
   previous_thumb_ = thumb;
   const double before = std::exchange(previous_change_, change);
-  const bool stands_out = change > kCutChange && change > kCutStandsOut * usual_change_ && change > kCutAlone * before;
+  const bool stands_out = change > kCutChange && change > kCutStandsOut * usual_change_ && change > kCutMore * before;
   usual_change_ += (std::min(change, kCutChange) - usual_change_) * 0.1;
   const std::optional<double> doubt = std::exchange(doubt_s_, std::nullopt);
   if (doubt && before > kCutAlone * change) {
