@@ -55,6 +55,7 @@ Summary track_people(const RigCamera& camera, const TrackOutput& output, const P
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
   own.beside = output.tracks;
+  own.steady = steady && steady->steadies();
   own.with_lines = !output.overlay.empty();
   const auto stage = people_in_picture(feed, own);
   Summary summary = run_alone(std::move(feed), *stage, sinks, hooks);
