@@ -17,6 +17,7 @@ struct ExperimentTrackers {
   experiments::TrackerExperimentOptions options;
   std::string out;
   bool json = false;
+  bool markdown = false;
   bool quiet = false;
 };
 
@@ -56,6 +57,8 @@ void run(const ExperimentTrackers& command) {
            {"seed", experiment.seed},
            {"paper", as_json(experiment.paper)},
            {"ours", as_json(experiment.ours)}});
+  } else if (command.markdown) {
+    fmt::print("{}", experiments::to_markdown(experiment));
   } else if (!command.quiet) {
     fmt::print("{}", experiments::to_text(experiment));
   }
@@ -73,7 +76,7 @@ void add_experiment_trackers(Command& experiment) {
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "in each situation");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.output_folder("-o,--output", options->out, "folder for a plot of each table and a picture like Figure 3, as SVG");
-  command.reports(options->json, options->quiet, "tables");
+  command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }
 
