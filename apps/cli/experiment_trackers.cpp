@@ -50,8 +50,10 @@ Json as_json(const std::vector<experiments::TrackerRow>& rows) {
 }
 
 void run(const ExperimentTrackers& command) {
+  experiments::TrackerExperimentOptions options = command.options;
+  if (command.markdown && command.out.empty()) options.timed_markers.clear();  // that table has no times
   const experiments::TrackerExperiment experiment =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_tracker_experiment(command.options, hooks); });
+      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_tracker_experiment(options, hooks); });
   if (command.json) {
     print({{"videos", experiment.videos},
            {"seed", experiment.seed},

@@ -16,7 +16,7 @@ import unittest
 
 ROOT = pathlib.Path(sys.argv[1]).resolve()
 MAREY = pathlib.Path(sys.argv[2]).resolve()
-QUICK_S = 10  # by the comment behind the command; several of them run in this test
+QUICK_S = 30  # by the comment behind the command; several of them run in this test
 
 spec = importlib.util.spec_from_file_location("figures", ROOT / "bench/figures.py")
 figures = importlib.util.module_from_spec(spec)

@@ -77,6 +77,7 @@ SetInSpace::SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz
       options_(options),
       rate_hz_(rate_hz),
       undecided_(set_->size(), 0),
+      decided_(set_->size(), 0),
       id_of_name_(set_->size()),
       seen_(set_->size(), 0) {
   if (set_->size() < kFewestMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
@@ -218,7 +219,8 @@ void SetInSpace::take_answer(Timestamp now) {
 /// What the search's final check says of each name that it could tell something of, and of the set.
 void SetInSpace::take_check(const solve::labels::FoundNames& found) {
   for (std::size_t name = 0; name < set_->size(); ++name) {
-    if (found.undecided[name] || found.decided[name]) undecided_[name] = found.undecided[name];
+    decided_[name] = decided_[name] || (found.decided[name] && !found.undecided[name]);
+    undecided_[name] = !decided_[name] && (undecided_[name] || found.undecided[name]);
   }
   misfits_.push_back(found.misfit);
   misfits_m_.push_back(found.misfit_m);

@@ -6,7 +6,8 @@
 // seconds, and what it then finds otherwise is put right.
 //
 // Each search ends with the check that a whole recording gets (solve/labels/check_names.h), over the last seconds. A name that
-// could as well be exchanged with another is tracked, but not reported, until a later search decides it. How far the rigid
+// could as well be exchanged with another is tracked, but not reported, until a search decides it; a later
+// doubt, in a posture that tells less, takes no name away. How far the rigid
 // distances are off the learned ones tells whether the set is of another person.
 //
 // A name is one track, whatever tracks its marker had: of the first track that gets a name the number becomes the name's, and all
@@ -108,7 +109,7 @@ class SetInSpace {
   Timestamp searched_at_{};
   std::optional<Timestamp> first_point_, enough_since_;
   int searches_ = 0, failures_ = 0;
-  std::vector<char> undecided_;              // by name
+  std::vector<char> undecided_, decided_;    // by name: in doubt, and no search has decided it; by a search, once
   std::vector<double> misfits_, misfits_m_;  // of each search that found names
   bool misfit_reported_ = false;
   std::string trouble_;

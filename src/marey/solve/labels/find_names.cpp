@@ -56,6 +56,12 @@ FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, co
   found.scale = labelled.scale;
   found.undecided = labelled.undecided;
   for (const TrackColumns* track : named) found.decided.push_back(track == nullptr ? 0 : 1);
+  for (const Unnamed& piece : labelled.unnamed) {
+    const auto best = std::find(learned.labels.begin(), learned.labels.end(), piece.best);
+    if (best == learned.labels.end()) continue;
+    const auto name = static_cast<std::size_t>(best - learned.labels.begin());
+    if (!found.decided[name]) found.undecided[name] = 1;
+  }
   found.misfit = labelled.misfit;
   found.misfit_m = labelled.misfit_m;
   for (const TrackColumns& track : recent.tracks()) {
