@@ -129,6 +129,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
   options.space.skeleton = skeleton_of(command.skeleton);
   options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
+  check_every(command.people, command.ground);
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
   apply(command.where, rig, command.sources.front(), true, options.on_ground);

@@ -31,8 +31,8 @@ void add_people_options(Command& command, PeopleFlags& flags) {
   const Option detector =
       command.input_file("--detector", flags.detector,
                          "a detection network beside the background model: the file that describes it (docs/network.md)");
-  const Option every = command.whole("--every", flags.every, "N", 1, 1000, "the network looks at every N-th frame").needs(detector);
-  command.flag("--without-background", flags.without_background, "the network alone").needs(detector).excludes(every);
+  command.whole("--every", flags.every, "N", 1, 1000, "run the network on every N-th frame").needs(detector);
+  command.flag("--without-background", flags.without_background, "the network alone").needs(detector);
   const Option outline = command.flag("--outline", flags.outline, "follow each person's outline too: a closed spline");
   command
       .whole("--control-points", flags.control_points, "N", 3, kMostControlPoints,
@@ -45,6 +45,12 @@ void add_people_options(Command& command, PeopleFlags& flags) {
              "measurement lines across each outline, along which it is searched (default: 24)")
       .needs(outline);
   command.group("");
+}
+
+void check_every(const PeopleFlags& flags, bool on_ground) {
+  if (!flags.without_background || flags.every == 1 || !(flags.outline || on_ground)) return;
+  throw WrongUsage("--every {} with --without-background: {} needs detections in every frame; leave out one of the three options",
+                   flags.every, on_ground ? "--ground" : "--outline");
 }
 
 detect::DetectorOptions detector_options(const PeopleFlags& flags) {
@@ -60,6 +66,7 @@ detect::DetectorOptions detector_options(const PeopleFlags& flags) {
 }
 
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
+  check_every(flags, false);
   pipeline::PeopleInPictureOptions options;
   options.detector = detector_options(flags);
   if (!filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(filter);

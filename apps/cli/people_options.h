@@ -22,6 +22,9 @@ struct PeopleFlags {
   std::optional<int> lines;
 };
 
+/// Throws WrongUsage if frames are to be skipped without a background model where detections of every frame are needed.
+void check_every(const PeopleFlags& flags, bool on_ground);
+
 /// The detector that they choose, wherever people are searched for in pictures.
 detect::DetectorOptions detector_options(const PeopleFlags& flags);
 

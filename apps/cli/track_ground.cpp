@@ -43,6 +43,7 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
 
 pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
                                            const Rig& rig) {
+  check_every(people, true);
   pipeline::PeopleOnGroundOptions options;
   options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;

@@ -10,8 +10,14 @@ What the outside world did wrong is a `marey.Error`, in one sentence; doubts are
 and Ctrl-C ends it.
 """
 
+try:
+    from ._core import Error, version as __version__
+except ImportError as _error:
+    from ._compiled import explain as _explain
+
+    raise _explain(_error) from None
+
 from . import calibrate
-from ._core import Error, version as __version__
 from ._evaluate import Evaluation, evaluate
 from ._files import formats, read, read_rig
 from ._filters import Filter

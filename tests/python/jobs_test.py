@@ -1,6 +1,6 @@
 """The jobs from Python: the same bytes as the command line, frames of any reader, and what goes wrong.
 
-Run by marey_python_shell: jobs_test.py MAREY ROOT [unittest options].
+Usage: jobs_test.py MAREY ROOT [unittest options].
 """
 
 import os

@@ -1,6 +1,6 @@
 """Parts of one's own in a job from Python: detectors, filters and sinks, and the loop over what is live.
 
-Run by marey_python_shell: own_parts_test.py MAREY ROOT [unittest options].
+Usage: own_parts_test.py MAREY ROOT [unittest options].
 """
 
 import os

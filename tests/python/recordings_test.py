@@ -1,6 +1,6 @@
 """Recordings in Python: columns without copies, what other packages accept, files, and arrays that are none.
 
-Run by marey_python_shell: recordings_test.py MAREY ROOT [unittest options].
+Usage: recordings_test.py MAREY ROOT [unittest options].
 """
 
 import gc
@@ -32,6 +32,32 @@ def three_players():
     position = np.stack([np.column_stack([10 + 5 * times, 20 + 0 * times]), np.column_stack([50 + 0 * times, 30 - times]), np.full((50, 2), 40.0)], axis=1)
     position[:20, 1] = np.nan
     return position
+
+
+class Loading(unittest.TestCase):
+    """What a user reads where the compiled part of the package is missing, or was built for another Python."""
+
+    def said(self, *built):
+        with tempfile.TemporaryDirectory(prefix="marey_loading_") as folder:
+            package = pathlib.Path(folder, "marey")
+            package.mkdir()
+            for source in (ROOT / "python/marey").glob("*.py"):
+                (package / source.name).symlink_to(source)
+            for name in built:
+                (package / name).write_bytes(b"no library")
+            environment = {"PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+            done = subprocess.run(["/usr/bin/python3", "-S", "-c", "import marey"], env=environment, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            return done.stderr.splitlines()[-1]
+
+    def test_the_sources_alone(self):
+        self.assertIn("holds the sources only; import the package from build/release/python", self.said())
+
+    def test_another_version_of_python(self):
+        self.assertIn("was built for another Python than this one", self.said("_core.cpython-399-x86_64-linux-gnu.so"))
+
+    def test_a_library_that_is_none(self):
+        self.assertIn("cannot be loaded", self.said(f"_core.cpython-{sys.version_info.major}{sys.version_info.minor}-x86_64-linux-gnu.so"))
 
 
 class Recordings(unittest.TestCase):

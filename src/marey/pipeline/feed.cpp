@@ -289,7 +289,8 @@ void Feed::search(CameraFrame& given) {
   if (given.detections && tuning_ != nullptr) leave_out_masked(*given.detections, tuning_->values().masks);
   if (detector_ == nullptr || given.detections) return;
   const Stopwatch detecting;
-  given.detections = detector_->detect(given.frame, {}).detections;
+  detect::Detections found = detector_->detect(given.frame, {});
+  if (found.searched) given.detections = std::move(found.detections);
   given.detect_s = detecting.seconds();
 }
 

@@ -92,13 +92,15 @@ class StreetSource final : public Source {
 
 class StreetDetector final : public detect::Detector {
  public:
-  explicit StreetDetector(const Street& street) : street_(street) {}
+  StreetDetector(const Street& street, int every) : street_(street), every_(every) {}
   detect::Detections detect(const Frame& frame, std::span<const Expected> /*expected*/) override {
+    if (frame.index % every_ != 0) return {.detections = {}, .foreground = {}, .searched = false};
     return {.detections = street_.seen[static_cast<std::size_t>(frame.index)], .foreground = {}};
   }
 
  private:
   const Street& street_;
+  int every_;
 };
 
 /// For each person in how many frames a track lies on them.
@@ -122,14 +124,15 @@ class Matches final : public Sink {
 };
 
 /// How many people are found for half of their time at least, of those who are there for two seconds.
-std::pair<int, int> people_found(const Street& street, const filter::FilterOptions& filter, bool live) {
+/// `every`: only every n-th frame is searched.
+std::pair<int, int> people_found(const Street& street, const filter::FilterOptions& filter, bool live, int every = 1) {
   FeedOptions how;
   how.open = [&] { return std::make_unique<StreetSource>(street); };
   how.ahead = 0;
   RigCamera camera;
   camera.source = "street";
   Feed feed(camera, CameraId{}, how);
-  feed.find(std::make_unique<StreetDetector>(street));
+  feed.find(std::make_unique<StreetDetector>(street, every));
   PeopleInPictureOptions options;
   options.tracker.filter = filter;
   options.live = live;
@@ -163,6 +166,18 @@ TEST(PeopleFilters, EveryoneIsFoundAtEveryRateByEveryFilter) {
           EXPECT_GE(found.first, 0.9 * usual.first) << named.name << " at " << rate_hz << " Hz, live " << live;
         }
       }
+    }
+  }
+}
+
+TEST(PeopleFilters, SkippedFramesKeepEveryone) {
+  const filter::FilterOptions filter = PeopleInPictureOptions{}.tracker.filter;
+  const Street street = film_street(25);
+  for (const bool live : {false, true}) {
+    const auto usual = people_found(street, filter, live);
+    for (const int every : {2, 5}) {
+      const auto found = people_found(street, filter, live, every);
+      EXPECT_GE(found.first, 0.9 * usual.first) << "of " << usual.first << ", every " << every << ", live " << live;
     }
   }
 }

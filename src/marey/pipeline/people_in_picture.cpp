@@ -15,6 +15,7 @@
 #include "marey/pipeline/picture_doubts.h"
 #include "marey/pipeline/standing_people.h"
 #include "marey/pipeline/steady_camera.h"
+#include "marey/track/fill_gaps.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
@@ -62,6 +63,13 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
   tracker.steady_camera = feed.has_pictures();
   tracker.reidentify = tracker.steady_camera && options.live;
   return tracker;
+}
+
+std::vector<Timestamp> times_of(std::span<const Recording::Moment> moments) {
+  std::vector<Timestamp> times;
+  times.reserve(moments.size());
+  for (const Recording::Moment& moment : moments) times.push_back(moment.time);
+  return times;
 }
 
 void leave_out_unseen(Instant& instant) {
@@ -145,6 +153,7 @@ class PeopleInPicture final : public Stage {
     const CameraFrame& given = *frames.cameras.front();
     const detect::Detections seen = detect(given);
     if (detector_) doubts_.add(given.frame, seen);
+    if (!seen.searched) return pass_over(given.frame);
     const auto tracks = follow(given.frame, seen);
     const bool stood = standing_ && standing_->see(given.frame, tracks, *detector_);
     if (live_) {
@@ -155,7 +164,8 @@ class PeopleInPicture final : public Stage {
       const cv::Size size = given.frame.picture.size();
       options_.join.view = Box{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
     }
-    const auto number = std::ssize(moments_);
+    const auto number = std::ssize(searched_);
+    searched_.push_back(static_cast<std::int32_t>(moments_.size()));
     moments_.push_back({given.frame.index, given.frame.time});
     const std::vector<track::Clothes> clothes = clothes_of(given.frame, seen);
     log(number, tracks, clothes, seen.detections.size());
@@ -178,8 +188,9 @@ class PeopleInPicture final : public Stage {
       if (live_->empty()) return nullptr;
       return std::make_unique<LiveRest>(*live_, options_.seen_only);
     }
-    return std::make_unique<JoinedRows>(track::join(recording_, options_.join), std::move(moments_), outlines_.get(),
-                                        options_.seen_only);
+    std::vector<track::TrackRow> rows = track::join(recording_, options_.join);
+    if (searched_.size() < moments_.size()) rows = track::fill_between_searches(rows, searched_, times_of(moments_));
+    return std::make_unique<JoinedRows>(std::move(rows), std::move(moments_), outlines_.get(), options_.seen_only);
   }
 
   void report(Summary& summary) const override {
@@ -198,6 +209,13 @@ class PeopleInPicture final : public Stage {
     std::vector<Observation<2>> seen;
     std::vector<track::Clothes> clothes;
   };
+
+  /// A frame in which nobody was searched for: the second pass interpolates, a live run predicts.
+  std::span<const Instant> pass_over(const Frame& frame) {
+    if (live_) return told(frame, tracker_->expected(frame.time), false);
+    moments_.push_back({frame.index, frame.time});
+    return {};
+  }
 
   void report_counts(Summary& summary) const {
     if (detector_ == nullptr) return;
@@ -227,7 +245,7 @@ class PeopleInPicture final : public Stage {
   /// What is known of one frame, for the second pass.
   void log(std::int64_t number, std::span<const Track<2>> tracks, std::span<const track::Clothes> clothes, std::size_t detections) {
     count(tracks, detections);
-    recording_.add(number, moments_[static_cast<std::size_t>(number)].time, tracks, clothes);
+    recording_.add(number, moments_[static_cast<std::size_t>(searched_[static_cast<std::size_t>(number)])].time, tracks, clothes);
     if (outlines_) outlines_->add(number, tracks);
   }
 
@@ -286,6 +304,7 @@ class PeopleInPicture final : public Stage {
 
   detect::Detections detect(const CameraFrame& given) {
     if (given.detections) return {.detections = *given.detections, .foreground = {}};
+    if (!detector_) return {.detections = {}, .foreground = {}, .searched = false};
     detect::Detections seen = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
     if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
     return seen;
@@ -301,9 +320,14 @@ class PeopleInPicture final : public Stage {
   }
 
   /// What is due by now. Who waits keeps the pictures too: they are gone from the feed by then.
-  std::span<const Instant> told(const Frame& frame, std::span<const Track<2>> tracks) {
+  std::span<const Instant> told(const Frame& frame, std::span<const Track<2>> tracks, bool searched = true) {
     const bool keep = options_.delay > 0 && !frame.picture.empty();
-    live_->add(frame.index, frame.time, tracks, keep ? std::vector{frame} : std::vector<Frame>{});
+    std::vector<Frame> frames = keep ? std::vector{frame} : std::vector<Frame>{};
+    if (searched) {
+      live_->add(frame.index, frame.time, tracks, std::move(frames));
+    } else {
+      live_->add_unsearched(frame.index, frame.time, tracks, std::move(frames));
+    }
     due_.clear();
     while (auto instant = live_->next()) {
       if (options_.seen_only) leave_out_unseen(*instant);
@@ -323,6 +347,7 @@ class PeopleInPicture final : public Stage {
   std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
   std::vector<Recording::Moment> moments_;
+  std::vector<std::int32_t> searched_;  // indices into `moments_`: the log counts these
   std::optional<track::LiveTracks> live_;
   std::vector<Instant> due_;
   std::optional<StandingPeople> standing_;  // where a background model may have taken them for the scene

@@ -52,8 +52,8 @@ int turn_of(const AVStream& stream) {
 class PipeBytes {
  public:
   explicit PipeBytes(const std::string& path) : file_(path) {
-    auto* const buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
-    io_.reset(avio_alloc_context(buffer, kBuffer, 0, this, read, nullptr, nullptr));
+    auto* const buffer = static_cast<unsigned char*>(allocated(av_malloc(kBuffer)));
+    io_.reset(allocated(avio_alloc_context(buffer, kBuffer, 0, this, read, nullptr, nullptr)));
     io_->seekable = 0;
   }
 
@@ -99,7 +99,7 @@ std::unique_ptr<PipeBytes> pipe_of(const std::string& path) {
 FormatPtr open_format(const std::string& path, PipeBytes* pipe) {
   AVFormatContext* opened = nullptr;
   if (pipe != nullptr) {
-    opened = avformat_alloc_context();
+    opened = allocated(avformat_alloc_context());
     opened->pb = pipe->io();
   }
   // "file:" keeps FFmpeg from reading a protocol out of a name that holds a colon.
@@ -137,8 +137,8 @@ struct Decoder::Parts {
   FormatPtr format;
   CodecPtr codec;
   AVStream* stream = nullptr;
-  PacketPtr packet{av_packet_alloc()};
-  DecodedFrame frame{av_frame_alloc()};
+  PacketPtr packet{allocated(av_packet_alloc())};
+  DecodedFrame frame{allocated(av_frame_alloc())};
   PictureMaker maker;
   cv::Size coded_size;
   int turn = 0;
@@ -165,7 +165,7 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
     throw Error("{}: holds no video that can be decoded; give a video file or a folder of pictures", path);
   p.stream = p.format->streams[stream];
   check_size({p.stream->codecpar->width, p.stream->codecpar->height}, path);
-  p.codec.reset(avcodec_alloc_context3(codec));
+  p.codec.reset(allocated(avcodec_alloc_context3(codec)));
   avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

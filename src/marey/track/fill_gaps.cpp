@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
+#include <utility>
 
 namespace marey::track {
 namespace {
@@ -51,6 +53,11 @@ TrackRow cubic_row(const TrackRow& from, const TrackRow& to, const TrackRow& gue
   return row;
 }
 
+void sort_by_frame(std::vector<TrackRow>& rows) {
+  std::sort(rows.begin(), rows.end(),
+            [](const TrackRow& a, const TrackRow& b) { return std::pair(a.frame, a.id) < std::pair(b.frame, b.id); });
+}
+
 /// The rows of the frames between the first and the last of `rows`, which are observed; what lies between them was guessed.
 void append_between(std::span<const TrackRow> rows, const TrackletLog& log, double longest, GapWay way, Tracklet& filled) {
   const TrackRow &from = rows.front(), &to = rows.back();
@@ -85,6 +92,28 @@ void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest, GapWay wa
   rows = std::move(filled);
 }
 
+std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std::span<const std::int32_t> searched,
+                                            std::span<const Timestamp> times) {
+  std::vector<TrackRow> filled;
+  std::map<std::int32_t, TrackRow> last;  // of each target; `frame` counts searched frames
+  for (const TrackRow& row : rows) {
+    const std::int32_t frame = searched[static_cast<std::size_t>(row.frame)];
+    const auto before = last.find(row.id);
+    if (before != last.end() && before->second.frame == row.frame - 1) {
+      const std::int32_t begin = searched[static_cast<std::size_t>(row.frame) - 1];
+      const auto time = [&](std::int32_t at) { return times[static_cast<std::size_t>(at)]; };
+      const double span = seconds(time(frame) - time(begin));
+      for (std::int32_t between = begin + 1; between < frame; ++between)
+        filled.push_back(straight_row(before->second, row, between, seconds(time(between) - time(begin)) / span));
+    }
+    last[row.id] = row;
+    filled.push_back(row);
+    filled.back().frame = frame;
+  }
+  sort_by_frame(filled);
+  return filled;
+}
+
 std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest, double longest) {
   std::vector<TrackRow> rows;
   for (TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
@@ -93,8 +122,7 @@ std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest, double longes
     fill_gaps(tracklet, log, longest, GapWay::cubic);
     rows.insert(rows.end(), tracklet.begin(), tracklet.end());
   }
-  std::sort(rows.begin(), rows.end(),
-            [](const TrackRow& a, const TrackRow& b) { return std::pair(a.frame, a.id) < std::pair(b.frame, b.id); });
+  sort_by_frame(rows);
   return rows;
 }
 

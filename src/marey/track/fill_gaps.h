@@ -1,8 +1,11 @@
 // Gaps in tracklets, filled in a second pass that knows both ends of each.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "marey/core/time.h"
 #include "marey/track/tracklet_log.h"
 
 namespace marey::track {
@@ -20,5 +23,11 @@ void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longe
 /// Tracklets seen in less than `fewest` frames are dropped. Rows in the order of frames, then ids. The recording's tracklets are
 /// used up.
 std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest = 3, double longest = 1);
+
+/// Rows of a recording of which only some frames were searched, from rows that count those: `searched[row.frame]` is the frame's
+/// index among all, whose times are `times`. Predicted rows on the straight way are put between the rows of a target in two
+/// searched frames that follow each other. Both in the order of frames, then ids.
+std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std::span<const std::int32_t> searched,
+                                            std::span<const Timestamp> times);
 
 }  // namespace marey::track

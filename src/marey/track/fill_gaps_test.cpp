@@ -1,5 +1,7 @@
 #include "marey/track/fill_gaps.h"
 
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 namespace marey::track {
@@ -72,6 +74,27 @@ TEST(FillGaps, TheStraightWayPutsARowInEveryFrameAlsoWhereNothingWasGuessed) {
   }
   fill_gaps(rows, log, 0.3, GapWay::straight);
   EXPECT_EQ(rows.size(), 20u) << "a longer gap stays open";
+}
+
+TEST(FillGaps, FramesBetweenSearchesAreInterpolated) {
+  const std::vector<std::int32_t> searched = {0, 5, 10, 15};
+  std::vector<Timestamp> times;
+  for (int frame = 0; frame < 17; ++frame) times.push_back(frame_time(frame));
+  std::vector<TrackRow> rows;
+  for (const auto& [frame, id, x] : {std::tuple(0, 1, 0.0F), {1, 1, 50.0F}, {1, 2, 7.0F}, {3, 1, 90.0F}, {3, 2, 9.0F}}) {
+    TrackRow row;
+    row.frame = frame, row.id = id, row.x = x;
+    rows.push_back(row);
+  }
+  const std::vector<TrackRow> filled = fill_between_searches(rows, searched, times);
+  ASSERT_EQ(filled.size(), 9u);  // five and the four between frames 0 and 5: neither target is in the search at frame 10
+  for (int frame = 0; frame <= 5; ++frame) {
+    EXPECT_EQ(filled[static_cast<std::size_t>(frame)].frame, frame);
+    EXPECT_NEAR(filled[static_cast<std::size_t>(frame)].x, 10 * frame, 1e-4);
+    EXPECT_EQ(filled[static_cast<std::size_t>(frame)].observed(), frame % 5 == 0);
+  }
+  EXPECT_EQ(filled[6].id, 2);
+  EXPECT_EQ(filled[7].frame, 15);
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ double GapSurvival::still_there(double unseen) const {
 }
 
 void LiveTracks::add(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames) {
-  const std::optional<Timestamp> before = std::exchange(now_, time);
+  const std::optional<Timestamp> before = std::exchange(searched_, time);
+  now_ = time;
   for (const Track<2>& track : tracks) {
     Seen& seen = seen_[track.id];
     seen.confirmed = seen.confirmed || track.confirmed;
@@ -66,6 +67,14 @@ void LiveTracks::add(std::int64_t index, Timestamp time, std::span<const Track<2
     seen.time = time;
   }
   moments_.push_back({index, time, {tracks.begin(), tracks.end()}, std::move(frames)});
+}
+
+void LiveTracks::add_unsearched(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames) {
+  now_ = time;
+  moments_.push_back({index, time, {}, std::move(frames), false});
+  for (const Track<2>& track : tracks) {
+    if (seen_.contains(track.id)) moments_.back().tracks.push_back(track);
+  }
 }
 
 std::optional<Instant> LiveTracks::next(bool all) {
@@ -80,17 +89,21 @@ std::optional<Instant> LiveTracks::next(bool all) {
   for (const Track<2>& track : moment.tracks) {
     if (auto sample = told(moment, track)) instant.samples.push_back(std::move(*sample));
   }
-  // Who is in no later moment has been given up.
-  const std::vector<Track<2>>& still = moments_.empty() ? moment.tracks : moments_.back().tracks;
+  forget_lost(moment);
+  return instant;
+}
+
+/// A target is given up when it is in no later instant; as long as none of these was searched, that says nothing.
+void LiveTracks::forget_lost(const Moment& told) {
+  const auto follows = [](const Moment& moment, TrackId id) { return find_track(moment.tracks, id) != nullptr; };
+  const bool searched_later = std::any_of(moments_.begin(), moments_.end(), [](const Moment& later) { return later.searched; });
   std::erase_if(seen_, [&](const auto& entry) {
-    if (find_track(still, entry.first) != nullptr) return false;
-    for (const Moment& later : moments_) {
-      if (find_track(later.tracks, entry.first) != nullptr) return false;
-    }
+    const TrackId id = entry.first;
+    if (!searched_later && (!told.searched || follows(told, id))) return false;
+    if (std::any_of(moments_.begin(), moments_.end(), [&](const Moment& later) { return follows(later, id); })) return false;
     if (entry.second.confirmed) survival_.lost();
     return true;
   });
-  return instant;
 }
 
 std::optional<Sample> LiveTracks::told(const Moment& moment, const Track<2>& track) {
@@ -102,8 +115,8 @@ std::optional<Sample> LiveTracks::told(const Moment& moment, const Track<2>& tra
     return seen.told;
   }
   if (auto sample = filled(moment, track)) return sample;
-  // As of now it has not been seen since.
-  const double unseen = seen.time ? seconds(*now_ - *seen.time) : 0;
+  // As of the last search it has not been seen since.
+  const double unseen = seen.time && searched_ ? std::max(0.0, seconds(*searched_ - *seen.time)) : 0;
   if (survival_.still_there(unseen) * overlaps(track) < kEvenOdds) return std::nullopt;
   return sample_of(track);
 }

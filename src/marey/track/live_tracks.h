@@ -46,8 +46,10 @@ class LiveTracks {
   /// `delay` ≥ 0 s.
   explicit LiveTracks(double delay) : delay_(delay) {}
 
-  /// What the tracker says of one moment, those included that are not confirmed. `frames` go along.
+  /// The tracker's tracks at one instant, unconfirmed ones included. `frames` go along.
   void add(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames = {});
+  /// The same of a frame in which nobody was searched for: `tracks` are predicted, and say nothing of who is still there.
+  void add_unsearched(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames = {});
   /// The next moment that is `delay` old, or at the end of the recording, with `all`, any; nothing where there is none.
   std::optional<Instant> next(bool all = false);
   /// Whether no moment waits to be told.
@@ -59,6 +61,7 @@ class LiveTracks {
     Timestamp time{};
     std::vector<Track<2>> tracks;
     std::vector<Frame> frames;
+    bool searched = true;
   };
   /// A target as last seen.
   struct Seen {
@@ -70,9 +73,10 @@ class LiveTracks {
 
   std::optional<Sample> told(const Moment& moment, const Track<2>& track);
   std::optional<Sample> filled(const Moment& moment, const Track<2>& track) const;
+  void forget_lost(const Moment& told);
 
   double delay_;
-  std::optional<Timestamp> now_;
+  std::optional<Timestamp> now_, searched_;  // of the last frame, and of the last one that was searched
   std::deque<Moment> moments_;
   std::map<TrackId, Seen> seen_;  // who is followed
   GapSurvival survival_;

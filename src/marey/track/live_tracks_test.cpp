@@ -93,6 +93,24 @@ TEST(LiveTracks, APredictionThatMayBeAnywhereIsNotTold) {
   EXPECT_TRUE(live.next()->samples.empty());
 }
 
+TEST(LiveTracks, UnsearchedFramesKeepThePredictedTarget) {
+  LiveTracks live(0);
+  for (int frame = 0; frame < 31; ++frame) {
+    if (frame % 10 == 0) {
+      add(live, frame, {at(1, frame, true)});
+    } else {
+      live.add_unsearched(frame, timestamp_from_seconds(frame / kRate), std::vector{at(1, frame, false)});
+    }
+    const auto instant = live.next();
+    ASSERT_EQ(instant->samples.size(), 1u) << frame;
+    EXPECT_EQ(instant->samples.front().measured(), frame % 10 == 0) << frame;
+  }
+  add(live, 31, {});  // given up
+  EXPECT_TRUE(live.next()->samples.empty());
+  live.add_unsearched(32, timestamp_from_seconds(32 / kRate), {});
+  EXPECT_TRUE(live.next()->samples.empty());
+}
+
 TEST(GapSurvival, MoreGapsThatLastedLongerSayThatItIsStillThere) {
   GapSurvival survival;
   const double before = survival.still_there(1.0);

@@ -270,6 +270,10 @@ Detections NetworkDetector::detect(const Frame& frame, std::span<const Expected>
   if (moving_ != nullptr) result = moving_->detect(frame, expected);
   const PictureCells cells = cells_of(frame.picture);
   forget_changed(cells);
+  if (!searches && moving_ == nullptr) {
+    result.searched = false;
+    return result;
+  }
   const std::vector<Detection> seen = searches ? search(frame, cells, expected, result.detections) : standing();
   result.detections = moving_ != nullptr ? joined(result.detections, seen) : seen;
   return result;
