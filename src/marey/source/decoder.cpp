@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <new>
 #include <vector>
 
 #include <tbb/global_control.h>
@@ -35,6 +36,11 @@ std::string reason(int code) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
   av_strerror(code, text, sizeof text);
   return text;
+}
+
+/// A video that memory is missing for is not a damaged one.
+void check_memory(int code) {
+  if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
 }
 
 /// Degrees clockwise that a camera held askew asks its pictures to be turned by: 0, 90, 180 or 270.
@@ -238,6 +244,7 @@ bool Decoder::Parts::receive() {
     const int code = avcodec_receive_frame(codec.get(), frame.get());
     if (code == 0) return true;
     if (code == AVERROR_EOF) return false;
+    check_memory(code);
     if (code != AVERROR(EAGAIN)) ++trouble.undecodable;
     if (drained && ++errors_while_draining > kMostErrorsWhileDraining) return false;
     if (!drained) feed();
@@ -249,6 +256,7 @@ void Decoder::Parts::feed() {
   for (;;) {
     av_packet_unref(packet.get());
     const int code = av_read_frame(format.get(), packet.get());
+    check_memory(code);
     if (code < 0) {
       trouble.stopped = pipe != nullptr && pipe->stopped();
       if (code != AVERROR_EOF && !trouble.stopped) trouble.broken = reason(code);
@@ -257,7 +265,9 @@ void Decoder::Parts::feed() {
       return;
     }
     if (packet->stream_index != stream->index || packet->size == 0) continue;
-    if (avcodec_send_packet(codec.get(), packet.get()) == 0) return;
+    const int sent = avcodec_send_packet(codec.get(), packet.get());
+    if (sent == 0) return;
+    check_memory(sent);
     ++trouble.undecodable;
   }
 }
