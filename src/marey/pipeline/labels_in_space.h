@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const st
                             std::vector<std::string>* warnings = nullptr);
 /// What is to be said of the set besides: points that are no markers.
 std::vector<std::string> warnings_of(const LearnedMarkers& learned);
+
+/// A sentence if `set` ("the set FILE") is probably of another person: by how far rigid distances are off
+/// (solve::labels::Labelled), and how many of its markers were found.
+std::optional<std::string> set_misfit(const std::string& set, double misfit, double misfit_m, std::size_t found,
+                                      std::size_t markers);
 
 struct LabelSummary {
   std::vector<solve::labels::MarkerHealth> health;
