@@ -3,10 +3,12 @@
 namespace marey::draw {
 
 OverlayFilm::OverlayFilm(const std::string& path, const View& view, const OverlayOptions& options)
-    : path_(path), view_(view), movie_(path, view.size, view.rate_hz), overlay_(options) {}
+    : path_(path), view_(view), movie_(path, view.size, view.rate_hz), options_(options), overlay_(options) {}
 
 Sink::Wants OverlayFilm::begin(const RecordingHeader& header) {
   by_boxes_ = header.frame.metric();
+  options_.keypoints = header.keypoints;
+  overlay_ = Overlay(options_);
   return {.pictures = true, .boxes = by_boxes_};
 }
 

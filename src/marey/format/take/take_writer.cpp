@@ -20,6 +20,7 @@
 #include "marey/format/take/chunk_joiner.h"
 #include "marey/format/take/chunk_writer.h"
 #include "marey/format/take/frame_names.h"
+#include "marey/format/take/keypoints_blob.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_chunk.h"
 #include "marey/format/take/take_file.h"
@@ -66,6 +67,7 @@ class TakeWriter::Recorder {
     if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
     set("smoothed", std::int64_t{header.smoothed});
     if (header.rig) set("rig", rig::rig_text(*header.rig));
+    if (header.keypoints) set("keypoints", keypoint_set_text(*header.keypoints));
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
     set_bodies(header.bodies);
