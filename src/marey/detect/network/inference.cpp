@@ -10,6 +10,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "marey/core/error.h"
+#include "marey/detect/network/convolution_layer.h"
 #include "marey/detect/network/half_weights.h"
 
 namespace marey::detect::network {
@@ -53,6 +54,7 @@ struct Inference::Engine::Net {
 };
 
 Inference::Engine::Engine(const std::string& onnx) : net_(std::make_unique<Net>()) {
+  use_own_convolutions();
   const std::string content = with_full_weights(content_of(onnx));
   net_->net = cv::dnn::readNetFromONNX(content.data(), content.size());
   net_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
