@@ -51,7 +51,8 @@ void add_keypoint_options(Command& command, PeopleFlags& flags) {
   command.group("Options for --targets keypoints, beside those for people");
   command
       .text("--model", flags.model,
-            "the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx")
+            "the network that finds the points: lite, full or heavy, each slower and more accurate than the one before "
+            "(script/model), or a FILE.onnx")
       .check([](const std::string& name) {
         if (name != "lite" && name != "full" && name != "heavy" && !name.ends_with(".onnx"))
           throw Error("{}: is none of lite, full, heavy, and no FILE.onnx", name);

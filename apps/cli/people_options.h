@@ -24,7 +24,8 @@ struct PeopleFlags {
   std::optional<int> lines;
 };
 
-/// Throws WrongUsage if there is no network that --every and --without-background speak of, or frames are to be skipped without a background model where detections of every frame are needed.
+/// Throws WrongUsage if there is no network that --every and --without-background speak of, or frames are to be skipped without a
+/// background model where detections of every frame are needed.
 void check_every(const PeopleFlags& flags, bool on_ground);
 
 /// The detector that they choose, wherever people are searched for in pictures.

@@ -62,10 +62,10 @@ pipeline::TrackOutput output_of(const TrackCommand& command) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
   } else {
     const format::Format* by_ending = format::format_of_name(command.out, format::Content::image);
-    output.format = by_ending != nullptr     ? by_ending->name
-                    : command.people.outline     ? "jsonl"  // the others hold no outlines
+    output.format = by_ending != nullptr                    ? by_ending->name
+                    : command.people.outline                ? "jsonl"  // the others hold no outlines
                     : command.targets == Targets::keypoints ? "csv"    // MOT text holds no points
-                                                 : "mot";
+                                                            : "mot";
   }
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty()) output.tracks = default_output(command.input, output.format);

@@ -2,8 +2,9 @@
 //
 //   body_landmarks NETWORK.onnx PICTURE LEFT TOP WIDTH HEIGHT CROP.bin
 //
-// Writes what the network was shown, 256 × 256 × 3 bytes, blue first, into CROP.bin. Prints the network's own numbers for each of its 39 points, x y z
-// visibility presence, a line each; a line with the person's presence; then for each of the 33 points of a body its place in the picture, px, and covariance:
+// Writes what the network was shown, 256 × 256 × 3 bytes, blue first, into CROP.bin. Prints the network's own numbers for each of
+// its 39 points, x y z visibility presence, a line each; a line with the person's presence; then for each of the 33 points of a
+// body its place in the picture, px, and covariance:
 //   x y xx xy yy visibility presence
 #include <cstdlib>
 #include <fstream>
@@ -28,8 +29,8 @@ void print_landmarks(char** argv) {
   for (std::size_t i = 0; i < outputs[0].values.size(); ++i) fmt::print("{:.9g}{}", outputs[0].values[i], i % 5 == 4 ? '\n' : ' ');
   fmt::print("{:.9g}\n", outputs[1].values.front());
   for (const auto& point : body_of(outputs, region).keypoints.points) {
-    fmt::print("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", point->position.x(), point->position.y(), point->covariance(0, 0),
-               point->covariance(0, 1), point->covariance(1, 1), point->visibility, point->presence);
+    fmt::print("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", point->position.x(), point->position.y(),
+               point->covariance(0, 0), point->covariance(0, 1), point->covariance(1, 1), point->visibility, point->presence);
   }
 }
 

@@ -16,8 +16,8 @@
 namespace marey::draw {
 
 struct OverlayOptions {
-  Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
-  bool trail_of_centres = false;             ///< trails show where centres went, not feet
+  Duration trail = std::chrono::seconds(4);   ///< how long a trail takes to fade
+  bool trail_of_centres = false;              ///< trails show where centres went, not feet
   std::optional<KeypointSet> keypoints = {};  ///< what the samples' body points are
 };
 
@@ -28,8 +28,8 @@ Colour colour_of(const TrackName& name, TrackId id);
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
 /// Body points are drawn with their bones, those on the left lighter, fainter where something may hide them; none where they
-/// are likely outside the picture. Colours are steady by number. Lines and numbers grow with the picture. A name stands where it covers neither another target nor
-/// another name, as near its own as there is room, and stays on that side while it can.
+/// are likely outside the picture. Colours are steady by number. Lines and numbers grow with the picture. A name stands where it
+/// covers neither another target nor another name, as near its own as there is room, and stays on that side while it can.
 class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
@@ -38,10 +38,12 @@ class Overlay {
   Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
+  Picture lightened(const Picture& picture);
   void write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
 
   OverlayOptions options_;
   FadingTrails trails_;
+  double white_ = 255;                    // of pictures of 16 bits
   std::map<TrackId, std::size_t> sides_;  // where each name stood last
 };
 

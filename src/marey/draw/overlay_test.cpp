@@ -67,10 +67,12 @@ int covered(const Picture& before, const Picture& after, std::span<const Sample>
 TEST(Overlay, DrawsBonesOfWhatIsInThePicture) {
   Sample sample = box_of(1, 100, 100);
   auto body = std::make_shared<Keypoints<2>>();
-  for (const Vector<2>& at : {Vector<2>(20, 20), Vector<2>(60, 20), Vector<2>(20, 60)}) body->points.push_back(Keypoint<2>{.position = at});
+  for (const Vector<2>& at : {Vector<2>(20, 20), Vector<2>(60, 20), Vector<2>(20, 60)})
+    body->points.push_back(Keypoint<2>{.position = at});
   body->points[2]->presence = 0.1;
   sample.keypoints = body;
-  const KeypointSet set{.name = "three", .points = {"nose", "left_hip", "right_hip"}, .bones = {{0, 1}, {0, 2}}, .mirrored = {0, 2, 1}};
+  const KeypointSet set{
+      .name = "three", .points = {"nose", "left_hip", "right_hip"}, .bones = {{0, 1}, {0, 2}}, .mirrored = {0, 2, 1}};
   const Picture picture = grey(320, 240);
   const Picture plain = Overlay().draw(picture, Timestamp{}, std::vector{sample}, {});
   const Picture drawn = Overlay({.keypoints = set}).draw(picture, Timestamp{}, std::vector{sample}, {});
@@ -113,6 +115,20 @@ TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   EXPECT_GT(changed(empty, last, {40, 85, 70, 8}), 70) << "the trail behind its foot";
   last = overlay.draw(grey(200, 120), timestamp_from_seconds(20), {}, {});
   EXPECT_EQ(changed(empty, last, {0, 0, 200, 120}), 0) << "all of it has faded";
+}
+
+TEST(Overlay, PicturesOfTwelveBitsAreAsLightAsOthers) {
+  Overlay overlay;
+  cv::Mat deep(48, 64, CV_16UC1, cv::Scalar(2048));
+  deep.at<std::uint16_t>(3, 3) = 4000;
+  EXPECT_NEAR(overlay.draw(Picture(deep), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 16 + 219 / 2, 2);
+  // The next picture is darker, and is drawn so.
+  EXPECT_NEAR(
+      overlay.draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      16 + 219 / 4, 2);
+  EXPECT_NEAR(
+      Overlay().draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      235, 1);
 }
 
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {

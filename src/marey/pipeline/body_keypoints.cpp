@@ -15,14 +15,14 @@ namespace {
 using detect::keypoints::Body;
 using detect::keypoints::PersonRegion;
 
-constexpr double kNearBox = 0.5;           // of a box's longer side: how far from its centre a region may lie that was found before
-constexpr double kLeastSide = 0.6;         // of a region about the box, and ...
-constexpr double kMostSide = 2;            // ... the most: outside them the box says where to look
-constexpr double kSameBody = 0.06;         // of its height: two whose points lie so near each other are one
-constexpr double kInBox = 0.15;            // intersection over union of points' hull and box, at least, of the person that is meant
-constexpr double kLongestBridge = 1;     // s between two pictures in which a point was found
-constexpr double kWander = 0.6;            // of a person's height a second: how far a point goes another way than straight
-constexpr double kForgotten = 10;          // s
+constexpr double kNearBox = 0.5;      // of a box's longer side: how far from its centre a region may lie that was found before
+constexpr double kLeastSide = 0.6;    // of a region about the box, and ...
+constexpr double kMostSide = 2;       // ... the most: outside them the box says where to look
+constexpr double kSameBody = 0.06;    // of its height: two whose points lie so near each other are one
+constexpr double kInBox = 0.15;       // intersection over union of points' hull and box, at least, of the person that is meant
+constexpr double kLongestBridge = 1;  // s between two pictures in which a point was found
+constexpr double kWander = 0.6;       // of a person's height a second: how far a point goes another way than straight
+constexpr double kForgotten = 10;     // s
 
 /// Whether somebody found before may still be meant by the box.
 bool fits(const PersonRegion& region, const Box& box) {
@@ -51,14 +51,16 @@ double apart(const Keypoints<2>& a, const Keypoints<2>& b) {
 }
 
 /// Points on the straight line through those of two times, at `share` of the way (more than 1: beyond).
-std::shared_ptr<const Keypoints<2>> on_the_way(const Keypoints<2>& from, const Keypoints<2>& to, double share, double from_nearest_s) {
+std::shared_ptr<const Keypoints<2>> on_the_way(const Keypoints<2>& from, const Keypoints<2>& to, double share,
+                                               double from_nearest_s) {
   auto result = std::make_shared<Keypoints<2>>(to);
   const double wander = kWander * height_of(to) * from_nearest_s;
   for (std::size_t i = 0; i < to.points.size(); ++i) {
     const Keypoint<2>&a = *from.points[i], &b = *to.points[i];
     Keypoint<2>& point = *result->points[i];
     point.position = (1 - share) * a.position + share * b.position;
-    point.covariance = (1 - share) * (1 - share) * a.covariance + share * share * b.covariance + Matrix<2>::Identity() * (wander * wander);
+    point.covariance =
+        (1 - share) * (1 - share) * a.covariance + share * share * b.covariance + Matrix<2>::Identity() * (wander * wander);
     if (share > 1) continue;
     point.visibility = (1 - share) * a.visibility + share * b.visibility;
     point.presence = (1 - share) * a.presence + share * b.presence;
@@ -111,7 +113,9 @@ void BodyKeypoints::look(const Instant& instant, const Picture& picture) {
   const cv::Mat bgr = picture.bgr();
   std::vector<Body> bodies = network_.find(bgr, regions);
   // Seen in a region that fits, points are surer by far: once more, where the first was only a box.
-  std::erase_if(new_ones, [&](std::size_t i) { return bodies[i].keypoints.presence < options_.sure || !fits(bodies[i].next, *samples[i]->box); });
+  std::erase_if(new_ones, [&](std::size_t i) {
+    return bodies[i].keypoints.presence < options_.sure || !fits(bodies[i].next, *samples[i]->box);
+  });
   std::vector<PersonRegion> closer;
   for (const std::size_t i : new_ones) closer.push_back(bodies[i].next);
   std::vector<Body> again = network_.find(bgr, closer);
@@ -165,12 +169,14 @@ std::shared_ptr<const Keypoints<2>> BodyKeypoints::at(Person& person, Timestamp 
   } else if (!looked && known > 0 && after != person.seen.end()) {
     const Seen& from = person.seen[known - 1];
     const double whole = seconds(after->time - from.time), part = seconds(time - from.time);
-    if (whole <= kLongestBridge) result = on_the_way(*from.keypoints, *after->keypoints, part / whole, std::min(part, whole - part));
+    if (whole <= kLongestBridge)
+      result = on_the_way(*from.keypoints, *after->keypoints, part / whole, std::min(part, whole - part));
   } else if (!looked && known > 0) {
     const Seen& last = person.seen[known - 1];
     const Seen& earlier = person.seen[known > 1 ? known - 2 : 0];
     const double step = seconds(last.time - earlier.time), part = seconds(time - last.time);
-    if (part <= kLongestBridge) result = on_the_way(*earlier.keypoints, *last.keypoints, step > 0 && step <= kLongestBridge ? 1 + part / step : 1, part);
+    if (part <= kLongestBridge)
+      result = on_the_way(*earlier.keypoints, *last.keypoints, step > 0 && step <= kLongestBridge ? 1 + part / step : 1, part);
   }
   while (known > 2 && person.seen.size() > 2 && person.seen[1].time < time) person.seen.pop_front();
   return result;

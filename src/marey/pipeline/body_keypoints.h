@@ -25,8 +25,8 @@ struct KeypointOptions {
 };
 
 /// Keypoints of people who are tracked with boxes: a region for each from what was found before, else from the box, the network,
-/// left and right put right over time. Between the frames that the network looks at points are interpolated, live carried on as they moved.
-/// Who is not seen by it for long is no person, and leaves the instants.
+/// left and right put right over time. Between the frames that the network looks at points are interpolated, live carried on as
+/// they moved. Who is not seen by it for long is no person, and leaves the instants.
 class BodyKeypoints {
  public:
   /// Throws Error where the network is not usable.

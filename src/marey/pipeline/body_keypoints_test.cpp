@@ -72,9 +72,12 @@ Anatomy anatomy_of(const Recording& recording) {
       const Sample sample = track.sample(row);
       if (!sample.keypoints || !sample.box) continue;
       ++anatomy.bodies;
-      const auto share = [&](std::size_t point) { return (sample.keypoints->points[point]->position.y() - sample.box->top) / sample.box->height; };
+      const auto share = [&](std::size_t point) {
+        return (sample.keypoints->points[point]->position.y() - sample.box->top) / sample.box->height;
+      };
       anatomy.noses += share(kNose) > -0.1 && share(kNose) < 0.35;
-      anatomy.ankles += share(kLeftAnkle) > 0.7 && share(kLeftAnkle) < 1.15 && share(kRightAnkle) > 0.7 && share(kRightAnkle) < 1.15;
+      anatomy.ankles +=
+          share(kLeftAnkle) > 0.7 && share(kLeftAnkle) < 1.15 && share(kRightAnkle) > 0.7 && share(kRightAnkle) < 1.15;
     }
   }
   return anatomy;
@@ -130,9 +133,10 @@ TEST(BodyKeypoints, BetweenTheFramesThatAreLookedAtPointsGoOn) {
 TEST(BodyKeypoints, AFilmWithoutPeopleHasNone) {
   SKIP_WITHOUT_MODELS();
   const test::TemporaryFolder folder;
-  test::ffmpeg("-f lavfi -i color=0x90a080:size=320x240:rate=7 -f lavfi -i color=0x303040:size=24x60:rate=7 -filter_complex "
-               "\"[0][1]overlay=x='-20+15*t':y=60,noise=alls=4:allf=t:all_seed=7\" -t 20 -c:v mpeg4 -q:v 3 " +
-               folder / "box.mp4");
+  test::ffmpeg(
+      "-f lavfi -i color=0x90a080:size=320x240:rate=7 -f lavfi -i color=0x303040:size=24x60:rate=7 -filter_complex "
+      "\"[0][1]overlay=x='-20+15*t':y=60,noise=alls=4:allf=t:all_seed=7\" -t 20 -c:v mpeg4 -q:v 3 " +
+      folder / "box.mp4");
   const Result result = keypoints_of_film(folder / "box.mp4", {});
   EXPECT_EQ(result.summary.keypoints, 0);
   EXPECT_GT(result.summary.left_out.at("nobody"), 20) << "a dark plate that moves is a person no longer than its patience";

@@ -13,8 +13,8 @@ namespace {
 /// The instants that waited for the cameras' end, with keypoints out of the pictures, which are read once more.
 class LookedAt final : public InstantSource {
  public:
-  LookedAt(std::unique_ptr<InstantSource> waited, BodyKeypoints& keypoints, const std::function<Feed()>& open_again, std::int64_t count,
-           const Hooks& hooks)
+  LookedAt(std::unique_ptr<InstantSource> waited, BodyKeypoints& keypoints, const std::function<Feed()>& open_again,
+           std::int64_t count, const Hooks& hooks)
       : waited_(std::move(waited)), keypoints_(keypoints), count_(count), hooks_(hooks) {
     if (open_again) feed_.emplace(open_again());
   }
@@ -92,7 +92,8 @@ class KeypointStage final : public Stage {
   void report(Summary& summary) const override {
     stage_->report(summary);
     summary.left_out["nobody"] = keypoints_.left_out();
-    summary.steps.push_back({"keypoints", keypoints_.times().count(), keypoints_.times().quantile(0.5), keypoints_.times().quantile(0.99)});
+    summary.steps.push_back(
+        {"keypoints", keypoints_.times().count(), keypoints_.times().quantile(0.5), keypoints_.times().quantile(0.99)});
   }
 
  private:
@@ -108,7 +109,8 @@ class KeypointStage final : public Stage {
 std::unique_ptr<Stage> with_keypoints(std::unique_ptr<Stage> stage, const Feed& feed, const KeypointOptions& options, bool live) {
   if (!feed.has_pictures()) throw Error("{}: keypoints are looked for in pictures, and it brings none", feed.info().name);
   if (!live && !feed.can_rewind())
-    throw Error("{}: keypoints are looked for where people were tracked, so it is read twice, and that cannot be: use --live", feed.info().name);
+    throw Error("{}: keypoints are looked for where people were tracked, so it is read twice, and that cannot be: use --live",
+                feed.info().name);
   return std::make_unique<KeypointStage>(std::move(stage), feed, options, live);
 }
 

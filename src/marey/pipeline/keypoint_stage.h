@@ -8,8 +8,8 @@
 
 namespace marey::pipeline {
 
-/// `stage` is of this feed. Where it is not `live`, it tells its instants when the pictures are gone, so the feed is read once more. Throws
-/// Error where the feed has no pictures, cannot be read twice, or the network is not usable.
+/// `stage` is of this feed. Where it is not `live`, it tells its instants when the pictures are gone, so the feed is read once
+/// more. Throws Error where the feed has no pictures, cannot be read twice, or the network is not usable.
 std::unique_ptr<Stage> with_keypoints(std::unique_ptr<Stage> stage, const Feed& feed, const KeypointOptions& options, bool live);
 
 }  // namespace marey::pipeline

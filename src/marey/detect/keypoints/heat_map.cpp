@@ -7,10 +7,10 @@
 namespace marey::detect::keypoints {
 namespace {
 
-constexpr int kReach = 3;          // cells to each side: 7 × 7
-constexpr double kSureMap = 0.5;   // the window's peak from which on the map moves the place
-constexpr double kOfPeak = 0.25;   // what is less is no evidence
-constexpr double kLeast = 0.5;     // px; a deviation that no map of these cells can undercut
+constexpr int kReach = 3;         // cells to each side: 7 × 7
+constexpr double kSureMap = 0.5;  // the window's peak from which on the map moves the place
+constexpr double kOfPeak = 0.25;  // what is less is no evidence
+constexpr double kLeast = 0.5;    // px; a deviation that no map of these cells can undercut
 
 double likelihood(double logit) {
   return 1 / (1 + std::exp(-logit));
@@ -34,10 +34,12 @@ struct Moments {
 
 HeatPoint point_in(std::span<const float> logits, int cells, double cell, const Vector<2>& given) {
   const auto at = [&](int row, int column) {
-    return static_cast<double>(logits[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells) + static_cast<std::size_t>(column)]);
+    return static_cast<double>(
+        logits[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells) + static_cast<std::size_t>(column)]);
   };
   HeatPoint point{.place = given};
-  const int column = static_cast<int>(std::lround(given.x() / cell - 0.5)), row = static_cast<int>(std::lround(given.y() / cell - 0.5));
+  const int column = static_cast<int>(std::lround(given.x() / cell - 0.5)),
+            row = static_cast<int>(std::lround(given.y() / cell - 0.5));
   Moments near;
   for (int r = std::max(0, row - kReach); r <= std::min(cells - 1, row + kReach); ++r) {
     for (int c = std::max(0, column - kReach); c <= std::min(cells - 1, column + kReach); ++c)
@@ -50,7 +52,8 @@ HeatPoint point_in(std::span<const float> logits, int cells, double cell, const 
   Moments all;  // about the place
   for (int r = 0; r < cells; ++r) {
     for (int c = 0; c < cells; ++c) {
-      if (const double logit = at(r, c); logit > least_logit) all.add(likelihood(logit), Vector<2>(c + 0.5, r + 0.5) * cell - point.place);
+      if (const double logit = at(r, c); logit > least_logit)
+        all.add(likelihood(logit), Vector<2>(c + 0.5, r + 0.5) * cell - point.place);
     }
   }
   point.covariance = Matrix<2>::Identity() * (kLeast * kLeast);

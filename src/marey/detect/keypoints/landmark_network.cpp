@@ -42,10 +42,12 @@ std::string regular(const std::string& path) {
 
 LandmarkNetwork::LandmarkNetwork(const std::string& onnx)
     : path_(onnx), inference_(regular(onnx), "make it again with script/model") {
-  const std::vector<network::Tensor> outputs = raw(cv::Mat(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3, cv::Scalar::all(128)));
+  const std::vector<network::Tensor> outputs =
+      raw(cv::Mat(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3, cv::Scalar::all(128)));
   const std::vector<std::vector<int>> expected{{1, kAll * kNumbers}, {1, 1}, {1, kAll, kCells, kCells}};
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    if (outputs[i].shape != expected[i]) throw Error("{}: is another network than those for keypoints that script/model makes", path_);
+    if (outputs[i].shape != expected[i])
+      throw Error("{}: is another network than those for keypoints that script/model makes", path_);
   }
 }
 

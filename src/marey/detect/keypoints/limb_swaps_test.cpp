@@ -40,7 +40,8 @@ Keypoints<2> with_swapped_legs(const Keypoints<2>& body) {
   return result;
 }
 
-/// Shares of pictures with the ankles' names exchanged, as the network gave them and after `lag` more pictures were seen; where the ankles are apart.
+/// Shares of pictures with the ankles' names exchanged, as the network gave them and after `lag` more pictures were seen; where the
+/// ankles are apart.
 std::pair<double, double> wrong_before_and_after(std::size_t lag, double rate) {
   constexpr int kPictures = 1000;
   simulate::Random random(7);

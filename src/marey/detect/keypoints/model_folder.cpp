@@ -42,7 +42,8 @@ std::string model_file(std::string_view name) {
   for (const std::filesystem::path& folder : model_folders()) {
     if (std::filesystem::is_regular_file(folder / name)) return (folder / name).string();
   }
-  throw Error("the network {} is not there; script/model makes it (or install marey-models; MAREY_MODELS names another folder)", name);
+  throw Error("the network {} is not there; script/model makes it (or install marey-models; MAREY_MODELS names another folder)",
+              name);
 }
 
 std::string landmark_model(std::string_view name) {

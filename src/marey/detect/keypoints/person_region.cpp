@@ -8,9 +8,9 @@
 namespace marey::detect::keypoints {
 namespace {
 
-constexpr double kRoom = 1.25;      // a region's side over a person's extent: as the networks were trained
-constexpr double kSmallest = 8;     // px; a region's side
-constexpr double kCoarse = 2;       // a picture that shrinks by more is averaged first, so that no detail turns into noise
+constexpr double kRoom = 1.25;   // a region's side over a person's extent: as the networks were trained
+constexpr double kSmallest = 8;  // px; a region's side
+constexpr double kCoarse = 2;    // a picture that shrinks by more is averaged first, so that no detail turns into noise
 
 }  // namespace
 
@@ -37,8 +37,10 @@ PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim) {
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
   // Of the picture, px, and the part of it that is read.
   const double reach = region.side / std::sqrt(2.0) + 2;
-  const cv::Rect part = cv::Rect(cv::Point(static_cast<int>(std::floor(region.centre.x() - reach)), static_cast<int>(std::floor(region.centre.y() - reach))),
-                                 cv::Point(static_cast<int>(std::ceil(region.centre.x() + reach)), static_cast<int>(std::ceil(region.centre.y() + reach)))) &
+  const cv::Rect part = cv::Rect(cv::Point(static_cast<int>(std::floor(region.centre.x() - reach)),
+                                           static_cast<int>(std::floor(region.centre.y() - reach))),
+                                 cv::Point(static_cast<int>(std::ceil(region.centre.x() + reach)),
+                                           static_cast<int>(std::ceil(region.centre.y() + reach)))) &
                         cv::Rect(cv::Point(), bgr.size());
   if (part.empty()) return cv::Mat::zeros(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3);
   cv::Mat from = bgr(part);
@@ -57,7 +59,8 @@ cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
   const cv::Matx23d map(turn(0, 0) / shrunk_x, turn(0, 1) / shrunk_x, (corner.x() + 0.5) / shrunk_x - 0.5,  //
                         turn(1, 0) / shrunk_y, turn(1, 1) / shrunk_y, (corner.y() + 0.5) / shrunk_y - 0.5);
   cv::Mat crop;
-  cv::warpAffine(from, crop, map, {PersonRegion::kCrop, PersonRegion::kCrop}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  cv::warpAffine(from, crop, map, {PersonRegion::kCrop, PersonRegion::kCrop}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                 cv::BORDER_REPLICATE);
   return crop;
 }
 

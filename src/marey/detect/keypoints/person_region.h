@@ -24,7 +24,8 @@ struct PersonRegion {
 /// Round a person who is taken to stand upright, or as far as the box tells.
 PersonRegion region_of(const Box& box);
 
-/// Round a person whose hips' middle is at `hips`, with `rim` at the circle that holds the whole body, in the direction of the head.
+/// Round a person whose hips' middle is at `hips`, with `rim` at the circle that holds the whole body, in the direction of the
+/// head.
 PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim);
 
 /// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the picture's border its last pixels go on.

@@ -15,7 +15,8 @@ TEST(PersonRegion, OfABoxHoldsItUpright) {
 TEST(PersonRegion, TurnsWithThePerson) {
   const PersonRegion region = region_of(Vector<2>(200, 100), Vector<2>(260, 100));  // lies with the head to the right
   EXPECT_DOUBLE_EQ(region.side, 150);
-  EXPECT_LT((region.in_picture({128, 128 - 60 / region.scale()}) - Vector<2>(260, 100)).norm(), 1e-9) << "the crop's up is the head's side";
+  EXPECT_LT((region.in_picture({128, 128 - 60 / region.scale()}) - Vector<2>(260, 100)).norm(), 1e-9)
+      << "the crop's up is the head's side";
 }
 
 /// A picture whose blue is the column and green the row.
@@ -52,7 +53,8 @@ TEST(PersonRegion, ALargeRegionIsAveragedAtItsPlaceToo) {
   Vector<2> sum = Vector<2>::Zero();
   double weight = 0;
   for (int y = 0; y < 256; ++y) {
-    for (int x = 0; x < 256; ++x) sum += crop.at<cv::Vec3b>(y, x)[0] * Vector<2>(x + 0.5, y + 0.5), weight += crop.at<cv::Vec3b>(y, x)[0];
+    for (int x = 0; x < 256; ++x)
+      sum += crop.at<cv::Vec3b>(y, x)[0] * Vector<2>(x + 0.5, y + 0.5), weight += crop.at<cv::Vec3b>(y, x)[0];
   }
   EXPECT_LT((region.in_picture(sum / weight) - Vector<2>(919.5, 1219.5)).norm(), 0.5);
 }

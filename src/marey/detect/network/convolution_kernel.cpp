@@ -1,5 +1,5 @@
-// Sums stay in registers while all that goes into them is added: two vectors of a row by channel, two of each of six rows for 1 × 1. Highway
-// compiles this file once for each level of the processor (detect/kernel_targets.h).
+// Sums stay in registers while all that goes into them is added: two vectors of a row by channel, two of each of six rows for 1
+// × 1. Highway compiles this file once for each level of the processor (detect/kernel_targets.h).
 // clang-format off
 #include "marey/detect/network/convolution_kernel.h"
 
@@ -40,7 +40,8 @@ void row_of(const DepthwiseRows& rows, const float* weights, float bias, float l
   }
 }
 
-void by_channel(const DepthwiseRows& rows, const float* weights, int size, float bias, float low, float high, int width, float* out) {
+void by_channel(const DepthwiseRows& rows, const float* weights, int size, float bias, float low, float high, int width,
+                float* out) {
   if (size == 3) {
     row_of<3>(rows, weights, bias, low, high, width, out);
   } else {
@@ -48,7 +49,8 @@ void by_channel(const DepthwiseRows& rows, const float* weights, int size, float
   }
 }
 
-void point(const float* pixels, const float* weights, int inputs, const float* bias, float low, float high, float* out, int stride) {
+void point(const float* pixels, const float* weights, int inputs, const float* bias, float low, float high, float* out,
+           int stride) {
   const Floats d;
   constexpr int kBlock = ConvolutionKernels::kBlock, kRows = ConvolutionKernels::kRows;
   static_assert(kRows == 6);

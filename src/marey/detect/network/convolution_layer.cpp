@@ -1,11 +1,11 @@
 // Two kinds of convolution, which make up most of networks for small processors, faster than OpenCV 4.6 does them.
 //
-// By channel each value is read 9 or 25 times and nothing else is to be done: what counts is that the sums stay in registers. Each channel
-// is copied once into rows with the padding round them, with a stride of two into its even and its odd columns, so that every tap of
-// neighbouring outputs lies side by side.
+// By channel each value is read 9 or 25 times and nothing else is to be done: what counts is that the sums stay in registers. Each
+// channel is copied once into rows with the padding round them, with a stride of two into its even and its odd columns, so that
+// every tap of neighbouring outputs lies side by side.
 //
-// 1 × 1 is a product of matrices. Blocks of pixels are copied together, all channels of a block one after the other, so that they stay in the
-// cache while all output channels are computed of them, six at a time.
+// 1 × 1 is a product of matrices. Blocks of pixels are copied together, all channels of a block one after the other, so that they
+// stay in the cache while all output channels are computed of them, six at a time.
 #include "marey/detect/network/convolution_layer.h"
 
 #include <algorithm>
@@ -31,7 +31,9 @@ using PlainLayer = cv::Ptr<cv::dnn::BaseConvolutionLayer>;
 /// What both have: shapes as OpenCV's own layer knows them, and an activation after it.
 class OwnConvolution : public cv::dnn::Layer {
  public:
-  OwnConvolution(const cv::dnn::LayerParams& params, const PlainLayer& plain) : cv::dnn::Layer(params), plain_(plain) { blobs = plain->blobs; }
+  OwnConvolution(const cv::dnn::LayerParams& params, const PlainLayer& plain) : cv::dnn::Layer(params), plain_(plain) {
+    blobs = plain->blobs;
+  }
 
   bool supportBackend(int backend) override { return backend == cv::dnn::DNN_BACKEND_OPENCV; }
 
@@ -61,8 +63,8 @@ class OwnConvolution : public cv::dnn::Layer {
     for (int image = 0; image < inputs[0].size[0]; ++image) {
       convolve(inputs[0], outputs[0], image);
       if (activation_)
-        activation_->forwardSlice(outputs[0].ptr<float>(image), outputs[0].ptr<float>(image), plane, static_cast<std::size_t>(plane), 0,
-                                  outputs[0].size[1]);
+        activation_->forwardSlice(outputs[0].ptr<float>(image), outputs[0].ptr<float>(image), plane,
+                                  static_cast<std::size_t>(plane), 0, outputs[0].size[1]);
     }
   }
 
@@ -90,7 +92,8 @@ class DepthwiseConvolution final : public OwnConvolution {
  private:
   void convolve(const cv::Mat& input, cv::Mat& output, int image) override {
     for (int channel = 0; channel < output.size[1]; ++channel)
-      convolve(input.ptr<float>(image, channel), input.size[2], input.size[3], channel, output.ptr<float>(image, channel), output.size[2], output.size[3]);
+      convolve(input.ptr<float>(image, channel), input.size[2], input.size[3], channel, output.ptr<float>(image, channel),
+               output.size[2], output.size[3]);
   }
 
   /// One channel's values with zeros round them, a stride of two as all even columns of a row and then all odd ones.
@@ -122,7 +125,8 @@ class DepthwiseConvolution final : public OwnConvolution {
         for (int k = 0; k < size_; ++k) taps.taps[r][k] = stride_ == 1 ? row + k : row + (k & 1) * lane_ + k / 2;
       }
       kernels_.by_channel(taps, weights, size_, bias(channel), low_, high_, out_columns, line_.data());
-      std::memcpy(out + static_cast<std::ptrdiff_t>(y) * out_columns, line_.data(), static_cast<std::size_t>(out_columns) * sizeof(float));
+      std::memcpy(out + static_cast<std::ptrdiff_t>(y) * out_columns, line_.data(),
+                  static_cast<std::size_t>(out_columns) * sizeof(float));
     }
   }
 
@@ -153,15 +157,17 @@ class PointConvolution final : public OwnConvolution {
     for (int begin = 0; begin < pixels; begin += kBlock) {
       const int width = std::min(kBlock, pixels - begin);
       for (int i = 0; i < inputs_; ++i)
-        std::memcpy(block_.data() + static_cast<std::ptrdiff_t>(i) * kBlock, input.ptr<float>(image, i) + begin, static_cast<std::size_t>(width) * sizeof(float));
+        std::memcpy(block_.data() + static_cast<std::ptrdiff_t>(i) * kBlock, input.ptr<float>(image, i) + begin,
+                    static_cast<std::size_t>(width) * sizeof(float));
       for (int o = 0; o < outputs_; o += kRows) {
         const int rows = std::min(kRows, outputs_ - o);
         const bool whole = rows == kRows && width == kBlock;
         float* out = output.ptr<float>(image, o) + begin;
-        kernels_.point(block_.data(), weights_.data() + static_cast<std::ptrdiff_t>(o) * inputs_, inputs_, biases_.data() + o, low_, high_,
-                       whole ? out : rest.data(), whole ? pixels : kBlock);
+        kernels_.point(block_.data(), weights_.data() + static_cast<std::ptrdiff_t>(o) * inputs_, inputs_, biases_.data() + o, low_,
+                       high_, whole ? out : rest.data(), whole ? pixels : kBlock);
         for (int r = 0; !whole && r < rows; ++r)
-          std::memcpy(out + static_cast<std::ptrdiff_t>(r) * pixels, rest.data() + static_cast<std::ptrdiff_t>(r) * kBlock, static_cast<std::size_t>(width) * sizeof(float));
+          std::memcpy(out + static_cast<std::ptrdiff_t>(r) * pixels, rest.data() + static_cast<std::ptrdiff_t>(r) * kBlock,
+                      static_cast<std::size_t>(width) * sizeof(float));
       }
     }
   }
@@ -177,12 +183,14 @@ bool all_in(const std::vector<std::size_t>& values, std::initializer_list<std::s
 
 cv::Ptr<cv::dnn::Layer> make_convolution(cv::dnn::LayerParams& params) {
   const PlainLayer plain = cv::dnn::ConvolutionLayer::create(params);
-  if (plain->blobs.empty() || !plain->padMode.empty() || !all_in(plain->dilations, {1}) || plain->pads_begin.size() != 2) return plain;
+  if (plain->blobs.empty() || !plain->padMode.empty() || !all_in(plain->dilations, {1}) || plain->pads_begin.size() != 2)
+    return plain;
   const cv::Mat& weights = plain->blobs[0];
   if (weights.dims != 4 || weights.type() != CV_32F || !weights.isContinuous() || weights.size[0] != plain->numOutput) return plain;
   if (plain->blobs.size() > 1 && plain->blobs[1].type() != CV_32F) return plain;
   const int groups = params.get<int>("group", 1);
-  if (groups > 1 && groups == plain->numOutput && weights.size[1] == 1 && all_in(plain->kernel_size, {3, 5}) && all_in(plain->strides, {1, 2}))
+  if (groups > 1 && groups == plain->numOutput && weights.size[1] == 1 && all_in(plain->kernel_size, {3, 5}) &&
+      all_in(plain->strides, {1, 2}))
     return cv::makePtr<DepthwiseConvolution>(params, plain);
   const bool padded = plain->pads_begin[0] + plain->pads_begin[1] + plain->pads_end[0] + plain->pads_end[1] > 0;
   if (groups == 1 && !padded && all_in(plain->kernel_size, {1}) && all_in(plain->strides, {1}))

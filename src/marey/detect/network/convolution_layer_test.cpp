@@ -23,7 +23,8 @@ cv::Mat random_values(std::vector<int> sizes, simulate::Random& random) {
 }
 
 /// The definition, term by term.
-float plain_convolution(const cv::Mat& input, const cv::Mat& weights, const cv::Mat& bias, const Shape& shape, int output, int y, int x) {
+float plain_convolution(const cv::Mat& input, const cv::Mat& weights, const cv::Mat& bias, const Shape& shape, int output, int y,
+                        int x) {
   double sum = bias.ptr<float>()[output];
   const int of_group = shape.inputs / shape.groups, first = output / (shape.outputs / shape.groups) * of_group;
   for (int i = 0; i < of_group; ++i) {
@@ -75,13 +76,14 @@ TEST(OwnConvolutions, AreWhatTheDefinitionSays) {
   use_own_convolutions();
   simulate::Random random(5);
   for (const bool clipped : {false, true}) {
-    for (const Shape& shape : {Shape{8, 8, 8, 3, 1, 1, {64, 64}}, Shape{3, 3, 3, 5, 1, 2, {17, 9}}, Shape{5, 5, 5, 5, 2, 2, {33, 31}},
-                               Shape{4, 4, 4, 3, 2, 0, {65, 65}}, Shape{4, 4, 4, 3, 2, 1, {16, 40}}, Shape{2, 2, 2, 5, 1, 0, {5, 5}},
-                               Shape{7, 13, 1, 1, 1, 0, {9, 7}}, Shape{24, 36, 1, 1, 1, 0, {16, 16}}, Shape{1, 1, 1, 1, 1, 0, {1, 1}},
-                               Shape{6, 8, 2, 1, 1, 0, {8, 8}}, Shape{6, 8, 1, 1, 2, 0, {8, 8}}, Shape{3, 8, 1, 3, 2, 1, {20, 20}},
-                               Shape{4, 8, 4, 3, 1, 1, {20, 20}}}) {
-      SCOPED_TRACE(testing::Message() << shape.inputs << " to " << shape.outputs << ", " << shape.groups << " groups, " << shape.size << " taps, stride "
-                                      << shape.stride << (clipped ? ", clipped" : ""));
+    for (const Shape& shape :
+         {Shape{8, 8, 8, 3, 1, 1, {64, 64}}, Shape{3, 3, 3, 5, 1, 2, {17, 9}}, Shape{5, 5, 5, 5, 2, 2, {33, 31}},
+          Shape{4, 4, 4, 3, 2, 0, {65, 65}}, Shape{4, 4, 4, 3, 2, 1, {16, 40}}, Shape{2, 2, 2, 5, 1, 0, {5, 5}},
+          Shape{7, 13, 1, 1, 1, 0, {9, 7}}, Shape{24, 36, 1, 1, 1, 0, {16, 16}}, Shape{1, 1, 1, 1, 1, 0, {1, 1}},
+          Shape{6, 8, 2, 1, 1, 0, {8, 8}}, Shape{6, 8, 1, 1, 2, 0, {8, 8}}, Shape{3, 8, 1, 3, 2, 1, {20, 20}},
+          Shape{4, 8, 4, 3, 1, 1, {20, 20}}}) {
+      SCOPED_TRACE(testing::Message() << shape.inputs << " to " << shape.outputs << ", " << shape.groups << " groups, "
+                                      << shape.size << " taps, stride " << shape.stride << (clipped ? ", clipped" : ""));
       check_convolution(shape, clipped, random);
     }
   }

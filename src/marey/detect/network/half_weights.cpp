@@ -1,6 +1,6 @@
-// ONNX is protocol buffers: fields one after the other, each with its number and how it is coded before it, messages within messages
-// with their length (https://protobuf.dev/programming-guides/encoding). Only the path to the weights is taken apart (onnx.proto:
-// ModelProto.graph = 7, GraphProto.initializer = 5, TensorProto.data_type = 2, .raw_data = 9); all else is copied.
+// ONNX is protocol buffers: fields one after the other, each with its number and how it is coded before it, messages within
+// messages with their length (https://protobuf.dev/programming-guides/encoding). Only the path to the weights is taken apart
+// (onnx.proto: ModelProto.graph = 7, GraphProto.initializer = 5, TensorProto.data_type = 2, .raw_data = 9); all else is copied.
 #include "marey/detect/network/half_weights.h"
 
 #include <cstdint>

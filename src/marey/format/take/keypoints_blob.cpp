@@ -29,8 +29,9 @@ void append_body(Bytes& blob, const Keypoints<2>& body) {
   append_bytes(blob, &presence, sizeof presence);
   for (const std::optional<Keypoint<2>>& point : body.points) {
     const Keypoint<2> it = point.value_or(Keypoint<2>{.covariance = Matrix<2>::Zero(), .visibility = 0, .presence = 0});
-    const std::array<double, kNumbersOfPoint> numbers{it.position.x(),    it.position.y(), it.covariance(0, 0), it.covariance(0, 1),
-                                                      it.covariance(1, 1), it.visibility,  it.presence};
+    const std::array<double, kNumbersOfPoint> numbers{it.position.x(),     it.position.y(),     it.covariance(0, 0),
+                                                      it.covariance(0, 1), it.covariance(1, 1), it.visibility,
+                                                      it.presence};
     blob.push_back(static_cast<std::byte>(point.has_value()));
     for (const double number : numbers) {
       const auto value = static_cast<float>(number);
@@ -126,7 +127,8 @@ void decode_keypoints(std::span<const std::byte> blob, const ColumnDecoder& deco
 }
 
 std::string keypoint_set_text(const KeypointSet& set) {
-  nlohmann::json json = {{"name", set.name}, {"points", set.points}, {"mirrored", set.mirrored}, {"bones", nlohmann::json::array()}};
+  nlohmann::json json = {
+      {"name", set.name}, {"points", set.points}, {"mirrored", set.mirrored}, {"bones", nlohmann::json::array()}};
   for (const auto& [from, to] : set.bones) json["bones"].push_back({from, to});
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

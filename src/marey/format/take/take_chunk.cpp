@@ -30,7 +30,8 @@ bool is_sound(const Outline& outline) {
 
 bool is_sound(const Keypoints<2>& body) {
   const auto known = [](const auto& matrix) { return (matrix.array().abs() <= std::numeric_limits<float>::max()).all(); };
-  return is_number(body.presence) && std::all_of(body.points.begin(), body.points.end(), [&](const std::optional<Keypoint<2>>& point) {
+  return is_number(body.presence) &&
+         std::all_of(body.points.begin(), body.points.end(), [&](const std::optional<Keypoint<2>>& point) {
            return !point || (known(point->position) && known(point->covariance) && is_number(point->visibility) &&
                              is_number(point->presence));
          });

@@ -58,7 +58,9 @@ std::shared_ptr<const Keypoints<2>> keypoints_of(Dice& dice) {
   for (std::size_t i = 0; i < three_points().points.size(); ++i) {
     std::optional<Keypoint<2>>& point = body->points.emplace_back();
     if (dice.with(0.2)) continue;
-    point = Keypoint<2>{.position = {dice.between(-20, 800), dice.between(0, 600)}, .visibility = dice.between(0, 1), .presence = dice.between(0, 1)};
+    point = Keypoint<2>{.position = {dice.between(-20, 800), dice.between(0, 600)},
+                        .visibility = dice.between(0, 1),
+                        .presence = dice.between(0, 1)};
     point->covariance << 4, dice.between(-1, 1), 0, 3;
     point->covariance(1, 0) = point->covariance(0, 1);
   }

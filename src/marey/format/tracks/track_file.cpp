@@ -61,13 +61,14 @@ void append_points(std::string& lines, const Instant& instant, const Sample& sam
   for (std::size_t i = 0; i < std::min(points.size(), set.points.size()); ++i) {
     if (!points[i]) continue;
     const Keypoint<2>& point = *points[i];
-    fmt::format_to(std::back_inserter(lines), "{},{:.6f},{},{},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f}\n", instant.index, seconds(instant.time),
-                   number(sample.track), quoted_field(set.points[i]), point.position.x(), point.position.y(),
+    fmt::format_to(std::back_inserter(lines), "{},{:.6f},{},{},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f}\n", instant.index,
+                   seconds(instant.time), number(sample.track), quoted_field(set.points[i]), point.position.x(), point.position.y(),
                    std::sqrt(point.covariance.trace() / 2), point.visibility, point.presence);
   }
 }
 
-void append_json(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label, const KeypointSet* set) {
+void append_json(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label,
+                 const KeypointSet* set) {
   auto out = std::back_inserter(lines);
   fmt::format_to(out, R"({{"frame":{},"time":{:.6f},"id":{},)", instant.index, seconds(instant.time), number(sample.track));
   if (!label.empty()) {
@@ -107,7 +108,8 @@ Sink::Wants TrackFile::begin(const RecordingHeader& header) {
   }
   keypoints_ = header.keypoints;
   if (text_ == TrackText::csv)
-    file_.write(keypoints_ ? "frame,time,id,point,x,y,sd,visibility,presence\n" : "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
+    file_.write(keypoints_ ? "frame,time,id,point,x,y,sd,visibility,presence\n"
+                           : "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
   return {};
 }
 
@@ -265,8 +267,9 @@ Format image_csv_format() {
           .title = "tracks in a picture, one row each",
           .endings = ".csv",
           .holds = Content::image,
-          .detail = "px; `frame,time,id,label,x,y,vx,vy,left,top,width,height,state`; frames and pixels count from 0. With "
-                    "keypoints a row for each point instead: `frame,time,id,point,x,y,sd,visibility,presence`; not read back",
+          .detail =
+              "px; `frame,time,id,label,x,y,vx,vy,left,top,width,height,state`; frames and pixels count from 0. With "
+              "keypoints a row for each point instead: `frame,time,id,point,x,y,sd,visibility,presence`; not read back",
           .is = [](const Beginning& file) { return match::is_ground_csv(file, true); },
           .read = match::read_ground_match,
           .create = tracks::create<tracks::TrackText::csv>,
