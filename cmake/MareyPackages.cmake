@@ -1,5 +1,5 @@
 # Debian packages by CPack: `marey` is the program with its completions and manual pages, `libmarey-dev` the libraries and headers,
-# `python3-marey` the Python package. script/package builds them; docs/install.md tells how they are installed.
+# `python3-marey` the Python package, `marey-models` the networks that script/model made. script/package builds them; docs/install.md tells how they are installed.
 if(NOT TARGET marey_cli)
   return()
 endif()
@@ -10,6 +10,10 @@ install(FILES ${words}/_marey DESTINATION share/zsh/vendor-completions COMPONENT
 install(FILES ${words}/marey.fish DESTINATION share/fish/vendor_completions.d COMPONENT program OPTIONAL)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/marey RENAME copyright COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/libmarey-dev RENAME copyright COMPONENT dev)
+set(models ${PROJECT_SOURCE_DIR}/build/models)
+install(FILES ${models}/pose_landmark_lite.onnx ${models}/pose_landmark_full.onnx ${models}/person.onnx ${models}/person.toml
+        DESTINATION share/marey/models COMPONENT models OPTIONAL)
+install(FILES ${models}/LICENSE DESTINATION share/doc/marey-models RENAME copyright COMPONENT models OPTIONAL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME marey)
@@ -26,6 +30,11 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME marey)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS marey-models)
+set(CPACK_DEBIAN_MODELS_PACKAGE_NAME marey-models)
+set(CPACK_DEBIAN_MODELS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_MODELS_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_MODELS_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libmarey-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)

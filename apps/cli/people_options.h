@@ -9,8 +9,10 @@
 
 namespace marey::cli {
 
-/// What `marey track --targets people` understands beyond what every target needs.
+/// What `marey track --targets people` and `keypoints` understand beyond what every target needs.
 struct PeopleFlags {
+  bool keypoints = false;  ///< --targets keypoints
+  std::string model = pipeline::KeypointOptions{}.model;
   std::string background = std::string(detect::background::AdaptiveOptions::name);
   std::string detector;
   bool without_background = false;
@@ -22,13 +24,15 @@ struct PeopleFlags {
   std::optional<int> lines;
 };
 
-/// Throws WrongUsage if frames are to be skipped without a background model where detections of every frame are needed.
+/// Throws WrongUsage if there is no network that --every and --without-background speak of, or frames are to be skipped without a
+/// background model where detections of every frame are needed.
 void check_every(const PeopleFlags& flags, bool on_ground);
 
 /// The detector that they choose, wherever people are searched for in pictures.
 detect::DetectorOptions detector_options(const PeopleFlags& flags);
 
 void add_people_options(Command& command, PeopleFlags& flags);
+void add_keypoint_options(Command& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.
 pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);

@@ -23,8 +23,9 @@
 namespace marey::cli {
 namespace {
 
-enum class Targets { people, markers };
-constexpr std::array<std::pair<const char*, Targets>, 2> kTargets{{{"people", Targets::people}, {"markers", Targets::markers}}};
+enum class Targets { people, markers, keypoints };
+constexpr std::array<std::pair<const char*, Targets>, 3> kTargets{
+    {{"people", Targets::people}, {"markers", Targets::markers}, {"keypoints", Targets::keypoints}}};
 
 struct TrackCommand {
   RigCamera input;  ///< the one camera, or with --ground `source` is the rig
@@ -61,9 +62,10 @@ pipeline::TrackOutput output_of(const TrackCommand& command) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
   } else {
     const format::Format* by_ending = format::format_of_name(command.out, format::Content::image);
-    output.format = by_ending != nullptr     ? by_ending->name
-                    : command.people.outline ? "jsonl"  // the others hold no outlines
-                                             : "mot";
+    output.format = by_ending != nullptr                    ? by_ending->name
+                    : command.people.outline                ? "jsonl"  // the others hold no outlines
+                    : command.targets == Targets::keypoints ? "csv"    // MOT text holds no points
+                                                            : "mot";
   }
   if (command.out == "-") output.tracks = "/dev/stdout";
   if (command.out.empty()) output.tracks = default_output(command.input, output.format);
@@ -75,6 +77,8 @@ template <typename Track>
 void run(const TrackCommand& command, const pipeline::TrackOutput& output, Track&& track) {
   if (command.people.outline && (output.format == "mot" || output.format == "csv"))
     warn({fmt::format("{}: holds no outlines; .jsonl and .marey do", output.tracks)});
+  if (command.people.keypoints && output.format == "mot")
+    warn({fmt::format("{}: holds no keypoints; .csv, .jsonl and .marey do", output.tracks)});
   run_with_progress(command.quiet, track, [&](const auto& summary, double elapsed) {
     if (command.json) {
       print_json(summary, output, command.targets == Targets::markers, elapsed);
@@ -97,8 +101,10 @@ GroundCommand ground_command(const TrackCommand& command) {
 }
 
 void run_on_ground(const TrackCommand& command) {
-  if (command.targets != Targets::people)
+  if (command.targets == Targets::markers)
     throw WrongUsage("--ground follows people; markers stand on no ground: leave out one of the two");
+  if (command.targets == Targets::keypoints)
+    throw WrongUsage("--ground places people by their boxes; keypoints are of one camera's pictures: leave out one of the two");
   if (!command.input.detections.empty())
     throw WrongUsage("--ground takes a rig: name the cameras' detections there, or give CAMERA=FILE after it");
   if (!command.plot.empty()) throw WrongUsage("--plot shows ways in one picture; with --ground there is --pitch-view");
@@ -110,14 +116,14 @@ void check_live(const TrackCommand& command) {
   if (command.delay && !command.live)
     throw WrongUsage("--delay {}: only --live has one; without it everything is looked at before anything is written",
                      *command.delay);
-  const bool in_picture = command.targets == Targets::people && !command.ground.ground;
+  const bool in_picture = command.targets != Targets::markers && !command.ground.ground;
   if (command.delay && !in_picture) throw WrongUsage("{}", "--delay is for people in one picture; leave it out");
   if (command.seen_only && !in_picture) throw WrongUsage("{}", "--seen-only is for people in one picture; leave it out");
 }
 
 void check_steady(const TrackCommand& command) {
   if (!command.people.steady) return;
-  if (command.targets != Targets::people)
+  if (command.targets == Targets::markers)
     throw WrongUsage("{}", "--steady holds on to the scene that people walk in, and markers have none; leave it out");
   if (!command.input.detections.empty())
     throw WrongUsage("{}", "--steady steadies pictures, and --detections brings none; leave it out");
@@ -137,7 +143,8 @@ void print_network_cost(const detect::DetectorOptions& detector, const std::stri
              network->everywhere_s, 4 * network->everywhere_s);
 }
 
-void run(const TrackCommand& command) {
+void run(TrackCommand& command) {
+  command.people.keypoints = command.targets == Targets::keypoints;
   check_live(command);
   check_steady(command);
   if (command.ground.ground) return run_on_ground(command);
@@ -191,7 +198,7 @@ void add_outputs(Command& command, TrackCommand& options) {
   command
       .text("--format", options.format,
             "one of " + format::names_of_written(format::Content::image) +
-                " (default: by OUTPUT's ending, else mot, with --outline jsonl)")
+                " (default: by OUTPUT's ending, else mot, with --outline jsonl, for keypoints csv)")
       .check([](const std::string& name) { format::format_to_write({}, name, format::Content::image); });
   command.output_file("--overlay", options.overlay,
                       "a film with boxes, numbers and trails drawn into the pictures: FILE.mp4; with --ground a folder, which gets "
@@ -211,7 +218,7 @@ void add_outputs(Command& command, TrackCommand& options) {
 void add_track(Command& program) {
   auto options = std::make_shared<TrackCommand>();
   Command command = program.subcommand(
-      "track", "Follow people or markers in a recording of one fixed camera, or people on the ground with several");
+      "track", "Follow people, their body points, or markers in a recording of one camera, or people on the ground with several");
   add_inputs(command, *options);
   add_outputs(command, *options);
   command.text("--filter", options->filter, "what predicts each person's motion, one of " + filter_names())
@@ -225,6 +232,7 @@ void add_track(Command& program) {
   command.flag("--seen-only", options->seen_only, "leave out the rows of people whom nobody saw in that frame");
   command.reports(options->json, options->quiet);
   add_people_options(command, options->people);
+  add_keypoint_options(command, options->people);
   add_marker_options(command, options->markers);
   add_ground_options(command, options->ground);
   command.runs([options] {

@@ -23,6 +23,7 @@ void print_left_out(const pipeline::Summary& summary) {
   };
   print("too_brief", "seen too briefly to be believed");
   print("noise", "moving regions too small to be a part of a person");
+  print("nobody", "boxes in which the network sees nobody");
   print("misfits", "moving regions that no body explains");
 }
 
@@ -48,6 +49,7 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
   }
   for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
   if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};
+  if (summary.keypoints > 0) json["keypoints"] = {{"rows", summary.keypoints}, {"nobody", left_out_of(summary, "nobody")}};
   print(json);
 }
 
@@ -64,6 +66,9 @@ void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput
   if (summary.outlines > 0) {
     fmt::print(stderr, "outlines: {}, {:.0f} % of them held while too little was seen\n", summary.outlines,
                100.0 * static_cast<double>(summary.held_outlines) / static_cast<double>(summary.outlines));
+  }
+  if (summary.keypoints > 0) {
+    fmt::print(stderr, "keypoints: in {} of {} rows\n", summary.keypoints, summary.samples);
   }
   fmt::print(stderr, "tracks: {}\n", output.tracks);
   if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);

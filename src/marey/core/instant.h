@@ -13,6 +13,7 @@
 #include "marey/core/frame.h"
 #include "marey/core/geometry.h"
 #include "marey/core/ids.h"
+#include "marey/core/keypoints.h"
 #include "marey/core/outline.h"
 #include "marey/core/time.h"
 
@@ -51,6 +52,8 @@ struct Sample {
   std::optional<double> residual_px;                 ///< RMS distance between the position's projections and what was seen
   std::optional<double> residual_m;                  ///< the same in space, as other systems' files have it
   std::shared_ptr<const Outline> outline = nullptr;  ///< px, where outlines are followed and this one has one
+  /// px, where body points are looked for and some were found; which they are says the recording's header.
+  std::shared_ptr<const Keypoints<2>> keypoints = nullptr;
 
   bool measured() const { return provenance == Provenance::measured; }
 };

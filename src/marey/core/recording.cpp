@@ -106,6 +106,7 @@ Sample TrackColumns::sample(std::size_t row) const {
   if (column(Optional::residual_px).known(row)) sample.residual_px = *column(Optional::residual_px).values(row);
   if (column(Optional::residual_m).known(row)) sample.residual_m = *column(Optional::residual_m).values(row);
   if (const auto outline = outlines_.find(row); outline != outlines_.end()) sample.outline = outline->second;
+  if (const auto points = keypoints_.find(row); points != keypoints_.end()) sample.keypoints = points->second;
   return sample;
 }
 
@@ -140,6 +141,7 @@ void TrackColumns::add(std::int32_t instant, const Sample& sample) {
   if (sample.residual_px) column(Optional::residual_px).set(row, {&*sample.residual_px, 1});
   if (sample.residual_m) column(Optional::residual_m).set(row, {&*sample.residual_m, 1});
   if (sample.outline) outlines_.emplace(row, sample.outline);
+  if (sample.keypoints) keypoints_.emplace(row, sample.keypoints);
 }
 
 void TrackColumns::reserve(std::size_t rows) {
@@ -171,6 +173,7 @@ void TrackColumns::clear() {
   cameras_.clear();
   for (OptionalColumn& column : optional_) column.clear();
   outlines_.clear();
+  keypoints_.clear();
 }
 
 void TrackColumns::set_at(std::vector<std::int32_t> instants) {

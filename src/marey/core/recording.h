@@ -62,6 +62,7 @@ struct RecordingHeader {
   double rate_hz = 0;        ///< instants a second, positive: the median step, where the file does not tell
   std::optional<Rig> rig;    ///< the cameras with their sources; nothing where a file brings positions alone
   std::vector<Body> bodies;  ///< by id, parents before children; none where none were solved
+  std::optional<KeypointSet> keypoints;  ///< which body points samples have, where they have some
   MadeBy made_by;
   bool smoothed = false;  ///< a second pass has smoothed positions and velocities: who measures does not smooth again
 };
@@ -114,6 +115,7 @@ class TrackColumns {
   enum class Optional { velocity, covariance, score, box, residual_px, residual_m };
   static constexpr int kOptionals = 6;
   using Outlines = std::map<std::size_t, std::shared_ptr<const Outline>>;
+  using Bodies = std::map<std::size_t, std::shared_ptr<const Keypoints<2>>>;
 
   /// The columns that every row has. `z` is empty in two dimensions.
   struct Rows {
@@ -143,6 +145,7 @@ class TrackColumns {
   const OptionalColumn& column(Optional which) const { return optional_[static_cast<std::size_t>(which)]; }
   OptionalColumn& column(Optional which) { return optional_[static_cast<std::size_t>(which)]; }
   const Outlines& outlines() const { return outlines_; }  ///< by row
+  const Bodies& keypoints() const { return keypoints_; }  ///< by row
 
   Vector<2> place(std::size_t row) const { return {x_[row], y_[row]}; }
   Vector<3> position(std::size_t row) const { return {x_[row], y_[row], z_.empty() ? 0 : z_[row]}; }
@@ -162,6 +165,7 @@ class TrackColumns {
   /// Many rows at once, later than those that are there; what they have in optional columns is put into those afterwards.
   void add_rows(const Rows& rows);
   void set_outline(std::size_t row, std::shared_ptr<const Outline> outline) { outlines_[row] = std::move(outline); }
+  void set_keypoints(std::size_t row, std::shared_ptr<const Keypoints<2>> points) { keypoints_[row] = std::move(points); }
   /// Leaves no row, and the memory for the next ones.
   void clear();
 
@@ -173,6 +177,7 @@ class TrackColumns {
   std::vector<CameraMask> cameras_;
   std::array<OptionalColumn, kOptionals> optional_;
   Outlines outlines_;
+  Bodies keypoints_;
 };
 
 /// One body over the whole recording, in columns, by growing instant.

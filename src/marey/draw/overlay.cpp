@@ -1,6 +1,7 @@
 #include "marey/draw/overlay.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -55,6 +56,39 @@ void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, do
   std::vector<cv::Point2f> points;
   for (const Vector<2>& point : outline.control_points) points.push_back(to_point(point));
   canvas.discs(points, 1.2 * unit, colour);
+}
+
+/// Towards white, for what is on a person's left.
+Colour lighter(const Colour& colour) {
+  const auto half = [](unsigned char value) { return static_cast<unsigned char>((value + 3 * 255) / 4); };
+  return {half(colour.red), half(colour.green), half(colour.blue)};
+}
+
+void draw_body(Canvas& canvas, const Keypoints<2>& body, const KeypointSet& set, const Colour& colour, double unit) {
+  constexpr double kWithin = 0.5, kFaintest = 0.25;
+  const auto shown = [&](int point) {
+    const auto i = static_cast<std::size_t>(point);
+    return i < body.points.size() && body.points[i] && body.points[i]->presence >= kWithin ? &*body.points[i] : nullptr;
+  };
+  const auto is_left = [&](int point) { return set.points[static_cast<std::size_t>(point)].starts_with("left_"); };
+  std::array<std::vector<Canvas::Stroke>, 2> bones;  // to the right and in the middle, to the left
+  std::array<std::vector<cv::Point2f>, 2> joints;
+  for (const auto& [a, b] : set.bones) {
+    const Keypoint<2>*from = shown(a), *to = shown(b);
+    if (from == nullptr || to == nullptr) continue;
+    const double seen = std::min(from->visibility, to->visibility);
+    bones[is_left(a) && is_left(b)].push_back(
+        {to_point(from->position), to_point(to->position), kFaintest + (1 - kFaintest) * seen});
+  }
+  for (int i = 0; i < static_cast<int>(std::min(set.points.size(), body.points.size())); ++i) {
+    if (const Keypoint<2>* point = shown(i); point != nullptr && point->visibility >= kWithin)
+      joints[is_left(i)].push_back(to_point(point->position));
+  }
+  for (std::size_t left = 0; left < 2; ++left) {
+    const Colour own = left == 1 ? lighter(colour) : colour;
+    canvas.strokes(bones[left], own, 1.6 * unit);
+    canvas.discs(joints[left], 1.6 * unit, own);
+  }
 }
 
 constexpr std::size_t kMostPlacedNames = 300;  // of a picture; the search for room grows with their square
@@ -116,9 +150,12 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sam
       draw_curve(canvas, *sample.outline, colour_of(names.of(sample.track), sample.track), unit);
       continue;
     }
+    const Colour colour = colour_of(names.of(sample.track), sample.track);
+    const bool has_body = sample.keypoints && options_.keypoints;
+    if (has_body) draw_body(canvas, *sample.keypoints, *options_.keypoints, colour, unit);
     if (!sample.box) continue;
-    const bool seen = sample.measured();
-    canvas.rectangle(edge_of(*sample.box), colour_of(names.of(sample.track), sample.track), seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+    const bool seen = sample.measured() && !has_body;
+    canvas.rectangle(edge_of(*sample.box), colour, seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
   }
   write_names(canvas, samples, names, unit);
   return canvas.take();

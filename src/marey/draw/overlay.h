@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "marey/core/ids.h"
+#include "marey/core/keypoints.h"
 #include "marey/core/picture.h"
 #include "marey/core/time.h"
 #include "marey/core/track_names.h"
@@ -14,8 +16,9 @@
 namespace marey::draw {
 
 struct OverlayOptions {
-  Duration trail = std::chrono::seconds(4);  ///< how long a trail takes to fade
-  bool trail_of_centres = false;             ///< trails show where centres went, not feet
+  Duration trail = std::chrono::seconds(4);   ///< how long a trail takes to fade
+  bool trail_of_centres = false;              ///< trails show where centres went, not feet
+  std::optional<KeypointSet> keypoints = {};  ///< what the samples' body points are
 };
 
 /// What a track is drawn in: its own colour, or one that is steady by its number.
@@ -24,8 +27,9 @@ Colour colour_of(const TrackName& name, TrackId id);
 /// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
-/// Colours are steady by number. Lines and numbers grow with the picture. A name stands where it covers neither another target nor
-/// another name, as near its own as there is room, and stays on that side while it can.
+/// Body points are drawn with their bones, those on the left lighter, fainter where something may hide them; none where they
+/// are likely outside the picture. Colours are steady by number. Lines and numbers grow with the picture. A name stands where it
+/// covers neither another target nor another name, as near its own as there is room, and stays on that side while it can.
 class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}

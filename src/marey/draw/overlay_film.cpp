@@ -6,10 +6,13 @@ OverlayFilm::OverlayFilm(const std::string& path, const View& view, const Overla
     : path_(path),
       view_(view),
       movie_(path, view.size, view.rate_hz, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, view.sound_of),
+      options_(options),
       overlay_(options) {}
 
 Sink::Wants OverlayFilm::begin(const RecordingHeader& header) {
   by_boxes_ = header.frame.metric();
+  options_.keypoints = header.keypoints;
+  overlay_ = Overlay(options_);
   return {.pictures = true, .boxes = by_boxes_};
 }
 

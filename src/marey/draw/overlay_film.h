@@ -41,6 +41,7 @@ class OverlayFilm final : public Sink {
   View view_;
   bool by_boxes_ = false;
   MovieWriter movie_;
+  OverlayOptions options_;
   Overlay overlay_;
   TrackNames names_;
 };

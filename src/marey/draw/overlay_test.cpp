@@ -64,6 +64,22 @@ int covered(const Picture& before, const Picture& after, std::span<const Sample>
   return count;
 }
 
+TEST(Overlay, DrawsBonesOfWhatIsInThePicture) {
+  Sample sample = box_of(1, 100, 100);
+  auto body = std::make_shared<Keypoints<2>>();
+  for (const Vector<2>& at : {Vector<2>(20, 20), Vector<2>(60, 20), Vector<2>(20, 60)})
+    body->points.push_back(Keypoint<2>{.position = at});
+  body->points[2]->presence = 0.1;
+  sample.keypoints = body;
+  const KeypointSet set{
+      .name = "three", .points = {"nose", "left_hip", "right_hip"}, .bones = {{0, 1}, {0, 2}}, .mirrored = {0, 2, 1}};
+  const Picture picture = grey(320, 240);
+  const Picture plain = Overlay().draw(picture, Timestamp{}, std::vector{sample}, {});
+  const Picture drawn = Overlay({.keypoints = set}).draw(picture, Timestamp{}, std::vector{sample}, {});
+  EXPECT_GT(changed(plain, drawn, {30, 18, 20, 5}), 20);
+  EXPECT_EQ(changed(plain, drawn, {15, 30, 10, 40}), 0) << "a point that is likely outside";
+}
+
 TEST(Overlay, NamesOfMarkersCoverNoMarkers) {
   std::vector<Sample> samples;
   for (int i = 0; i < 12; ++i) {

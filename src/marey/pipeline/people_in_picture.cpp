@@ -11,6 +11,7 @@
 #include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/keypoint_stage.h"
 #include "marey/pipeline/nobody_found.h"
 #include "marey/pipeline/picture_doubts.h"
 #include "marey/pipeline/standing_people.h"
@@ -56,10 +57,17 @@ std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detecti
   return clothes;
 }
 
-/// Background subtraction works before a camera that stands still; of another program's detections nothing is known.
+/// Whether nothing but pictures of a camera that stands still can be searched.
+bool needs_still_camera(const detect::DetectorOptions& detector) {
+  const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&detector);
+  return network == nullptr || network->background;
+}
+
+/// Background subtraction works before a camera that stands still; of another program's detections, and of what a network alone
+/// searches, nothing is known.
 track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOptions& options) {
   track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
-  tracker.steady_camera = feed.has_pictures();
+  tracker.steady_camera = feed.has_pictures() && needs_still_camera(options.detector);
   tracker.reidentify = tracker.steady_camera && options.live;
   return tracker;
 }
@@ -368,7 +376,9 @@ class PeopleInPicture final : public Stage {
 }  // namespace
 
 std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options) {
-  return std::make_unique<PeopleInPicture>(feed, options);
+  auto people = std::make_unique<PeopleInPicture>(feed, options);
+  if (!options.keypoints) return people;
+  return with_keypoints(std::move(people), feed, *options.keypoints, options.live);
 }
 
 }  // namespace marey::pipeline

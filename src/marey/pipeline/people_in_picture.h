@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "marey/detect/detectors.h"
+#include "marey/pipeline/body_keypoints.h"
 #include "marey/pipeline/run.h"
 #include "marey/track/contour/outline_follower.h"
 #include "marey/track/join.h"
@@ -19,6 +20,7 @@ struct PeopleInPictureOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< where the feed does not detect itself
   track::TrackerOptions tracker;
   track::JoinOptions join;
+  std::optional<KeypointOptions> keypoints = {};           ///< look for everybody's body points too; pictures are needed for it
   std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; pictures are needed for it
   /// Every frame's tracks are told as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
@@ -32,7 +34,8 @@ struct PeopleInPictureOptions {
 
 /// Detections are the feed's where it brings some (another program's, or those of a detector it was given), else of background
 /// subtraction, which learns the empty scene from the feed first unless `live`. Memory grows with the rows, 72 bytes each, and with
-/// nothing else; not even with those where `live`. Throws Error where outlines are asked for of a feed without pictures.
+/// nothing else; not even with those where `live`. Throws Error where outlines or keypoints are asked for of a feed without pictures,
+/// and keypoints of one that cannot be read twice and is not `live`.
 std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options);
 
 }  // namespace marey::pipeline

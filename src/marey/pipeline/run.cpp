@@ -30,6 +30,7 @@ class Counter {
       tracks_.insert(sample.track);
       ++summary_.samples;
       ++of(sample.provenance);
+      summary_.keypoints += sample.keypoints != nullptr;
       if (sample.outline == nullptr) continue;
       ++summary_.outlines;
       summary_.held_outlines += sample.outline->state == Outline::State::held;

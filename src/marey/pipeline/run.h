@@ -46,6 +46,7 @@ struct Summary {
   std::int64_t samples = 0;                                          ///< tracks times the moments they are in
   std::int64_t measured = 0, filled = 0, predicted = 0, solved = 0;  ///< of these
   std::int64_t outlines = 0, held_outlines = 0;               ///< samples with an outline; those of which too little was seen
+  std::int64_t keypoints = 0;                                 ///< samples with body points
   std::int64_t detections = 0;                                ///< handed to the tracker
   std::map<std::string, std::int64_t, std::less<>> left_out;  ///< by reason: "noise", "too_brief", …
   std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …

@@ -1,12 +1,9 @@
-// OpenCV's dnn behind one source: its header and what is instantiated of it stay here.
 #include "marey/detect/network/run_network.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <filesystem>
 
-#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -14,27 +11,9 @@
 
 namespace marey::detect::network {
 
-struct LoadedNetwork::Engine {
-  cv::dnn::Net net;
-  std::vector<std::string> outputs;
-};
-
 namespace {
 
-constexpr int kMostThreads = 16;  // each holds the network once
-constexpr double kGrey = 114;     // what is round a picture in its letterbox
-
-/// OpenCV writes to standard error what it also throws: not while this lives.
-class QuietOpenCv {
- public:
-  QuietOpenCv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpenCv() { cv::utils::logging::setLogLevel(before_); }
-  QuietOpenCv(const QuietOpenCv&) = delete;
-  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
-
- private:
-  cv::utils::logging::LogLevel before_;
-};
+constexpr double kGrey = 114;  // what is round a picture in its letterbox
 
 /// Where a picture lies in the network's: px there = offset + scale · px of the picture.
 struct Fitted {
@@ -103,47 +82,23 @@ void fill_usual(NetworkModel& model) {
   }
 }
 
-/// OpenCV's sentence without its file and line, and only its first line.
-std::string reason_of(const cv::Exception& error) {
-  std::string text = error.err.empty() ? error.what() : error.err;
-  return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
-}
-
-Tensor tensor_of(const cv::Mat& values, const std::string& name) {
-  Tensor tensor;
-  tensor.name = name;
-  for (int i = 0; i < values.dims; ++i) tensor.shape.push_back(values.size[i]);
-  cv::Mat numbers;
-  values.convertTo(numbers, CV_32F);
-  tensor.values.assign(numbers.ptr<float>(), numbers.ptr<float>() + numbers.total());
-  return tensor;
+/// The network's own file, where it is there.
+std::string there(const NetworkModel& model) {
+  if (!std::filesystem::is_regular_file(model.network)) throw Error("{}: its network {} is not there", model.path, model.network);
+  return model.network;
 }
 
 }  // namespace
 
-std::unique_ptr<LoadedNetwork::Engine> LoadedNetwork::load() const {
-  auto engine = std::make_unique<Engine>();
-  engine->net = cv::dnn::readNetFromONNX(model_.network);
-  engine->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-  engine->outputs = engine->net.getUnconnectedOutLayersNames();
-  return engine;
-}
-
-LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model) {
-  if (!std::filesystem::is_regular_file(model_.network))
-    throw Error("{}: its network {} is not there", model_.path, model_.network);
-  const QuietOpenCv quiet;
-  try {
-    engines_.push_back(load());
-  } catch (const cv::Exception& error) {
-    throw Error("{}: cannot be loaded as an ONNX network ({}); export it with opset 11 or 12 and a fixed input", model_.network,
-                reason_of(error));
-  }
+LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model), inference_(there(model)) {
   NetworkModel trial = model_;
   if (!trial.layout) trial.layout = Layout::yolov8;
   fill_usual(trial);
   std::swap(model_, trial);
-  const std::vector<Tensor> outputs = run(*engines_.front(), cv::Mat(model_.input, CV_8UC3, cv::Scalar::all(kGrey)));
+  std::vector<Tensor> outputs;
+  inference_.each(1, [&](Inference::Engine& engine, std::size_t) {
+    outputs = run(engine, cv::Mat(model_.input, CV_8UC3, cv::Scalar::all(kGrey)));
+  });
   std::swap(model_, trial);
   if (!model_.layout) model_.layout = layout_of(outputs, model_.input);
   if (!model_.layout)
@@ -157,26 +112,16 @@ LoadedNetwork::LoadedNetwork(const NetworkModel& model) : model_(model) {
   }
 }
 
-LoadedNetwork::~LoadedNetwork() = default;
-LoadedNetwork::LoadedNetwork(LoadedNetwork&&) noexcept = default;
-
-/// While a QuietOpenCv lives.
-std::vector<Tensor> LoadedNetwork::run(Engine& engine, const cv::Mat& bgr) const {
-  const cv::Mat blob = planes_of(placed(bgr, fitted(bgr.size(), model_), model_), model_);
-  std::vector<Tensor> tensors;
+std::vector<Tensor> LoadedNetwork::run(Inference::Engine& engine, const cv::Mat& bgr) const {
   try {
-    engine.net.setInput(blob);
-    std::vector<cv::Mat> outputs;
-    engine.net.forward(outputs, engine.outputs);
-    for (std::size_t i = 0; i < outputs.size(); ++i) tensors.push_back(tensor_of(outputs[i], engine.outputs[i]));
+    return engine.run(planes_of(placed(bgr, fitted(bgr.size(), model_), model_), model_));
   } catch (const cv::Exception& error) {
     throw Error("{}: does not run on pictures of {}x{} px ({}); is input in {} what the network wants?", model_.network,
                 model_.input.width, model_.input.height, reason_of(error), model_.path);
   }
-  return tensors;
 }
 
-std::vector<Candidate> LoadedNetwork::find(Engine& engine, const cv::Mat& bgr) const {
+std::vector<Candidate> LoadedNetwork::find(Inference::Engine& engine, const cv::Mat& bgr) const {
   std::vector<Candidate> found = candidates_of(run(engine, bgr), *model_.layout, model_.input, model_.person, model_.score);
   const Fitted fit = fitted(bgr.size(), model_);
   for (Candidate& one : found) {
@@ -191,32 +136,8 @@ std::vector<Candidate> LoadedNetwork::find(const cv::Mat& bgr) {
 }
 
 std::vector<std::vector<Candidate>> LoadedNetwork::find_all(std::span<const cv::Mat> pictures) {
-  const QuietOpenCv quiet;
   std::vector<std::vector<Candidate>> found(pictures.size());
-  const auto threads =
-      std::min<std::size_t>(pictures.size(), static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMostThreads)));
-  while (engines_.size() < threads) engines_.push_back(load());
-  std::vector<std::exception_ptr> failed(threads);
-  const auto search = [&](std::size_t thread) {
-    try {
-      for (std::size_t i = thread; i < pictures.size(); i += threads) found[i] = find(*engines_[thread], pictures[i]);
-    } catch (...) {
-      failed[thread] = std::current_exception();
-    }
-  };
-  if (threads == 1) {
-    search(0);
-  } else if (threads > 1) {  // within it OpenCV computes each network on one thread
-    cv::parallel_for_(
-        cv::Range(0, static_cast<int>(threads)),
-        [&](const cv::Range& range) {
-          for (int i = range.start; i < range.end; ++i) search(static_cast<std::size_t>(i));
-        },
-        static_cast<double>(threads));
-  }
-  for (const std::exception_ptr& error : failed) {
-    if (error) std::rethrow_exception(error);
-  }
+  inference_.each(pictures.size(), [&](Inference::Engine& engine, std::size_t i) { found[i] = find(engine, pictures[i]); });
   return found;
 }
 

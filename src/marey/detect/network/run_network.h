@@ -1,11 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "marey/detect/network/inference.h"
 #include "marey/detect/network/model_file.h"
 
 namespace marey::detect::network {
@@ -16,8 +16,6 @@ class LoadedNetwork {
  public:
   /// Throws Error, with the model's file, where the network cannot be loaded or run, or its outputs are of no known layout.
   explicit LoadedNetwork(const NetworkModel& model);
-  ~LoadedNetwork();
-  LoadedNetwork(LoadedNetwork&&) noexcept;
 
   Layout layout() const { return *model_.layout; }
   const NetworkModel& model() const { return model_; }
@@ -28,13 +26,11 @@ class LoadedNetwork {
   std::vector<std::vector<Candidate>> find_all(std::span<const cv::Mat> pictures);
 
  private:
-  struct Engine;
-  std::unique_ptr<Engine> load() const;
-  std::vector<Tensor> run(Engine& engine, const cv::Mat& bgr) const;
-  std::vector<Candidate> find(Engine& engine, const cv::Mat& bgr) const;
+  std::vector<Tensor> run(Inference::Engine& engine, const cv::Mat& bgr) const;
+  std::vector<Candidate> find(Inference::Engine& engine, const cv::Mat& bgr) const;
 
   NetworkModel model_;
-  std::vector<std::unique_ptr<Engine>> engines_;  // one a thread, loaded when it is needed
+  Inference inference_;
 };
 
 }  // namespace marey::detect::network

@@ -28,11 +28,13 @@ enum SampleField {
   sample_provenance,
   sample_cameras,
   sample_first_optional,
-  sample_outline = sample_first_optional + TrackColumns::kOptionals
+  sample_outline = sample_first_optional + TrackColumns::kOptionals,
+  sample_keypoints
 };
 enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked };
 enum SeenField { seen_id, seen_rows, seen_at, seen_x, seen_y, seen_sigma, seen_area, seen_track };
 
+/// Older takes have no keypoints.
 constexpr const char* kSampleFields =
     "id, rows, at, x, y, z, provenance, cameras, velocity, covariance, score, box, residual_px, residual_m, outline";
 

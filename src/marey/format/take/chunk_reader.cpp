@@ -8,6 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/take/chunk_fields.h"
+#include "marey/format/take/keypoints_blob.h"
 #include "marey/format/take/outline_blob.h"
 #include "marey/format/take/take_schema.h"
 
@@ -16,6 +17,11 @@ namespace {
 
 constexpr std::int64_t kLastIndex = std::int64_t{1} << 62;
 constexpr std::int64_t kOneChunk = std::int64_t{1} << 32;
+
+std::string sample_fields(const Database& database) {
+  Statement column(database, "SELECT count(*) FROM pragma_table_info('samples') WHERE name = 'keypoints'");
+  return fmt::format("{}, {}", kSampleFields, column.step() && column.integer(0) == 1 ? "keypoints" : "NULL");
+}
 
 std::optional<Matrix<6>> symmetric_6(const OptionalColumn& column, std::size_t row) {
   if (!column.known(row)) return std::nullopt;
@@ -34,9 +40,9 @@ ChunkReader::ChunkReader(const Database& database, int dimensions)
       dimensions_(dimensions),
       find_(database, "SELECT id, first_index, last_index, instants FROM chunk WHERE last_index >= ? ORDER BY last_index LIMIT 1"),
       moments_(database, "SELECT indices, times FROM chunk WHERE id = ?"),
-      samples_(database, fmt::format("SELECT {} FROM samples WHERE id >= ? AND id < ? ORDER BY id", kSampleFields)),
+      samples_(database, fmt::format("SELECT {} FROM samples WHERE id >= ? AND id < ? ORDER BY id", sample_fields(database))),
       seen_(database, "SELECT id, rows, at, x, y, sigma, area, track FROM seen WHERE id >= ? AND id < ? ORDER BY id"),
-      one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", kSampleFields)) {
+      one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", sample_fields(database))) {
   Statement columns(database, "SELECT count(*) FROM pragma_table_info('poses') WHERE name IN ('covariance', 'tracked')");
   if (columns.step() && columns.integer(0) == 2)
     poses_.emplace(database,
@@ -226,6 +232,7 @@ void ChunkReader::decode_samples(const Statement& row, const Row& chunk, std::in
   int field = sample_first_optional;
   for (const auto& [column, exactly] : kOptionalFields) decoder.optional(row.blob(field++), first, track.column(column));
   decode_outlines(row.blob(sample_outline), decoder, first, track);
+  decode_keypoints(row.blob(sample_keypoints), decoder, first, track);
 }
 
 void ChunkReader::decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "marey/format/take/chunk_fields.h"
+#include "marey/format/take/keypoints_blob.h"
 #include "marey/format/take/outline_blob.h"
 #include "marey/format/take/take_schema.h"
 
@@ -37,14 +38,14 @@ bool consecutive(std::span<const std::int32_t> places) {
 
 ChunkWriter::ChunkWriter(const Database& database)
     : add_instants_(database, "INSERT INTO chunk VALUES (?, ?, ?, ?, ?, ?)"),
-      add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+      add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       add_seen_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
       add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?)"),
       remove_instants_(database, "DELETE FROM chunk WHERE id = ?"),
       remove_samples_(database, "DELETE FROM samples WHERE id >= ? AND id < ?"),
       remove_seen_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
       remove_poses_(database, "DELETE FROM poses WHERE id >= ? AND id < ?"),
-      blobs_(sample_outline + 1) {}
+      blobs_(sample_keypoints + 1) {}
 
 void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
   write_instants(chunk_id, chunk);
@@ -108,6 +109,8 @@ void ChunkWriter::write_samples(std::int64_t row, const TrackColumns& track) {
   }
   encode_outlines(track, blobs_[sample_outline]);
   bind_or_null(to, sample_outline, blobs_[sample_outline]);
+  encode_keypoints(track, blobs_[sample_keypoints]);
+  bind_or_null(to, sample_keypoints, blobs_[sample_keypoints]);
   to.run();
 }
 

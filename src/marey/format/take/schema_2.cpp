@@ -12,6 +12,7 @@
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_reader.h"
 #include "marey/format/take/frame_names.h"
+#include "marey/format/take/keypoints_blob.h"
 #include "marey/format/take/take_cursor.h"
 #include "marey/format/take/take_schema.h"
 
@@ -139,6 +140,7 @@ class CursorOfSchema2 : public TakeCursor {
       if (camera < 0 || camera > 63) throw Error("{}: is damaged (its camera is {})", database_->path(), camera);
       header.frame.camera = CameraId{static_cast<int>(camera)};
     }
+    if (values_.has("keypoints")) header.keypoints = keypoint_set_of(values_.text("keypoints"), database_->path());
     header.smoothed = values_.integer("smoothed") != 0;
     header.made_by.program = plain_text(values_.text("program"));
     Statement options(*database_, "SELECT name, value FROM option ORDER BY name");

@@ -28,6 +28,15 @@ bool is_sound(const Outline& outline) {
          (!outline.silhouette || known(*outline.silhouette));
 }
 
+bool is_sound(const Keypoints<2>& body) {
+  const auto known = [](const auto& matrix) { return (matrix.array().abs() <= std::numeric_limits<float>::max()).all(); };
+  return is_number(body.presence) &&
+         std::all_of(body.points.begin(), body.points.end(), [&](const std::optional<Keypoint<2>>& point) {
+           return !point || (known(point->position) && known(point->covariance) && is_number(point->visibility) &&
+                             is_number(point->presence));
+         });
+}
+
 /// The entry of `key`, found soonest where keys are asked for in growing order.
 template <typename Map, typename Make>
 typename Map::mapped_type& entry_of(Map& map, typename Map::iterator& hint, const typename Map::key_type& key, const Make& make) {
@@ -128,6 +137,7 @@ void Chunk::add(const Instant& instant, int dimensions, std::optional<TrackId> b
     };
     entry_of(tracks, column, sample.track, make).add(at, sample);
     bytes += 28 + (sample.velocity ? 12 : 0) + (sample.covariance ? 24 : 0) + (sample.box ? 32 : 0);
+    if (sample.keypoints) bytes += 8 + 29 * sample.keypoints->points.size();
     if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();
   }
   for (auto begin = instant.seen.begin(); begin != instant.seen.end();) {
@@ -155,6 +165,7 @@ void Chunk::append(const Chunk& other) {
       append_column(columns.column(which), first, to.column(which));
     }
     for (const auto& [row, outline] : columns.outlines()) to.set_outline(first + row, outline);
+    for (const auto& [row, body] : columns.keypoints()) to.set_keypoints(first + row, body);
   }
   for (const auto& [camera, columns] : other.seen) seen[camera].append(columns, offset);
   for (const auto& [body, columns] : other.bodies) bodies.try_emplace(body, body).first->second.append(columns, offset);
@@ -178,6 +189,8 @@ std::optional<std::string> problem_of(const Sample& sample) {
   if ((sample.velocity && !known(*sample.velocity)) || (sample.covariance && !known(*sample.covariance))) return nowhere();
   if (!is_number(sample.score) || !is_number(sample.residual_px) || !is_number(sample.residual_m)) return nowhere();
   if (sample.outline && !is_sound(*sample.outline)) return fmt::format("the outline of track {} is nowhere", number(sample.track));
+  if (sample.keypoints && !is_sound(*sample.keypoints))
+    return fmt::format("a keypoint of track {} is nowhere", number(sample.track));
   if (!sample.box) return std::nullopt;
   const Box& box = *sample.box;
   if (!is_number(box.left) || !is_number(box.top) || !is_number(box.width) || !is_number(box.height)) return nowhere();

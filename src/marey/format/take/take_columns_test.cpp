@@ -46,6 +46,27 @@ std::shared_ptr<const Outline> outline_of(Dice& dice) {
   return outline;
 }
 
+const KeypointSet& three_points() {
+  static const KeypointSet set{
+      .name = "three", .points = {"nose", "left \"eye\"", "right_eye"}, .bones = {{0, 1}, {0, 2}}, .mirrored = {0, 2, 1}};
+  return set;
+}
+
+std::shared_ptr<const Keypoints<2>> keypoints_of(Dice& dice) {
+  auto body = std::make_shared<Keypoints<2>>();
+  body->presence = dice.between(0, 1);
+  for (std::size_t i = 0; i < three_points().points.size(); ++i) {
+    std::optional<Keypoint<2>>& point = body->points.emplace_back();
+    if (dice.with(0.2)) continue;
+    point = Keypoint<2>{.position = {dice.between(-20, 800), dice.between(0, 600)},
+                        .visibility = dice.between(0, 1),
+                        .presence = dice.between(0, 1)};
+    point->covariance << 4, dice.between(-1, 1), 0, 3;
+    point->covariance(1, 0) = point->covariance(0, 1);
+  }
+  return body;
+}
+
 /// With gaps in indices, tracks that come and go, and optional columns that some tracks have always, some now and then, some never.
 Recording random_recording(Kind kind, unsigned seed) {
   Dice dice(seed);
@@ -55,6 +76,7 @@ Recording random_recording(Kind kind, unsigned seed) {
   if (kind == Kind::image) header.frame.camera = CameraId{2};
   header.rate_hz = 25;
   header.smoothed = dice.with(0.5);
+  if (kind == Kind::image) header.keypoints = three_points();
   Recording recording(header);
   const int tracks = 1 + dice.below(9), dimensions = recording.dimensions();
   std::int64_t index = dice.below(5);
@@ -80,6 +102,7 @@ Recording random_recording(Kind kind, unsigned seed) {
       if (has(2)) sample.score = dice.between(0, 1);
       if (kind == Kind::image && has(0)) sample.box = Box{dice.between(0, 800), dice.between(0, 600), 20, 40.5};
       if (kind == Kind::image && t % 3 == 1 && dice.with(0.7)) sample.outline = outline_of(dice);
+      if (kind == Kind::image && t % 3 == 2 && dice.with(0.8)) sample.keypoints = keypoints_of(dice);
       if (has(3)) sample.residual_px = dice.between(0, 1);
       if (has(4)) sample.residual_m = dice.between(0, 1);
       instant.samples.push_back(sample);
@@ -131,6 +154,7 @@ TEST_F(TakeColumnsTest, RecordingsOfEveryKindComeBack) {
       const Recording read = read_recording(path_);
       EXPECT_EQ(read.header.frame, recording.header.frame);
       EXPECT_EQ(read.header.smoothed, recording.header.smoothed);
+      EXPECT_EQ(read.header.keypoints, recording.header.keypoints);
       testing_take::expect_same(read, recording);
       if (HasFailure()) return;
     }

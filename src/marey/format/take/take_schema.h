@@ -32,7 +32,7 @@ constexpr const char* kTakeSchema = R"(
                       instants INTEGER NOT NULL, indices BLOB, times BLOB NOT NULL);
   CREATE TABLE samples (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at NOT NULL, x BLOB NOT NULL, y BLOB NOT NULL, z BLOB,
                         provenance NOT NULL, cameras NOT NULL, velocity BLOB, covariance BLOB, score BLOB, box BLOB,
-                        residual_px BLOB, residual_m BLOB, outline BLOB);
+                        residual_px BLOB, residual_m BLOB, outline BLOB, keypoints BLOB);
   CREATE TABLE seen (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at BLOB NOT NULL, x BLOB NOT NULL, y BLOB NOT NULL,
                      sigma BLOB, area BLOB, track NOT NULL);
   CREATE TABLE body (id INTEGER PRIMARY KEY, label TEXT NOT NULL, definition TEXT NOT NULL);

@@ -38,6 +38,20 @@ inline void expect_same(const Sample& a, const Sample& b) {
   number(a.score, b.score);
   number(a.residual_px, b.residual_px);
   number(a.residual_m, b.residual_m);
+  ASSERT_EQ(a.keypoints == nullptr, b.keypoints == nullptr);
+  if (a.keypoints) {
+    ASSERT_EQ(a.keypoints->points.size(), b.keypoints->points.size());
+    EXPECT_EQ(static_cast<float>(a.keypoints->presence), static_cast<float>(b.keypoints->presence));
+    for (std::size_t i = 0; i < a.keypoints->points.size(); ++i) {
+      const auto &one = a.keypoints->points[i], &other = b.keypoints->points[i];
+      ASSERT_EQ(one.has_value(), other.has_value()) << i;
+      if (!one) continue;
+      EXPECT_TRUE(one->position.cast<float>() == other->position.cast<float>());
+      EXPECT_TRUE(one->covariance.cast<float>() == other->covariance.cast<float>());
+      EXPECT_EQ(static_cast<float>(one->visibility), static_cast<float>(other->visibility));
+      EXPECT_EQ(static_cast<float>(one->presence), static_cast<float>(other->presence));
+    }
+  }
   ASSERT_EQ(a.outline == nullptr, b.outline == nullptr);
   if (!a.outline) return;
   ASSERT_EQ(a.outline->control_points.size(), b.outline->control_points.size());

@@ -21,6 +21,7 @@
 #include "marey/format/take/chunk_joiner.h"
 #include "marey/format/take/chunk_writer.h"
 #include "marey/format/take/frame_names.h"
+#include "marey/format/take/keypoints_blob.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_chunk.h"
 #include "marey/format/take/take_file.h"
@@ -67,6 +68,7 @@ class TakeWriter::Recorder {
     set("smoothed", std::int64_t{header.smoothed});
     const bool cameras = header.rig && !header.rig->cameras.empty();  // a rig's text has one at least
     if (header.rig) cameras ? set("rig", rig::rig_text(*header.rig)) : set("y_down", std::int64_t{y_grows_down(header)});
+    if (header.keypoints) set("keypoints", keypoint_set_text(*header.keypoints));
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
     set_bodies(header.bodies);

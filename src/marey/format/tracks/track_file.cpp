@@ -1,6 +1,7 @@
 #include "marey/format/tracks/track_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/format/tracks/keypoints_json.h"
 #include "marey/format/tracks/mot.h"
 #include "marey/format/tracks/outline_json.h"
 
@@ -52,7 +54,21 @@ void append_csv(std::string& lines, const Instant& instant, const Sample& sample
   fmt::format_to(out, "{}\n", state_of(sample));
 }
 
-void append_json(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label) {
+/// A row for each body point that is known.
+void append_points(std::string& lines, const Instant& instant, const Sample& sample, const KeypointSet& set) {
+  if (!sample.keypoints) return;
+  const auto& points = sample.keypoints->points;
+  for (std::size_t i = 0; i < std::min(points.size(), set.points.size()); ++i) {
+    if (!points[i]) continue;
+    const Keypoint<2>& point = *points[i];
+    fmt::format_to(std::back_inserter(lines), "{},{:.6f},{},{},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f}\n", instant.index,
+                   seconds(instant.time), number(sample.track), quoted_field(set.points[i]), point.position.x(), point.position.y(),
+                   std::sqrt(point.covariance.trace() / 2), point.visibility, point.presence);
+  }
+}
+
+void append_json(std::string& lines, const Instant& instant, const Sample& sample, const std::string& label,
+                 const KeypointSet* set) {
   auto out = std::back_inserter(lines);
   fmt::format_to(out, R"({{"frame":{},"time":{:.6f},"id":{},)", instant.index, seconds(instant.time), number(sample.track));
   if (!label.empty()) {
@@ -70,6 +86,10 @@ void append_json(std::string& lines, const Instant& instant, const Sample& sampl
     lines += R"(,"outline":)";
     tracks::append_json(lines, *sample.outline);
   }
+  if (sample.keypoints && set != nullptr) {
+    lines += R"(,"keypoints":)";
+    tracks::append_json(lines, *sample.keypoints, *set);
+  }
   lines += "}\n";
 }
 
@@ -86,7 +106,10 @@ Sink::Wants TrackFile::begin(const RecordingHeader& header) {
   if (header.frame.metric()) {
     throw Error("{}: such a file holds boxes in a picture, and these positions are {}", path_, to_string(header.frame));
   }
-  if (text_ == TrackText::csv) file_.write("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
+  keypoints_ = header.keypoints;
+  if (text_ == TrackText::csv)
+    file_.write(keypoints_ ? "frame,time,id,point,x,y,sd,visibility,presence\n"
+                           : "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n");
   return {};
 }
 
@@ -99,10 +122,14 @@ void TrackFile::write(const Instant& instant) {
         append_mot(lines_, instant, sample);
         break;
       case TrackText::csv:
-        append_csv(lines_, instant, sample, names_.label(sample.track));
+        if (keypoints_) {
+          append_points(lines_, instant, sample, *keypoints_);
+        } else {
+          append_csv(lines_, instant, sample, names_.label(sample.track));
+        }
         break;
       case TrackText::jsonl:
-        append_json(lines_, instant, sample, names_.label(sample.track));
+        append_json(lines_, instant, sample, names_.label(sample.track), keypoints_ ? &*keypoints_ : nullptr);
         break;
     }
   }
@@ -150,6 +177,7 @@ class JsonLines {
     match.order = builder_.finish(match.recording);
     if (const auto rate = median_rate_hz(match.recording.instants())) match.recording.header.rate_hz = *rate;
     if (outlines_) match.warnings.push_back(path_ + ": its outlines are passed over");
+    if (keypoints_) match.warnings.push_back(path_ + ": its keypoints are passed over");
     return match;
   }
 
@@ -165,12 +193,13 @@ class JsonLines {
     const int id = line.at("id").get<int>();
     if (id < 1 || row.frame < 0 || !row.place.allFinite()) throw Error("{}: track {} in frame {} is nowhere", path_, id, row.frame);
     outlines_ |= line.contains("outline");
+    keypoints_ |= line.contains("keypoints");
     builder_.add(builder_.person(id, line.value("label", ""), {}), row);
   }
 
   const std::string& path_;
   match::GroundBuilder builder_;
-  bool outlines_ = false;
+  bool outlines_ = false, keypoints_ = false;
 };
 
 /// Six numbers or more on the first lines; `id` says whether an id, the second, may be.
@@ -238,7 +267,9 @@ Format image_csv_format() {
           .title = "tracks in a picture, one row each",
           .endings = ".csv",
           .holds = Content::image,
-          .detail = "px; `frame,time,id,label,x,y,vx,vy,left,top,width,height,state`; frames and pixels count from 0",
+          .detail =
+              "px; `frame,time,id,label,x,y,vx,vy,left,top,width,height,state`; frames and pixels count from 0. With "
+              "keypoints a row for each point instead: `frame,time,id,point,x,y,sd,visibility,presence`; not read back",
           .is = [](const Beginning& file) { return match::is_ground_csv(file, true); },
           .read = match::read_ground_match,
           .create = tracks::create<tracks::TrackText::csv>,
@@ -250,7 +281,7 @@ Format jsonl_format() {
           .title = "tracks in a picture, one JSON object a line",
           .endings = ".jsonl",
           .holds = Content::image,
-          .detail = "px; the names of the CSV, and `outline` where there is one, which is passed over when read",
+          .detail = "px; the names of the CSV, and `outline` and `keypoints` where there are some, which are passed over when read",
           .is = [](const Beginning& file) { return file.text().starts_with("{\"frame\":"); },
           .read = [](const std::string& path,
                      const ReadOptions& options) { return tracks::JsonLines(path).read(read_file(path), options.rate_hz); },

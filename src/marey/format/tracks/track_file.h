@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "marey/core/sink.h"
@@ -11,8 +12,9 @@ namespace marey::format::tracks {
 /// How tracks in the image are written, one line for each target in each frame:
 ///   mot    MOTChallenge text: frame,id,left,top,width,height,conf,-1,-1,-1; frames and pixels count from 1
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
+///          of a recording with keypoints: frame,time,id,point,x,y,sd,visibility,presence, a row for each point
 ///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
-///          (outline_json.h)
+///          (outline_json.h) and "keypoints" where there are some (keypoints_json.h)
 enum class TrackText { mot, csv, jsonl };
 
 /// Writes tracks as text as they come; the file is there whole or not at all.
@@ -32,6 +34,7 @@ class TrackFile final : public Sink {
   WholeFile file_;
   TrackText text_;
   TrackNames names_;
+  std::optional<KeypointSet> keypoints_;
   std::string lines_;
 };
 

@@ -39,6 +39,48 @@ Instant two_tracks() {
   return instant;
 }
 
+/// Somebody with a nose, of whom the left eye was not found.
+Instant somebody() {
+  auto body = std::make_shared<Keypoints<2>>();
+  body->presence = 0.875;
+  body->points.resize(2);
+  body->points[0] = Keypoint<2>{.position = {10.25, 20}, .covariance = Matrix<2>::Identity() * 4, .visibility = 0.5, .presence = 1};
+  Instant instant = two_tracks();
+  instant.samples[0].keypoints = body;
+  return instant;
+}
+
+RecordingHeader with_keypoints() {
+  RecordingHeader header = in_pictures();
+  header.keypoints = KeypointSet{.name = "two", .points = {"nose", "left_eye"}, .bones = {{0, 1}}, .mirrored = {0, 1}};
+  return header;
+}
+
+TEST(TrackFile, KeypointsAreARowEach) {
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "points.csv", TrackText::csv);
+  file.begin(with_keypoints());
+  file.write(somebody());
+  file.finish();
+  EXPECT_EQ(test::read_file(folder / "points.csv"),
+            "frame,time,id,point,x,y,sd,visibility,presence\n6,0.240000,3,nose,10.250,20.000,2.000,0.5000,1.0000\n");
+}
+
+TEST(TrackFile, JsonLinesHoldKeypoints) {
+  const test::TemporaryFolder folder;
+  TrackFile file(folder / "points.jsonl", TrackText::jsonl);
+  file.begin(with_keypoints());
+  file.write(somebody());
+  file.finish();
+  std::istringstream lines(test::read_file(folder / "points.jsonl"));
+  std::string line;
+  ASSERT_TRUE(std::getline(lines, line));
+  const auto json = nlohmann::json::parse(line);
+  EXPECT_EQ(json.at("keypoints").dump(), R"({"points":{"nose":[10.25,20.0,2.0,0.5,1.0]},"presence":0.875})");
+  ASSERT_TRUE(std::getline(lines, line));
+  EXPECT_FALSE(nlohmann::json::parse(line).contains("keypoints"));
+}
+
 TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   Instant instant = two_tracks();
   auto outline = std::make_shared<Outline>();

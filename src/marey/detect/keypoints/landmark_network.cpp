@@ -1,0 +1,95 @@
+#include "marey/detect/keypoints/landmark_network.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "marey/core/error.h"
+#include "marey/detect/keypoints/blazepose.h"
+#include "marey/detect/keypoints/heat_map.h"
+
+namespace marey::detect::keypoints {
+namespace {
+
+constexpr int kPoints = 33, kAll = 39, kNumbers = 5;
+constexpr std::size_t kHips = 33, kRim = 34;  // points that say where the person is
+constexpr int kCells = 64;
+const std::array<std::string, 3> kOutputs{"landmarks", "presence", "heatmaps"};
+
+/// 1 × 3 × h × w of floats in [0, 1], red first.
+cv::Mat red_first(const cv::Mat& crop) {
+  const int sizes[] = {1, 3, crop.rows, crop.cols};
+  cv::Mat blob(4, sizes, CV_32F);
+  const std::size_t plane = crop.total();
+  auto* values = blob.ptr<float>();
+  for (std::size_t i = 0; i < plane; ++i) {
+    const auto& pixel = crop.ptr<cv::Vec3b>()[i];
+    for (std::size_t c = 0; c < 3; ++c) values[c * plane + i] = static_cast<float>(pixel[2 - static_cast<int>(c)]) / 255.0F;
+  }
+  return blob;
+}
+
+double likelihood_of(float logit) {
+  return 1 / (1 + std::exp(-static_cast<double>(logit)));
+}
+
+std::string regular(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw Error("{}: is not there; script/model makes the networks for keypoints", path);
+  return path;
+}
+
+}  // namespace
+
+LandmarkNetwork::LandmarkNetwork(const std::string& onnx)
+    : path_(onnx), inference_(regular(onnx), "make it again with script/model") {
+  const std::vector<network::Tensor> outputs =
+      raw(cv::Mat(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3, cv::Scalar::all(128)));
+  const std::vector<std::vector<int>> expected{{1, kAll * kNumbers}, {1, 1}, {1, kAll, kCells, kCells}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (outputs[i].shape != expected[i])
+      throw Error("{}: is another network than those for keypoints that script/model makes", path_);
+  }
+}
+
+std::vector<network::Tensor> LandmarkNetwork::run(network::Inference::Engine& engine, const cv::Mat& crop) const {
+  try {
+    return engine.run(red_first(crop), kOutputs);
+  } catch (const cv::Exception& error) {
+    throw Error("{}: is another network than those for keypoints that script/model makes ({})", path_, network::reason_of(error));
+  }
+}
+
+std::vector<network::Tensor> LandmarkNetwork::raw(const cv::Mat& crop) {
+  std::vector<network::Tensor> outputs;
+  inference_.each(1, [&](network::Inference::Engine& engine, std::size_t) { outputs = run(engine, crop); });
+  return outputs;
+}
+
+std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const PersonRegion> regions) {
+  std::vector<Body> bodies(regions.size());
+  inference_.each(regions.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    bodies[i] = body_of(run(engine, crop_of(bgr, regions[i])), regions[i]);
+  });
+  return bodies;
+}
+
+Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& region) {
+  const std::vector<float>& numbers = outputs[0].values;
+  const auto given = [&](std::size_t point) { return Vector<2>(numbers[kNumbers * point], numbers[kNumbers * point + 1]); };
+  const Matrix<2> turn = region.turn();
+  Body body;
+  body.keypoints.presence = outputs[1].values.front();
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    constexpr std::size_t kMap = static_cast<std::size_t>(kCells) * kCells;
+    const HeatPoint found = point_in(std::span(outputs[2].values).subspan(i * kMap, kMap), kCells,
+                                     static_cast<double>(PersonRegion::kCrop) / kCells, given(i));
+    body.keypoints.points.push_back(Keypoint<2>{.position = region.in_picture(found.place),
+                                                .covariance = turn * found.covariance * turn.transpose(),
+                                                .visibility = likelihood_of(numbers[kNumbers * i + 3]),
+                                                .presence = likelihood_of(numbers[kNumbers * i + 4])});
+  }
+  body.next = region_of(region.in_picture(given(kHips)), region.in_picture(given(kRim)));
+  return body;
+}
+
+}  // namespace marey::detect::keypoints

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "marey/core/keypoints.h"
+#include "marey/detect/keypoints/person_region.h"
+#include "marey/detect/network/inference.h"
+
+namespace marey::detect::keypoints {
+
+/// One person in a region of a picture.
+struct Body {
+  Keypoints<2> keypoints;  ///< of blazepose(), px of the picture; all of them, those that are hidden or outside too
+  PersonRegion next;       ///< where the person is to be looked for in the next picture
+};
+
+/// One of MediaPipe's landmark networks (script/model). Regions are shared out among as many threads as OpenCV has (--threads).
+class LandmarkNetwork {
+ public:
+  /// Throws Error where the file is not there, cannot be loaded, or is another network.
+  explicit LandmarkNetwork(const std::string& onnx);
+
+  /// Who is in each region of a picture, CV_8UC3, blue first. `Keypoints::presence` says whether that is anybody.
+  std::vector<Body> find(const cv::Mat& bgr, std::span<const PersonRegion> regions);
+
+  /// What the network says of one crop: "landmarks" (39 × x, y, depth, visibility, presence), "presence", "heatmaps".
+  std::vector<network::Tensor> raw(const cv::Mat& crop);
+
+ private:
+  std::vector<network::Tensor> run(network::Inference::Engine& engine, const cv::Mat& crop) const;
+
+  std::string path_;
+  network::Inference inference_;
+};
+
+/// A body out of what a landmark network says of a region's crop.
+Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& region);
+
+}  // namespace marey::detect::keypoints

@@ -1,0 +1,67 @@
+#include "marey/detect/keypoints/person_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace marey::detect::keypoints {
+namespace {
+
+constexpr double kRoom = 1.25;   // a region's side over a person's extent: as the networks were trained
+constexpr double kSmallest = 8;  // px; a region's side
+constexpr double kCoarse = 2;    // a picture that shrinks by more is averaged first, so that no detail turns into noise
+
+}  // namespace
+
+Matrix<2> PersonRegion::turn() const {
+  const double c = std::cos(angle) * scale(), s = std::sin(angle) * scale();
+  Matrix<2> result;
+  result << c, -s, s, c;
+  return result;
+}
+
+Vector<2> PersonRegion::in_picture(const Vector<2>& in_crop) const {
+  return centre + turn() * (in_crop - Vector<2>::Constant(kCrop / 2.0));
+}
+
+PersonRegion region_of(const Box& box) {
+  return {.centre = box.centre(), .side = std::max(kSmallest, kRoom * std::max(box.width, box.height)), .angle = 0};
+}
+
+PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim) {
+  const Vector<2> up = rim - hips;
+  return {.centre = hips, .side = std::max(kSmallest, kRoom * 2 * up.norm()), .angle = std::atan2(up.x(), -up.y())};
+}
+
+cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
+  // Of the picture, px, and the part of it that is read.
+  const double reach = region.side / std::sqrt(2.0) + 2;
+  const cv::Rect part = cv::Rect(cv::Point(static_cast<int>(std::floor(region.centre.x() - reach)),
+                                           static_cast<int>(std::floor(region.centre.y() - reach))),
+                                 cv::Point(static_cast<int>(std::ceil(region.centre.x() + reach)),
+                                           static_cast<int>(std::ceil(region.centre.y() + reach)))) &
+                        cv::Rect(cv::Point(), bgr.size());
+  if (part.empty()) return cv::Mat::zeros(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3);
+  cv::Mat from = bgr(part);
+  double shrunk_x = 1, shrunk_y = 1;
+  if (region.scale() > kCoarse) {
+    const double by = std::floor(region.scale());
+    const cv::Size size(std::max(1, static_cast<int>(from.cols / by)), std::max(1, static_cast<int>(from.rows / by)));
+    shrunk_x = static_cast<double>(from.cols) / size.width, shrunk_y = static_cast<double>(from.rows) / size.height;
+    cv::Mat small;
+    cv::resize(from, small, size, 0, 0, cv::INTER_AREA);
+    from = small;
+  }
+  // From a pixel of the crop, whose centre lies half a pixel from its edge, to a pixel of `from`.
+  const Matrix<2> turn = region.turn();
+  const Vector<2> corner = region.in_picture(Vector<2>::Constant(0.5)) - Vector<2>(part.x, part.y);
+  const cv::Matx23d map(turn(0, 0) / shrunk_x, turn(0, 1) / shrunk_x, (corner.x() + 0.5) / shrunk_x - 0.5,  //
+                        turn(1, 0) / shrunk_y, turn(1, 1) / shrunk_y, (corner.y() + 0.5) / shrunk_y - 0.5);
+  cv::Mat crop;
+  cv::warpAffine(from, crop, map, {PersonRegion::kCrop, PersonRegion::kCrop}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                 cv::BORDER_REPLICATE);
+  return crop;
+}
+
+}  // namespace marey::detect::keypoints

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "marey/core/geometry.h"
+
+namespace marey::detect::keypoints {
+
+/// A square part of a picture, turned so that the person in it stands upright. A landmark network sees it as a crop of `kCrop` px,
+/// whose coordinates count from its upper left edge: the middle is at kCrop / 2.
+struct PersonRegion {
+  static constexpr int kCrop = 256;  // px
+
+  Vector<2> centre = Vector<2>::Zero();  ///< px of the picture
+  double side = 0;                       ///< px of the picture
+  double angle = 0;                      ///< rad, clockwise on the screen, from the picture's up to the person's
+
+  double scale() const { return side / kCrop; }  ///< px of the picture for one of the crop's
+  /// The linear part of the map from the crop to the picture.
+  Matrix<2> turn() const;
+  Vector<2> in_picture(const Vector<2>& in_crop) const;
+};
+
+/// Round a person who is taken to stand upright, or as far as the box tells.
+PersonRegion region_of(const Box& box);
+
+/// Round a person whose hips' middle is at `hips`, with `rim` at the circle that holds the whole body, in the direction of the
+/// head.
+PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim);
+
+/// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the picture's border its last pixels go on.
+cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region);
+
+}  // namespace marey::detect::keypoints

@@ -1,0 +1,121 @@
+"""The commands of docs/markerless.md on a real street, and what is refused.
+
+Usage: keypoints_test.py MAREY MODELS [unittest options]; MODELS is where script/model puts the networks
+"""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAREY = ""
+MODELS = pathlib.Path()
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "markerless.md"
+STREET = pathlib.Path("/usr/share/doc/opencv-doc/examples/data/vtest.avi")
+
+
+def commands_of(page):
+    """Lines of the page's code blocks that begin with marey, without what is said about them."""
+    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.S | re.M)
+    return [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines() if line.startswith("marey track people.mp4")]
+
+
+def marey(arguments, folder, models=None):
+    environment = os.environ | {"MAREY_MODELS": str(models or MODELS)}
+    return subprocess.run([MAREY, *arguments], cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
+
+
+class Keypoints(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        if STREET.is_file():
+            subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-i", STREET, "-frames:v", "24", self.folder / "people.mp4"], check=True)
+        else:
+            self.skipTest(f"{STREET} is not here; Debian's opencv-doc brings it")
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def need_models(self):
+        if not (MODELS / "pose_landmark_lite.onnx").is_file():
+            self.skipTest("script/model has not made the networks")
+
+    def refused(self, code, says, *arguments, models=None):
+        before = sorted(self.folder.iterdir())
+        done = marey(arguments, self.folder, models)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(says, done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_what_cannot_be_is_one_sentence(self):
+        track = ("track", "people.mp4", "--targets", "keypoints", "--quiet")
+        with tempfile.TemporaryDirectory() as empty:
+            self.refused(1, "script/model", *track, "--model", "lite", models=empty)
+            self.refused(1, "script/model", *track, "--without-background", models=empty)
+            for content in (b"", b"no network"):
+                (pathlib.Path(empty) / "pose_landmark_full.onnx").write_bytes(content)
+                self.refused(1, "script/model", *track, models=empty)
+        self.refused(2, "lite, full, heavy", *track, "--model", "tiny")
+        self.refused(2, "--ground", *track, "--ground")
+        self.refused(2, "requires --detector", "track", "people.mp4", "--every", "3")
+        self.refused(2, "requires --detector", "track", "people.mp4", "--without-background")
+        self.need_models()
+        self.refused(1, "another network", *track, "--model", MODELS / "person.onnx")
+
+    def test_the_page_s_commands(self):
+        self.need_models()
+        commands = commands_of(PAGE)
+        self.assertGreaterEqual(len(commands), 3)
+        for command in commands:
+            done = marey(shlex.split(command)[1:], self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("keypoints: in ", done.stderr)
+        with open(self.folder / "people.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), "frame,time,id,point,x,y,sd,visibility,presence".split(","))
+        bodies = {(row["frame"], row["id"]) for row in rows}
+        self.assertEqual(len(rows), 33 * len(bodies))
+        self.assertGreater(len(bodies), 60)
+        self.assertTrue(all(0 <= float(row[name]) <= 1 for row in rows for name in ("visibility", "presence")))
+        self.assertTrue(all(float(row["sd"]) > 0 for row in rows))
+        objects = [json.loads(line) for line in (self.folder / "people.jsonl").read_text().splitlines()]
+        with_points = [one for one in objects if "keypoints" in one]
+        self.assertEqual(len(with_points), len(bodies))
+        self.assertEqual(len(with_points[0]["keypoints"]["points"]), 33)
+        self.assertTrue((self.folder / "people_drawn.mp4").stat().st_size > 0)
+        done = marey(["convert", "people.marey", "converted.csv"], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "converted.csv") as file:
+            converted = list(csv.DictReader(file))
+        self.assertEqual(len(converted), len(rows))
+        for row, again in zip(rows, converted):
+            self.assertEqual((row["frame"], row["id"], row["point"]), (again["frame"], again["id"], again["point"]))
+            self.assertAlmostEqual(float(row["x"]), float(again["x"]), delta=0.002)
+            self.assertAlmostEqual(float(row["sd"]), float(again["sd"]), delta=0.002)
+
+    def test_without_background(self):
+        self.need_models()
+        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--without-background", "-o", "alone.csv"], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "alone.csv") as file:
+            self.assertGreater(len(list(file)), 33 * 60)
+
+    def test_what_holds_no_points_says_so(self):
+        self.need_models()
+        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--every", "8", "-o", "boxes.txt"], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("holds no keypoints", done.stderr)
+
+
+if __name__ == "__main__":
+    MAREY = sys.argv.pop(1)
+    MODELS = pathlib.Path(sys.argv.pop(1))
+    unittest.main()
