@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "marey/core/keypoint_sets.h"
+#include "marey/reconstruct/keypoints/ray_pair.h"
 
 namespace marey::reconstruct::keypoints {
 namespace {
@@ -24,17 +25,6 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kMeasuredBones{{{"l
                                                                              {"right_shoulder", "right_elbow"},
                                                                              {"left_elbow", "left_wrist"},
                                                                              {"right_elbow", "right_wrist"}}};
-
-/// The point nearest to two half-lines; nothing where they are parallel or it lies behind one of them.
-std::optional<Vector<3>> between(const SightLine& a, const SightLine& b) {
-  const Vector<3> apart = b.origin - a.origin;
-  const double cosine = a.direction.dot(b.direction), crossing = 1 - cosine * cosine;
-  if (crossing < 1e-4) return std::nullopt;
-  const double along_a = a.direction.dot(apart), along_b = b.direction.dot(apart);
-  const double s = (along_a - cosine * along_b) / crossing, t = (cosine * along_a - along_b) / crossing;
-  if (s <= 0 || t <= 0) return std::nullopt;
-  return Vector<3>(0.5 * (a.origin + s * a.direction + b.origin + t * b.direction));
-}
 
 }  // namespace
 
@@ -127,16 +117,10 @@ std::optional<PeopleInViews::Start> PeopleInViews::start_of(const PersonView& a,
   for (std::size_t i = 0; i < set_.points.size(); ++i) {
     if (!a.points[i] || !b.points[i]) continue;
     ++count;
-    const auto place = between(*a.points[i], *b.points[i]);
-    if (!place) {
-      start.cost += bound;
-      continue;
-    }
-    const double square = a.points[i]->error(*place).squaredNorm() / (a.points[i]->sigma * a.points[i]->sigma) +
-                          b.points[i]->error(*place).squaredNorm() / (b.points[i]->sigma * b.points[i]->sigma);
-    start.cost += std::min(bound, square);  // one degree of freedom
-    if (square >= bound) continue;
-    start.points[i] = Point{.position = *place};
+    const auto pair = pass_of(*a.points[i], *b.points[i]);
+    start.cost += pair ? std::min(bound, pair->square) : bound;
+    if (!pair || pair->square >= bound) continue;
+    start.points[i] = Point{.position = pair->position};
     ++met;
   }
   if (met < options_.least_points) return std::nullopt;
