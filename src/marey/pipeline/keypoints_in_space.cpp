@@ -246,10 +246,13 @@ rk::PersonPath KeypointJob::smooth(rk::PersonTrack& track, double& noise) const 
   const rk::FindKeypoints find = [this](std::size_t instant, int camera, int index) {
     return &frames_->at(instant, static_cast<std::size_t>(camera))[static_cast<std::size_t>(index)];
   };
-  rk::PersonPath path = rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), {.noise = noise});
+  rk::PersonPathOptions how;
+  how.noise = noise;
+  rk::PersonPath path = rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), how);
   if (path.squares.empty()) return path;
   noise *= std::sqrt(median_of(path.squares) / kMedianSquare);
-  return rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), {.noise = noise});
+  how.noise = noise;
+  return rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), how);
 }
 
 void KeypointJob::count(const rk::PersonTrack& track, const rk::PersonPath* path) {

@@ -30,7 +30,7 @@ json parse_keypoint_json(std::string_view text, const std::string& path) {
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    if (text.substr(0, error.byte + 3).ends_with("NaN") || text.substr(0, error.byte).find("NaN") != std::string_view::npos)
+    if (error.byte > 0 && text.substr(std::min(error.byte - 1, text.size()), 3) == "NaN")
       throw Error("{}: NaN at byte {} is no number of JSON; a missing point has null or the confidence 0", path, error.byte);
     throw Error("{}: is no JSON: it breaks off or is wrong at byte {}", path, error.byte);
   }

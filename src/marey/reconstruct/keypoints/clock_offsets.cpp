@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <Eigen/Cholesky>
 
@@ -18,7 +19,8 @@ constexpr double kBound = 25;      // squared standard deviations of a point
 constexpr double kMostMisfit = 9;  // of a person: nobody there is the same
 constexpr int kLeastPoints = 4;
 constexpr int kRounds = 20;
-constexpr double kFlat = 0.02;  // a parabola that rises by less than this over its width says nothing
+constexpr std::size_t kKept = 2;  // frames in memory, times the candidates
+constexpr double kFlat = 0.02;    // a parabola that rises by less than this over its width says nothing
 
 /// The mean misfit of a pair of cameras at each candidate offset, by block of time.
 struct PairCost {
@@ -114,6 +116,7 @@ class OffsetSearch {
     const auto &one = cameras_[a], &other = cameras_[b];
     const std::size_t frames = one.people->size(),
                       step = std::max<std::size_t>(1, frames / static_cast<std::size_t>(options_.samples));
+    std::map<std::size_t, std::vector<PersonView>> known;  // of the other camera, by frame
     for (std::size_t k = 0; k < frames; k += step) {
       const std::vector<PersonView> here = views_at(a, k);
       if (here.empty()) continue;
@@ -123,14 +126,16 @@ class OffsetSearch {
         const double time = static_cast<double>(k) / one.rate_hz + one.offset_s - other.offset_s - shift;
         const double frame = std::round(time * other.rate_hz);
         if (frame < 0 || frame >= static_cast<double>(other.people->size())) continue;
-        const std::vector<PersonView> there = views_at(b, static_cast<std::size_t>(frame));
+        const auto [there, is_new] = known.try_emplace(static_cast<std::size_t>(frame));
+        if (is_new) there->second = views_at(b, static_cast<std::size_t>(frame));
         for (const PersonView& person : here) {
           double least = kMostMisfit;
-          for (const PersonView& same : there) least = std::min(least, misfit_of(person, same));
+          for (const PersonView& same : there->second) least = std::min(least, misfit_of(person, same));
           cost.sums[candidate][block] += least;
           cost.counts[candidate][block] += 1;
         }
       }
+      while (known.size() > cost.sums.size() * kKept) known.erase(known.begin());
     }
     return cost;
   }
