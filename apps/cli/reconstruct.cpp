@@ -85,7 +85,7 @@ void run_keypoints(const ReconstructCommand& command) {
       [&](const Hooks& hooks) { return pipeline::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks); },
       [&](const pipeline::KeypointsSummary& summary, double) {
         if (command.json) {
-          print(as_json(summary, command.out));
+          print(keypoints_json(summary, command.out));
         } else if (!command.quiet) {
           print_keypoints_summary(summary, command.out);
         }

@@ -24,7 +24,7 @@ void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& o
   command.group("");
 }
 
-Json as_json(const pipeline::KeypointsSummary& summary, const std::string& out) {
+Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out) {
   Json people = Json::array(), cameras = Json::object();
   for (const auto& person : summary.people)
     people.push_back({{"label", person.label}, {"instants", person.instants}, {"views", person.views}});

@@ -12,7 +12,7 @@ namespace marey::cli {
 
 void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& options);
 
-Json as_json(const pipeline::KeypointsSummary& summary, const std::string& out);
+Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out);
 /// On standard error.
 void print_keypoints_summary(const pipeline::KeypointsSummary& summary, const std::string& out);
 

@@ -30,7 +30,6 @@ namespace rk = reconstruct::keypoints;
 using KeypointCameras = std::vector<std::optional<KeypointCamera>>;
 
 constexpr double kGateSlack = 1.3;         // times the learned noise, for the question who is who
-constexpr double kMedianSquare = 1.386;    // of two standard normal variables' squares
 constexpr double kMostDeviation_m = 0.15;  // a point known no better is none
 constexpr double kWorstNoise = 2.5;        // times what the files state: the rig does not fit
 constexpr double kFewPlaced = 0.5;         // share of views
@@ -129,7 +128,7 @@ class KeypointJob {
   double learn_noise() const;
   void find_offsets();
   std::vector<rk::PersonTrack> people_kept(std::map<int, rk::PersonTrack> tracks) const;
-  rk::PersonPath smooth(rk::PersonTrack& track, double& noise) const;
+  rk::PersonPath smooth(rk::PersonTrack& track, double noise) const;
   void add_person(const rk::PersonTrack& track, const rk::PersonPath* path, std::size_t number, std::size_t of,
                   Recording& recording);
   void count(const rk::PersonTrack& track, const rk::PersonPath* path);
@@ -241,16 +240,11 @@ std::vector<rk::PersonTrack> KeypointJob::people_kept(std::map<int, rk::PersonTr
   return people;
 }
 
-/// The paths with the noise that they show themselves.
-rk::PersonPath KeypointJob::smooth(rk::PersonTrack& track, double& noise) const {
+rk::PersonPath KeypointJob::smooth(rk::PersonTrack& track, double noise) const {
   const rk::FindKeypoints find = [this](std::size_t instant, int camera, int index) {
     return &frames_->at(instant, static_cast<std::size_t>(camera))[static_cast<std::size_t>(index)];
   };
   rk::PersonPathOptions how;
-  how.noise = noise;
-  rk::PersonPath path = rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), how);
-  if (path.squares.empty()) return path;
-  noise *= std::sqrt(median_of(path.squares) / kMedianSquare);
   how.noise = noise;
   return rk::path_of(track, set_, cameras_, find, 1 / frames_->rate_hz(), how);
 }
@@ -405,9 +399,8 @@ Recording KeypointJob::run() {
   std::vector<double> noises;
   for (std::size_t p = 0; p < people.size(); ++p) {
     std::optional<rk::PersonPath> path;
-    double own = noise;
-    if (options_.smooth) path = smooth(people[p], own);
-    noises.push_back(own);
+    if (options_.smooth) path = smooth(people[p], noise);
+    noises.push_back(path ? path->noise : noise);
     add_person(people[p], path ? &*path : nullptr, p, people.size(), recording);
     count(people[p], path ? &*path : nullptr);
     KeypointsSummary::Person& said = summary_.people.emplace_back();

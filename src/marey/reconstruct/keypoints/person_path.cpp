@@ -9,6 +9,11 @@ namespace marey::reconstruct::keypoints {
 namespace {
 
 constexpr double kMostSquare = 25;
+constexpr double kWide = 1.5;  // times the noise, of the first paths
+constexpr double kLeastNoise = 0.1;
+constexpr double kMedianSquare = 1.386;  // of two standard normal variables' squares
+constexpr double kBound = 3;             // standard deviations at which an error has a quarter of its weight
+constexpr double kFewErrors = 5;         // instants by which a mean error is drawn to none
 
 class PathFinder {
  public:
@@ -17,15 +22,19 @@ class PathFinder {
       : track_(track), set_(set), cameras_(cameras), find_(find), step_s_(step_s), options_(options), limbs_(limbs_of(set)) {}
 
   PersonPath find() {
+    noise_ = kWide * std::max(1.0, options_.noise);
     PersonPath path;
     path.points.resize(set_.points.size());
-    for (std::size_t i = 0; i < set_.points.size(); ++i) path.points[i] = smooth(i);
+    smooth_all(path);
+    if (exchange(path)) smooth_all(path);
+    if (options_.lasting_s > 0) take_lasting(path);
+    learn_noise(path);
+    smooth_all(path);
     if (exchange(path)) {
-      for (std::size_t i = 0; i < set_.points.size(); ++i) {
-        if (limbs_[i]) path.points[i] = smooth(i);
-      }
+      learn_noise(path);
+      smooth_all(path);
     }
-    for (std::size_t i = 0; i < set_.points.size(); ++i) append_squares(lines_of(i), path.points[i], path.squares);
+    path.noise = noise_;
     return path;
   }
 
@@ -37,15 +46,18 @@ class PathFinder {
     if (seen == nullptr) return std::nullopt;
     const auto& keypoint = seen->points[other_side ? static_cast<std::size_t>(set_.mirrored[point]) : point];
     if (!keypoint) return std::nullopt;
-    return line_of(*cameras_[static_cast<std::size_t>(camera)], camera, *keypoint, options_.noise);
+    const Camera& eye = *cameras_[static_cast<std::size_t>(camera)];
+    if (lasting_.empty()) return line_of(eye, camera, *keypoint, noise_);
+    Keypoint<2> moved = *keypoint;
+    moved.position += lasting_[static_cast<std::size_t>(camera) * set_.points.size() + point][instant];
+    return line_of(eye, camera, moved, noise_);
   }
 
   PointLines lines_of(std::size_t point) const {
     PointLines lines;
     for (std::size_t t = 0; t < track_.instants.size(); ++t) {
       for (int camera = 0; camera < std::ssize(track_.instants[t].views); ++camera) {
-        const bool swapped = track_.instants[t].mirrored[static_cast<std::size_t>(camera)].of(limbs_[point]);
-        if (const auto line = line_at(t, camera, point, swapped)) lines.add(*line);
+        if (const auto line = placed_line(t, camera, point)) lines.add(*line);
       }
       lines.end_instant();
     }
@@ -59,6 +71,59 @@ class PathFinder {
       if (!points.empty() && points[point]) start[t] = points[point]->position;
     }
     return smooth_trajectory(lines_of(point), start, step_s_, options_.trajectory);
+  }
+
+  void smooth_all(PersonPath& path) const {
+    for (std::size_t i = 0; i < set_.points.size(); ++i) path.points[i] = smooth(i);
+  }
+
+  /// The deviation that the errors of all views show.
+  void learn_noise(const PersonPath& path) {
+    std::vector<double> squares;
+    for (std::size_t i = 0; i < set_.points.size(); ++i) append_squares(lines_of(i), path.points[i], squares);
+    if (squares.empty()) return;
+    const auto middle = squares.begin() + std::ssize(squares) / 2;
+    std::nth_element(squares.begin(), middle, squares.end());
+    noise_ = std::max(kLeastNoise, noise_ * std::sqrt(*middle / kMedianSquare));
+  }
+
+  /// Of each camera and point the mean error over a while, px: errors are averaged across the view at the point's distance, those
+  /// far off with little weight.
+  void take_lasting(const PersonPath& path) {
+    const std::size_t count = track_.instants.size();
+    std::vector<std::vector<Vector<2>>> lasting(cameras_.size() * set_.points.size());
+    const auto half = static_cast<std::size_t>(std::max(1.0, options_.lasting_s / step_s_ / 2));
+    for (std::size_t i = 0; i < set_.points.size(); ++i) {
+      for (std::size_t c = 0; c < cameras_.size(); ++c) {
+        std::vector<Vector<2>>& of = lasting[c * set_.points.size() + i];
+        of.assign(count, Vector<2>::Zero());
+        if (path.points[i].empty()) continue;
+        std::vector<Vector<3>> sums(count + 1, Vector<3>::Zero());  // of weighted errors and of weights, up to each instant
+        std::vector<double> scales(count, 0);                       // px/m
+        for (std::size_t t = 0; t < count; ++t) {
+          sums[t + 1] = sums[t];
+          const auto line = placed_line(t, static_cast<int>(c), i);
+          if (!line) continue;
+          const double depth = line->depth(path.points[i][t].position);
+          if (!(depth > 0.1)) continue;
+          scales[t] = line->scale() / depth;
+          const Vector<2> error = line->error(path.points[i][t].position);
+          const double share = kBound * kBound / (kBound * kBound + error.squaredNorm() / (line->sigma * line->sigma));
+          sums[t + 1] += share * share * Vector<3>(error.x() / scales[t], error.y() / scales[t], 1);
+        }
+        for (std::size_t t = 0; t < count; ++t) {
+          const Vector<3> sum = sums[std::min(count, t + half + 1)] - sums[t > half ? t - half : 0];
+          of[t] = scales[t] / (sum.z() + kFewErrors) * sum.head<2>();
+        }
+      }
+    }
+    lasting_ = std::move(lasting);
+  }
+
+  /// The line by the names that the view is read with.
+  std::optional<SightLine> placed_line(std::size_t t, int camera, std::size_t point) const {
+    if (track_.instants[t].views.empty()) return std::nullopt;
+    return line_at(t, camera, point, track_.instants[t].mirrored[static_cast<std::size_t>(camera)].of(limbs_[point]));
   }
 
   /// How much better a view's limb fits with its names exchanged, by limb, in squared deviations.
@@ -111,6 +176,8 @@ class PathFinder {
   double step_s_;
   PersonPathOptions options_;
   std::vector<std::optional<Limb>> limbs_;
+  double noise_ = 1;
+  std::vector<std::vector<Vector<2>>> lasting_;  // px, by camera and point, then instant
 };
 
 }  // namespace

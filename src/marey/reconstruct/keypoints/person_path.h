@@ -1,5 +1,11 @@
-// One person's whole motion: each keypoint's path (trajectory.h), which limbs of which view bear the other side's names as the
-// whole motion has it, and how far off the points are.
+// One person's whole motion: each keypoint's path (trajectory.h), which limbs of which view bear the other side's names, and how
+// far off each camera's points lie for a while.
+//
+// A network puts a point beside its joint, by about as much as long as it sees the body from about the same side, and a calibration
+// that is a little wrong does the same. Where a camera's point then is missing for a frame, or has less weight, the place in space
+// would jump. So the first paths are made with wide deviations, in which every camera has its say; of every camera and point the
+// mean error over three seconds is taken out; and the final paths are made of what is left, with the deviation that it shows. The
+// mean over all cameras stays: what they share cannot be known. Cost: three times that of the paths.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +32,13 @@ using FindKeypoints = std::function<const Keypoints<2>*(std::size_t instant, int
 struct PersonPathOptions {
   TrajectoryOptions trajectory;
   double swap_gain = 3;  ///< standard deviations that a limb must fit better exchanged
-  double noise = 1;      ///< times the deviations that the keypoints state
+  double noise = 1;      ///< times the deviations that the keypoints state: how well single instants' half-lines meet
+  double lasting_s = 3;  ///< over which a camera's errors are averaged; 0: they are left in
 };
 
 struct PersonPath {
   std::vector<std::vector<TrajectoryPoint>> points;  ///< by the set, then by instant; empty for a point that is never placed
-  std::vector<double> squares;                       ///< of all errors, in standard deviations (`append_squares`)
+  double noise = 1;                                  ///< times the deviations that the keypoints state, as the paths show it
 };
 
 /// Corrects `track.instants[…].mirrored`.

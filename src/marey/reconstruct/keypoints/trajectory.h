@@ -37,7 +37,7 @@ class PointLines {
 };
 
 struct TrajectoryOptions {
-  double agility_m2_s3 = 16;  ///< by how much a velocity's square changes in a second; sweep: docs/markerless_space.md
+  double agility_m2_s3 = 12;  ///< by how much a velocity's square changes in a second; sweep: docs/markerless_space.md
   double bound = 3;           ///< standard deviations at which an error has a quarter of its weight
   int rounds = 5;
 };
