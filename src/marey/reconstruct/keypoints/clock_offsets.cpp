@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "marey/reconstruct/keypoints/person_view.h"
 #include "marey/reconstruct/keypoints/ray_pair.h"
@@ -68,11 +68,11 @@ class OffsetSearch {
   }
 
   std::vector<std::optional<ClockOffset>> solve() const {
-    const std::vector<double> all = offsets_without(-1);
+    const auto [all, disagreement] = offsets_without(-1);
     std::vector<double> spread(cameras_.size(), 0);
     std::vector<double> mean(cameras_.size(), 0);
     std::vector<std::vector<double>> parts;
-    for (int block = 0; block < kBlocks; ++block) parts.push_back(offsets_without(block));
+    for (int block = 0; block < kBlocks; ++block) parts.push_back(offsets_without(block).offsets);
     for (const auto& part : parts) {
       for (std::size_t c = 0; c < part.size(); ++c) mean[c] += part[c] / kBlocks;
     }
@@ -82,7 +82,7 @@ class OffsetSearch {
     std::vector<std::optional<ClockOffset>> found(cameras_.size());
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (cameras_[c].camera == nullptr || fixed_[c]) continue;
-      const double sigma = std::sqrt((kBlocks - 1.0) / kBlocks * spread[c]);
+      const double sigma = std::sqrt((kBlocks - 1.0) / kBlocks * spread[c] + disagreement[c]);
       if (std::isfinite(all[c]) && sigma <= options_.most_sigma)
         found[c] = ClockOffset{cameras_[c].offset_s + all[c] * step_s_, sigma * step_s_};
     }
@@ -172,13 +172,23 @@ class OffsetSearch {
     return offsets;
   }
 
+  struct Solved {
+    std::vector<double> offsets;
+    std::vector<double> disagreement;  // squared deviation, by how far the pairs' vertices lie from what all together have
+  };
+
   /// Offsets in steps, by the parabolas of all pairs; infinite where no pair says anything of a camera.
-  std::vector<double> offsets_without(int without) const {
+  Solved offsets_without(int without) const {
     const std::vector<double> start = whole_steps(without);
     const int half = std::max(2, static_cast<int>(std::lround(options_.vertex_s / step_s_)));
     const auto count = static_cast<Eigen::Index>(cameras_.size());
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(count);
+    struct Parabola {
+      Eigen::Index a, b;
+      double curvature, vertex;
+    };
+    std::vector<Parabola> parabolas;
     for (const PairCost& pair : pairs_) {
       const double middle = start[pair.b] - start[pair.a];
       double s0 = 0, s2 = 0, s4 = 0, y0 = 0, y1 = 0, y2 = 0;
@@ -195,6 +205,7 @@ class OffsetSearch {
       if (!(curvature * half * half > kFlat)) continue;
       const double vertex = std::clamp(-slope / (2 * curvature), -1.0 * half, 1.0 * half);
       const auto a = static_cast<Eigen::Index>(pair.a), b = static_cast<Eigen::Index>(pair.b);
+      parabolas.push_back({a, b, curvature, middle + vertex});
       A(a, a) += curvature;
       A(b, b) += curvature;
       A(a, b) -= curvature;
@@ -213,11 +224,19 @@ class OffsetSearch {
         offsets[index] = std::numeric_limits<double>::infinity();
       }
     }
-    const Eigen::VectorXd solved = A.ldlt().solve(g);
+    const Eigen::MatrixXd inverse = A.inverse();
+    const Eigen::VectorXd solved = inverse * g;
+    double square = 0;
+    for (const Parabola& of : parabolas) square += of.curvature * std::pow(solved(of.b) - solved(of.a) - of.vertex, 2);
+    const auto unknown = std::count(fixed_.begin(), fixed_.end(), false);
+    const double variance = square / static_cast<double>(std::max<std::ptrdiff_t>(1, std::ssize(parabolas) - unknown));
+    std::vector<double> disagreement(cameras_.size(), 0);
     for (Eigen::Index c = 0; c < count; ++c) {
-      if (std::isfinite(offsets[static_cast<std::size_t>(c)])) offsets[static_cast<std::size_t>(c)] = solved(c);
+      const auto index = static_cast<std::size_t>(c);
+      if (std::isfinite(offsets[index])) offsets[index] = solved(c);
+      disagreement[index] = variance * inverse(c, c);
     }
-    return offsets;
+    return {offsets, disagreement};
   }
 
   std::span<const CameraFrames> cameras_;

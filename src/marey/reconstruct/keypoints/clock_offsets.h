@@ -6,7 +6,8 @@
 // over the offset, whose vertex lies between frames; its curvature says how much the pair knows (nothing, where nobody moves across
 // the half-planes through both cameras). All pairs' parabolas together give the offsets by least squares. How sure they are is said
 // by leaving out one tenth of the time after another (the jackknife; Efron and Tibshirani, "An Introduction to the Bootstrap",
-// 1993, chapter 11). Cost: pairs of cameras × samples × offsets × pairs of people × keypoints.
+// 1993, chapter 11), and by how far the pairs disagree, as they do where the calibration is off. Cost: pairs of cameras × samples ×
+// offsets × pairs of people × keypoints.
 #pragma once
 
 #include <optional>
