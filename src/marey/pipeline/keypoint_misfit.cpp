@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kTriedInstants = 60;
 constexpr double kTriedNoise = 1.5;   // times what the files state
-constexpr double kClearlyMore = 1.5;  // times the views that are placed as things are
+constexpr double kClearlyMore = 0.2;  // of all views, beyond those that are placed as things are
 constexpr double kMostOfThem = 0.6;   // of all views
 
 /// One camera's calibration and whether its images are mirrored.
@@ -65,7 +65,7 @@ std::vector<std::string> reasons_of_misfit(const Rig& rig, const KeypointFrames&
   for (const RigCamera& camera : rig.cameras) cameras.push_back({camera.camera()});
   const Placed before = placed_with(cameras, frames, set);
   const auto is_better = [&](const Placed& placed) {
-    return static_cast<double>(placed.placed) > kClearlyMore * static_cast<double>(before.placed) &&
+    return static_cast<double>(placed.placed - before.placed) > kClearlyMore * static_cast<double>(placed.views) &&
            static_cast<double>(placed.placed) > kMostOfThem * static_cast<double>(placed.views);
   };
   std::vector<std::string> reasons;

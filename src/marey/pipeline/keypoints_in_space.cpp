@@ -14,11 +14,12 @@
 #include "marey/core/recording_reader.h"
 #include "marey/core/source_name.h"
 #include "marey/format/input_hash.h"
-#include "marey/format/keypoints/keypoint_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/keypoint_cameras.h"
 #include "marey/pipeline/keypoint_frames.h"
 #include "marey/pipeline/keypoint_misfit.h"
+#include "marey/pipeline/keypoint_tracks.h"
 #include "marey/reconstruct/keypoints/clock_offsets.h"
 #include "marey/reconstruct/keypoints/people_in_views.h"
 #include "marey/reconstruct/keypoints/person_path.h"
@@ -27,73 +28,19 @@ namespace marey::pipeline {
 namespace {
 
 namespace rk = reconstruct::keypoints;
-using KeypointCameras = std::vector<std::optional<KeypointCamera>>;
 
-constexpr double kGateSlack = 1.3;         // times the learned noise, for the question who is who
-constexpr double kMostDeviation_m = 0.15;  // a point known no better is none
-constexpr double kWorstNoise = 2.5;        // times what the files state: the rig does not fit
-constexpr double kFewPlaced = 0.5;         // share of views
+constexpr double kGateSlack = 1.3;       // times the learned noise, for the question who is who
+constexpr double kWorstNoise = 2.5;      // times what the files state: the rig does not fit
+constexpr double kFewPlaced = 0.5;       // share of views
+constexpr double kMostPlaced = 0.75;     // share of views below which it is asked why
+constexpr double kWorstCamera = 2.5;     // times the median of all cameras
+constexpr double kMedianLength = 1.177;  // of a vector of two standard normal variables
 
-std::string file_of(const RigCamera& camera) {
-  return camera.detections.empty() ? camera.source : camera.detections;
-}
-
-double median_of(std::vector<double>& values) {
+double median_value(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-void read_camera(RigCamera& camera, const KeypointsInSpaceOptions& options, std::optional<KeypointCamera>& into,
-                 std::vector<std::string>& warnings, bool& assumed) {
-  const std::string path = file_of(camera);
-  if (path.empty() || !camera.camera()) return;
-  if (!format::keypoints::may_hold_keypoints(path))
-    throw Error("{}: camera \"{}\" needs keypoints: a folder of OpenPose, or a .json or .csv file of them", path, camera.name);
-  KeypointCamera read{
-      .sequence = format::keypoints::read_keypoints(path, options.set), .rate_hz = 0, .offset_s = camera.offset_s.value_or(0)};
-  if (read.sequence.size) fit_to_size(camera, *read.sequence.size);
-  const auto rate = camera.rate_hz ? camera.rate_hz : options.rate_hz ? options.rate_hz : read.sequence.rate_hz;
-  assumed |= !rate;
-  read.rate_hz = rate.value_or(kUsualRate);
-  if (read.sequence.frames.empty()) warnings.push_back(fmt::format("{}: nobody is in any frame", path));
-  into = std::move(read);
-}
-
-/// Reads all; fits the rig's cameras to the images' sizes.
-KeypointCameras read_cameras(Rig& rig, const KeypointsInSpaceOptions& options, std::vector<std::string>& warnings) {
-  KeypointCameras cameras(rig.cameras.size());
-  bool assumed = false;
-  const KeypointSequence* first = nullptr;
-  std::size_t shortest = 0, longest = 0;
-  std::string shortest_name;
-  int count = 0;
-  for (std::size_t c = 0; c < cameras.size(); ++c) {
-    read_camera(rig.cameras[c], options, cameras[c], warnings, assumed);
-    if (!cameras[c] || cameras[c]->sequence.frames.empty()) continue;
-    const KeypointSequence& sequence = cameras[c]->sequence;
-    ++count;
-    if (first == nullptr) first = &sequence;
-    if (!(sequence.set.points == first->set.points))
-      throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", sequence.from, sequence.set.name,
-                  first->from, first->set.name);
-    if (count == 1 || sequence.frames.size() < shortest) {
-      shortest = sequence.frames.size();
-      shortest_name = rig.cameras[c].name;
-    }
-    longest = std::max(longest, sequence.frames.size());
-  }
-  if (count < 2)
-    throw Error("{} with keypoints; two are needed: CAMERA=FOLDER for each",
-                count == 0 ? "no calibrated camera" : "only one calibrated camera");
-  if (shortest < longest)
-    warnings.push_back(fmt::format("camera \"{}\" has keypoints for {} frames, another one for {}; the others go on without it",
-                                   shortest_name, shortest, longest));
-  if (assumed)
-    warnings.push_back(fmt::format(
-        "neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate", kUsualRate));
-  return cameras;
 }
 
 /// The steps of the job, which share the cameras and their frames.
@@ -104,7 +51,7 @@ class KeypointJob {
         options_(options),
         summary_(summary),
         hooks_(hooks),
-        files_(read_cameras(rig_, options, summary.warnings)) {
+        files_(read_keypoint_cameras(rig_, options.set, options.rate_hz, summary.warnings)) {
     for (std::size_t c = 0; c < files_.size(); ++c) cameras_.push_back(files_[c] ? rig_.cameras[c].camera() : std::nullopt);
     for (const auto& file : files_) {
       if (file && !file->sequence.frames.empty()) {
@@ -132,18 +79,21 @@ class KeypointJob {
   void add_person(const rk::PersonTrack& track, const rk::PersonPath* path, std::size_t number, std::size_t of,
                   Recording& recording);
   void count(const rk::PersonTrack& track, const rk::PersonPath* path);
+  void count_cameras();
   void report(const Followed& followed);
+  void warn_of_misfit();
   RecordingHeader header() const;
 
   Rig rig_;
   const KeypointsInSpaceOptions& options_;
   KeypointsSummary& summary_;
   const Hooks& hooks_;
-  KeypointCameras files_;
+  std::vector<std::optional<KeypointCamera>> files_;
   std::vector<std::optional<Camera>> cameras_;
   KeypointSet set_;
   std::unique_ptr<KeypointFrames> frames_;
   std::vector<std::vector<double>> residuals_;  // by camera, px
+  std::vector<double> ratios_;                  // of all of them to the deviations that the keypoints state
 };
 
 KeypointJob::Followed KeypointJob::follow(double noise, std::size_t most) const {
@@ -188,7 +138,7 @@ double KeypointJob::learn_noise() const {
     if (placed <= kMuchMore * best_placed) continue;
     best_placed = placed;
     // The median of a sum of squares is a little below its mean.
-    best = noise * std::sqrt(median_of(followed.squares) / 0.9);
+    best = noise * std::sqrt(median_value(followed.squares) / 0.9);
   }
   return std::clamp(best, 0.1, 10.0);
 }
@@ -263,42 +213,12 @@ void KeypointJob::count(const rk::PersonTrack& track, const rk::PersonPath* path
         if (path != nullptr && !path->points[i].empty()) place = path->points[i][k].position;
         if (path == nullptr && person.points[i]) place = person.points[i]->position;
         if (!place || !seen.points[i]) continue;
-        if (const auto pixel = cameras_[c]->project(*place)) residuals_[c].push_back((*pixel - seen.points[i]->position).norm());
+        const auto pixel = cameras_[c]->project(*place);
+        if (!pixel) continue;
+        residuals_[c].push_back((*pixel - seen.points[i]->position).norm());
+        ratios_.push_back(residuals_[c].back() / std::sqrt(std::sqrt(seen.points[i]->covariance.determinant())));
       }
     }
-  }
-}
-
-Sample sample_of_path(const rk::TrajectoryPoint& point, Provenance provenance) {
-  Sample sample;
-  sample.position = point.position;
-  sample.velocity = point.velocity;
-  sample.covariance = point.covariance;
-  sample.provenance = provenance;
-  sample.cameras = point.cameras;
-  if (point.rays > 0) sample.residual_px = point.residual_px;
-  return sample;
-}
-
-/// A path's samples: two cameras' half-lines measure, gaps between such instants are filled up to `fill_s`, and nothing is said
-/// where the place is hardly known.
-void add_path(const std::vector<rk::TrajectoryPoint>& path, std::size_t first, double rate_hz, double fill_s, TrackColumns& track) {
-  std::vector<char> measured(path.size());
-  for (std::size_t k = 0; k < path.size(); ++k) measured[k] = path[k].rays >= 2 ? 1 : 0;
-  const auto longest = static_cast<std::size_t>(fill_s * rate_hz);
-  std::size_t k = 0;
-  while (k < path.size() && measured[k] == 0) ++k;
-  for (; k < path.size(); ++k) {
-    std::size_t end = k;
-    while (end < path.size() && measured[end] == 0) ++end;
-    if (end == path.size()) return;
-    const bool fill = end - k <= longest;
-    for (; k <= end; ++k) {
-      if (k < end && !fill) continue;
-      if (path[k].covariance.trace() > 3 * kMostDeviation_m * kMostDeviation_m) continue;
-      track.add(static_cast<std::int32_t>(first + k), sample_of_path(path[k], k < end ? Provenance::filled : Provenance::measured));
-    }
-    k = end;
   }
 }
 
@@ -309,19 +229,10 @@ void KeypointJob::add_person(const rk::PersonTrack& track, const rk::PersonPath*
     name.id = TrackId{static_cast<int>(number * set_.points.size() + i) + 1};
     name.label = of > 1 ? fmt::format("P{}:{}", number + 1, set_.points[i]) : set_.points[i];
     TrackColumns columns(name, 3);
-    if (path != nullptr) {
-      if (!path->points[i].empty()) add_path(path->points[i], track.first, frames_->rate_hz(), options_.fill_s, columns);
-    } else {
-      for (std::size_t k = 0; k < track.instants.size(); ++k) {
-        const auto& points = track.instants[k].points;
-        if (points.empty() || !points[i]) continue;
-        Sample sample;
-        sample.position = points[i]->position;
-        sample.covariance = points[i]->covariance;
-        sample.cameras = points[i]->used;
-        sample.residual_px = points[i]->residual_px;
-        columns.add(static_cast<std::int32_t>(track.first + k), sample);
-      }
+    if (path == nullptr) {
+      add_instants(track, i, columns);
+    } else if (!path->points[i].empty()) {
+      add_path(path->points[i], track.first, static_cast<std::size_t>(options_.fill_s * frames_->rate_hz()), columns);
     }
     for (const Provenance provenance : columns.provenance())
       ++(provenance == Provenance::measured ? summary_.measured : summary_.filled);
@@ -334,42 +245,18 @@ RecordingHeader KeypointJob::header() const {
   header.frame.kind = FrameOfReference::Kind::space;
   header.rate_hz = frames_->rate_hz();
   header.rig = rig_;
+  for (RigCamera& camera : header.rig->cameras) camera.source = shown_source(camera.source);
   header.smoothed = options_.smooth;
   header.made_by.program = "marey reconstruct";
   header.made_by.options = hooks_.options;
   header.made_by.options["keypoint set"] = set_.name;
   for (std::size_t c = 0; c < files_.size(); ++c) {
-    if (files_[c]) header.made_by.inputs.push_back(format::input_of(shown_source(file_of(rig_.cameras[c]))));
+    if (files_[c]) header.made_by.inputs.push_back(format::input_of(shown_source(keypoint_file_of(rig_.cameras[c]))));
   }
   return header;
 }
 
-void KeypointJob::report(const Followed& followed) {
-  std::vector<double> all, times = followed.times_ms;
-  for (std::size_t c = 0; c < residuals_.size(); ++c) {
-    all.insert(all.end(), residuals_[c].begin(), residuals_[c].end());
-    summary_.cameras[c].residual_px = median_of(residuals_[c]);
-  }
-  summary_.residual_px = median_of(all);
-  summary_.place_ms = median_of(times);
-  summary_.views = followed.seen;
-  summary_.placed = followed.placed;
-  const bool few = static_cast<double>(summary_.placed) < kFewPlaced * static_cast<double>(summary_.views);
-  if (few)
-    summary_.warnings.push_back(fmt::format("only {} of {} people in images are placed: two cameras must see the same person",
-                                            summary_.placed, summary_.views));
-  if (summary_.noise > kWorstNoise)
-    summary_.warnings.push_back(
-        fmt::format("the rig does not fit these keypoints: they lie {:.0f} px (median) from where space has them, {:.1f} times "
-                    "what keypoints of their "
-                    "confidence do",
-                    summary_.residual_px, summary_.noise));
-  if (few || summary_.noise > kWorstNoise) {
-    for (std::string& sentence : reasons_of_misfit(rig_, *frames_, set_)) summary_.warnings.push_back(std::move(sentence));
-  }
-}
-
-Recording KeypointJob::run() {
+void KeypointJob::count_cameras() {
   for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
     KeypointsSummary::Camera camera;
     camera.name = rig_.cameras[c].name;
@@ -379,13 +266,71 @@ Recording KeypointJob::run() {
     }
     summary_.cameras.push_back(std::move(camera));
   }
+}
+
+KeypointsSummary::Person person_of(const rk::PersonTrack& track, std::string label) {
+  KeypointsSummary::Person said{.label = std::move(label)};
+  for (const rk::PlacedPerson& person : track.instants) {
+    if (person.points.empty()) continue;
+    ++said.instants;
+    said.views += static_cast<double>(std::count_if(person.views.begin(), person.views.end(), [](int view) { return view >= 0; }));
+  }
+  said.views /= static_cast<double>(std::max<std::int64_t>(1, said.instants));
+  return said;
+}
+
+void KeypointJob::report(const Followed& followed) {
+  summary_.noise = median_value(ratios_) / kMedianLength;
+  summary_.set = set_.name;
+  summary_.points = static_cast<int>(set_.points.size());
+  summary_.frames = static_cast<std::int64_t>(frames_->size());
+  summary_.rate_hz = frames_->rate_hz();
+  summary_.seconds = static_cast<double>(frames_->size() - 1) / frames_->rate_hz();
+  std::vector<double> all, times = followed.times_ms;
+  for (std::size_t c = 0; c < residuals_.size(); ++c) {
+    all.insert(all.end(), residuals_[c].begin(), residuals_[c].end());
+    summary_.cameras[c].residual_px = median_value(residuals_[c]);
+  }
+  summary_.residual_px = median_value(all);
+  summary_.place_ms = median_value(times);
+  summary_.views = followed.seen;
+  summary_.placed = followed.placed;
+  warn_of_misfit();
+}
+
+void KeypointJob::warn_of_misfit() {
+  const bool few = static_cast<double>(summary_.placed) < kFewPlaced * static_cast<double>(summary_.views);
+  if (few)
+    summary_.warnings.push_back(fmt::format("only {} of {} people in images are placed: two cameras must see the same person",
+                                            summary_.placed, summary_.views));
+  if (summary_.noise > kWorstNoise)
+    summary_.warnings.push_back(fmt::format(
+        "the rig does not fit these keypoints: they lie {:.0f} px (median) from where space has them, {:.1f} times what "
+        "keypoints of their confidence do",
+        summary_.residual_px, summary_.noise));
+  bool misfit =
+      static_cast<double>(summary_.placed) < kMostPlaced * static_cast<double>(summary_.views) || summary_.noise > kWorstNoise;
+  for (const KeypointsSummary::Camera& camera : summary_.cameras) {
+    if (camera.residual_px <= kWorstCamera * summary_.residual_px) continue;
+    misfit = true;
+    summary_.warnings.push_back(fmt::format(
+        "camera \"{}\": keypoints lie {:.0f} px (median) from where space has them, and {:.0f} px in all cameras: was it "
+        "moved since it was calibrated, or does it run out of step?",
+        camera.name, camera.residual_px, summary_.residual_px));
+  }
+  if (!misfit) return;
+  for (std::string& sentence : reasons_of_misfit(rig_, *frames_, set_)) summary_.warnings.push_back(std::move(sentence));
+}
+
+Recording KeypointJob::run() {
+  count_cameras();
   if (options_.find_offsets) find_offsets();
   frames_ = std::make_unique<KeypointFrames>(files_);
   if (frames_->size() == 0)
     throw Error(
         "no two cameras have frames at the same time: the offsets in the rig are wrong, or the files are of other recordings");
   residuals_.resize(cameras_.size());
-  double noise = learn_noise();
+  const double noise = learn_noise();
   Followed followed = follow(kGateSlack * noise, frames_->size());
   std::vector<rk::PersonTrack> people = people_kept(std::move(followed.tracks));
   if (people.empty()) {
@@ -396,30 +341,14 @@ Recording KeypointJob::run() {
   Recording recording(header());
   for (std::size_t t = 0; t < frames_->size(); ++t)
     recording.add_moment({static_cast<std::int64_t>(t), timestamp_from_seconds(static_cast<double>(t) / frames_->rate_hz())});
-  std::vector<double> noises;
   for (std::size_t p = 0; p < people.size(); ++p) {
     std::optional<rk::PersonPath> path;
     if (options_.smooth) path = smooth(people[p], noise);
-    noises.push_back(path ? path->noise : noise);
     add_person(people[p], path ? &*path : nullptr, p, people.size(), recording);
     count(people[p], path ? &*path : nullptr);
-    KeypointsSummary::Person& said = summary_.people.emplace_back();
-    said.label = people.size() > 1 ? fmt::format("P{}", p + 1) : "";
-    for (const rk::PlacedPerson& person : people[p].instants) {
-      if (person.points.empty()) continue;
-      ++said.instants;
-      said.views +=
-          static_cast<double>(std::count_if(person.views.begin(), person.views.end(), [](int view) { return view >= 0; }));
-    }
-    said.views /= static_cast<double>(std::max<std::int64_t>(1, said.instants));
+    summary_.people.push_back(person_of(people[p], people.size() > 1 ? fmt::format("P{}", p + 1) : ""));
     hooks_.advance({.step = "smoothing", .done = static_cast<std::int64_t>(p) + 1, .total = std::ssize(people)});
   }
-  summary_.noise = median_of(noises);
-  summary_.set = set_.name;
-  summary_.points = static_cast<int>(set_.points.size());
-  summary_.frames = static_cast<std::int64_t>(frames_->size());
-  summary_.rate_hz = frames_->rate_hz();
-  summary_.seconds = static_cast<double>(frames_->size() - 1) / frames_->rate_hz();
   report(followed);
   return recording;
 }

@@ -1,11 +1,10 @@
 #include "marey/reconstruct/keypoints/trajectory.h"
 
 #include <cmath>
+#include <random>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
-
-#include "marey/simulate/random.h"
 
 namespace marey::reconstruct::keypoints {
 namespace {
@@ -36,13 +35,15 @@ struct SeenPoint {
   std::vector<std::optional<Vector<3>>> start;
 
   SeenPoint(std::size_t instants, double sigma, double outliers, std::uint64_t seed) {
-    simulate::Random random(seed);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::bernoulli_distribution is_outlier(outliers);
     for (std::size_t i = 0; i < instants; ++i) {
       for (int c = 0; c < 3; ++c) {
-        const bool outlier = random.chance(outliers);
+        const bool outlier = is_outlier(random);
         const double spread = outlier ? 100 : sigma;
-        const Vector<2> pixel = *three_cameras()[static_cast<std::size_t>(c)].project(place_at(i)) +
-                                Vector<2>(random.gaussian(0, spread), random.gaussian(0, spread));
+        const Vector<2> pixel =
+            *three_cameras()[static_cast<std::size_t>(c)].project(place_at(i)) + spread * Vector<2>(normal(random), normal(random));
         lines.add(*sight_line(three_cameras()[static_cast<std::size_t>(c)], c, pixel, std::max(sigma, 0.5)));
       }
       lines.end_instant();

@@ -1,14 +1,12 @@
-#include "marey/reconstruct/keypoints/people_in_views.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "marey/reconstruct/keypoints/seen_room_test.h"
+#include "marey/pipeline/seen_room_test.h"
 
-namespace marey::reconstruct::keypoints {
+namespace marey::pipeline {
 namespace {
 
 using simulate::room::KeypointErrors;
@@ -30,7 +28,7 @@ RoomOptions people_room(int actors, int cameras, std::int64_t frames, std::uint6
   return options;
 }
 
-double mean_error_of(const SeenRoom& room, PersonTrack& track, const PersonPath& path) {
+double mean_error_of(const SeenRoom& room, rk::PersonTrack& track, const rk::PersonPath& path) {
   double sum = 0, count = 0;
   for (std::size_t k = 0; k < track.instants.size(); ++k) {
     const auto& person = track.instants[k];
@@ -117,8 +115,8 @@ TEST(PersonPath, IsNearerThanTheNoiseOfSingleInstants) {
   SeenRoom room(people_room(1, 4, 250, 5), {});
   room.follow();
   ASSERT_EQ(room.tracks.size(), 1U);
-  PersonTrack& track = room.tracks.begin()->second;
-  const PersonPath path = room.path(track);
+  rk::PersonTrack& track = room.tracks.begin()->second;
+  const rk::PersonPath path = room.path(track);
   EXPECT_LT(mean_error_of(room, track, path), 0.022);
 }
 
@@ -128,8 +126,8 @@ TEST(PersonPath, ReadsExchangedLimbsTheOtherWayRound) {
   SeenRoom room(people_room(1, 4, 400, 6), errors);
   room.follow();
   ASSERT_EQ(room.tracks.size(), 1U);
-  PersonTrack& track = room.tracks.begin()->second;
-  const PersonPath path = room.path(track);
+  rk::PersonTrack& track = room.tracks.begin()->second;
+  const rk::PersonPath path = room.path(track);
   EXPECT_LT(mean_error_of(room, track, path), 0.025);
   std::int64_t wrong = 0, all = 0;
   for (std::size_t k = 0; k < track.instants.size(); ++k) {
@@ -145,4 +143,4 @@ TEST(PersonPath, ReadsExchangedLimbsTheOtherWayRound) {
 }
 
 }  // namespace
-}  // namespace marey::reconstruct::keypoints
+}  // namespace marey::pipeline

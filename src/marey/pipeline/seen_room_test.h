@@ -9,14 +9,16 @@
 #include "marey/reconstruct/keypoints/person_path.h"
 #include "marey/simulate/room/room_keypoints.h"
 
-namespace marey::reconstruct::keypoints {
+namespace marey::pipeline {
+
+namespace rk = reconstruct::keypoints;
 
 struct SeenRoom {
   simulate::room::RoomScene scene;
   const KeypointSet& set = simulate::room::room_keypoint_set();
   std::vector<std::optional<Camera>> cameras;
   std::vector<KeypointSequence> seen;  // by camera
-  std::map<int, PersonTrack> tracks;
+  std::map<int, rk::PersonTrack> tracks;
   std::int64_t views_seen = 0, views_placed = 0;
 
   SeenRoom(const simulate::room::RoomOptions& options, const simulate::room::KeypointErrors& errors) : scene(options) {
@@ -30,16 +32,16 @@ struct SeenRoom {
 
   /// `camera_of` says whose calibration each camera is given.
   void follow(double noise = 1.4, const std::vector<std::size_t>& camera_of = {}) {
-    PeopleInViews people(set, static_cast<int>(cameras.size()));
+    rk::PeopleInViews people(set, static_cast<int>(cameras.size()));
     for (std::size_t t = 0; t < static_cast<std::size_t>(scene.options().frames); ++t) {
-      std::vector<PersonView> views;
+      std::vector<rk::PersonView> views;
       for (std::size_t c = 0; c < cameras.size(); ++c) {
         for (std::size_t i = 0; i < seen[c].frames[t].size(); ++i)
-          views.push_back(view_of(*cameras[camera_of.empty() ? c : camera_of[c]], static_cast<int>(c), static_cast<int>(i),
-                                  seen[c].frames[t][i], noise));
+          views.push_back(rk::view_of(*cameras[camera_of.empty() ? c : camera_of[c]], static_cast<int>(c), static_cast<int>(i),
+                                      seen[c].frames[t][i], noise));
       }
-      for (const PlacedPerson& person : people.step(t == 0 ? 0 : step_s(), views)) {
-        PersonTrack& track = tracks[person.id];
+      for (const rk::PlacedPerson& person : people.step(t == 0 ? 0 : step_s(), views)) {
+        rk::PersonTrack& track = tracks[person.id];
         if (track.instants.empty()) track = {.id = person.id, .first = t, .instants = {}};
         track.instants.resize(t - track.first + 1);
         track.instants.back() = person;
@@ -49,13 +51,13 @@ struct SeenRoom {
     views_placed = people.views_placed();
   }
 
-  PersonPath path(PersonTrack& track, double noise = 1.1) const {
-    PersonPathOptions how;
+  rk::PersonPath path(rk::PersonTrack& track, double noise = 1.1) const {
+    rk::PersonPathOptions how;
     how.noise = noise;
-    const FindKeypoints find = [this](std::size_t instant, int camera, int index) {
+    const rk::FindKeypoints find = [this](std::size_t instant, int camera, int index) {
       return &seen[static_cast<std::size_t>(camera)].frames[instant][static_cast<std::size_t>(index)];
     };
-    return path_of(track, set, cameras, find, step_s(), how);
+    return rk::path_of(track, set, cameras, find, step_s(), how);
   }
 
   std::vector<std::vector<Vector<3>>> truth(std::size_t instant) const {
@@ -63,7 +65,7 @@ struct SeenRoom {
   }
 
   /// Who a placed person is: the actor whose points are nearest.
-  int actor_of(const PlacedPerson& person, std::size_t instant) const {
+  int actor_of(const rk::PlacedPerson& person, std::size_t instant) const {
     const auto people = truth(instant);
     int nearest = -1;
     double least = 0;
@@ -80,4 +82,4 @@ struct SeenRoom {
   }
 };
 
-}  // namespace marey::reconstruct::keypoints
+}  // namespace marey::pipeline
