@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -177,66 +178,74 @@ class OffsetSearch {
     std::vector<double> disagreement;  // squared deviation, by how far the pairs' vertices lie from what all together have
   };
 
+  /// What a pair says of the difference of its offsets: how sharply, and where its misfit is least. Steps.
+  struct Parabola {
+    Eigen::Index a = 0, b = 0;
+    double curvature = 0, vertex = 0;
+  };
+
+  /// Nothing where the misfit is flat.
+  std::optional<Parabola> parabola_of(const PairCost& pair, double middle, int without) const {
+    const int half = std::max(2, static_cast<int>(std::lround(options_.vertex_s / step_s_)));
+    double s0 = 0, s2 = 0, s4 = 0, y0 = 0, y1 = 0, y2 = 0;
+    for (int d = -half; d <= half; ++d) {
+      const double y = at(pair, middle + d, without), x = d;
+      s0 += 1;
+      s2 += x * x;
+      s4 += x * x * x * x;
+      y0 += y;
+      y1 += y * x;
+      y2 += y * x * x;
+    }
+    const double curvature = (s0 * y2 - s2 * y0) / (s0 * s4 - s2 * s2), slope = y1 / s2;
+    if (!(curvature * half * half > kFlat)) return std::nullopt;
+    const double vertex = std::clamp(-slope / (2 * curvature), -1.0 * half, 1.0 * half);
+    return Parabola{static_cast<Eigen::Index>(pair.a), static_cast<Eigen::Index>(pair.b), curvature, middle + vertex};
+  }
+
   /// Offsets in steps, by the parabolas of all pairs; infinite where no pair says anything of a camera.
   Solved offsets_without(int without) const {
     const std::vector<double> start = whole_steps(without);
-    const int half = std::max(2, static_cast<int>(std::lround(options_.vertex_s / step_s_)));
+    std::vector<Parabola> parabolas;
+    for (const PairCost& pair : pairs_) {
+      if (const auto of = parabola_of(pair, start[pair.b] - start[pair.a], without)) parabolas.push_back(*of);
+    }
+    return solved(parabolas);
+  }
+
+  Solved solved(const std::vector<Parabola>& parabolas) const {
+    constexpr double kFixed = 1e9;
     const auto count = static_cast<Eigen::Index>(cameras_.size());
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(count);
-    struct Parabola {
-      Eigen::Index a, b;
-      double curvature, vertex;
-    };
-    std::vector<Parabola> parabolas;
-    for (const PairCost& pair : pairs_) {
-      const double middle = start[pair.b] - start[pair.a];
-      double s0 = 0, s2 = 0, s4 = 0, y0 = 0, y1 = 0, y2 = 0;
-      for (int d = -half; d <= half; ++d) {
-        const double y = at(pair, middle + d, without), x = d;
-        s0 += 1;
-        s2 += x * x;
-        s4 += x * x * x * x;
-        y0 += y;
-        y1 += y * x;
-        y2 += y * x * x;
-      }
-      const double curvature = (s0 * y2 - s2 * y0) / (s0 * s4 - s2 * s2), slope = y1 / s2;
-      if (!(curvature * half * half > kFlat)) continue;
-      const double vertex = std::clamp(-slope / (2 * curvature), -1.0 * half, 1.0 * half);
-      const auto a = static_cast<Eigen::Index>(pair.a), b = static_cast<Eigen::Index>(pair.b);
-      parabolas.push_back({a, b, curvature, middle + vertex});
-      A(a, a) += curvature;
-      A(b, b) += curvature;
-      A(a, b) -= curvature;
-      A(b, a) -= curvature;
-      g(a) -= curvature * (middle + vertex);
-      g(b) += curvature * (middle + vertex);
+    for (const Parabola& of : parabolas) {
+      A(of.a, of.a) += of.curvature;
+      A(of.b, of.b) += of.curvature;
+      A(of.a, of.b) -= of.curvature;
+      A(of.b, of.a) -= of.curvature;
+      g(of.a) -= of.curvature * of.vertex;
+      g(of.b) += of.curvature * of.vertex;
     }
-    constexpr double kFixed = 1e9;
-    std::vector<double> offsets(cameras_.size(), 0);
+    std::vector<bool> silent(cameras_.size(), false);
     for (Eigen::Index c = 0; c < count; ++c) {
       const auto index = static_cast<std::size_t>(c);
-      if (cameras_[index].camera == nullptr || fixed_[index]) {
-        A(c, c) += kFixed;
-      } else if (A(c, c) == 0) {
-        A(c, c) = kFixed;
-        offsets[index] = std::numeric_limits<double>::infinity();
-      }
+      const bool held = cameras_[index].camera == nullptr || fixed_[index];
+      silent[index] = !held && A(c, c) == 0;
+      if (held || silent[index]) A(c, c) += kFixed;
     }
     const Eigen::MatrixXd inverse = A.inverse();
-    const Eigen::VectorXd solved = inverse * g;
+    const Eigen::VectorXd offsets = inverse * g;
     double square = 0;
-    for (const Parabola& of : parabolas) square += of.curvature * std::pow(solved(of.b) - solved(of.a) - of.vertex, 2);
+    for (const Parabola& of : parabolas) square += of.curvature * std::pow(offsets(of.b) - offsets(of.a) - of.vertex, 2);
     const auto unknown = std::count(fixed_.begin(), fixed_.end(), false);
     const double variance = square / static_cast<double>(std::max<std::ptrdiff_t>(1, std::ssize(parabolas) - unknown));
-    std::vector<double> disagreement(cameras_.size(), 0);
+    Solved result{std::vector<double>(cameras_.size()), std::vector<double>(cameras_.size())};
     for (Eigen::Index c = 0; c < count; ++c) {
       const auto index = static_cast<std::size_t>(c);
-      if (std::isfinite(offsets[index])) offsets[index] = solved(c);
-      disagreement[index] = variance * inverse(c, c);
+      result.offsets[index] = silent[index] ? std::numeric_limits<double>::infinity() : offsets(c);
+      result.disagreement[index] = variance * inverse(c, c);
     }
-    return {offsets, disagreement};
+    return result;
   }
 
   std::span<const CameraFrames> cameras_;
