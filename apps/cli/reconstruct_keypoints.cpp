@@ -34,6 +34,7 @@ Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string
             {"people", camera.people},
             {"placed", camera.placed},
             {"residual_px", camera.residual_px},
+            {"noise", camera.noise},
             {"swapped_limbs", camera.swapped}};
     said["offset_s"] = camera.offset_s ? Json(*camera.offset_s) : Json();
     said["offset_sigma_s"] = camera.offset_sigma_s ? Json(*camera.offset_sigma_s) : Json();

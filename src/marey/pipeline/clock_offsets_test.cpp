@@ -9,7 +9,7 @@
 namespace marey::pipeline {
 namespace {
 
-std::vector<rk::CameraFrames> frames_of(const SeenRoom& room) {
+std::vector<rk::CameraFrames> clock_frames_of(const SeenRoom& room) {
   std::vector<rk::CameraFrames> frames(room.cameras.size());
   for (std::size_t c = 0; c < frames.size(); ++c)
     frames[c] = {.camera = &*room.cameras[c], .people = &room.seen[c].frames, .rate_hz = room.scene.options().rate_hz};
@@ -30,7 +30,7 @@ TEST(ClockOffsets, AreFoundByMotionAndSayHowSureTheyAre) {
     options.offset_s = 0.2;
     options.seed = seed;
     const SeenRoom room(options, {});
-    const auto found = rk::find_clock_offsets(frames_of(room));
+    const auto found = rk::find_clock_offsets(clock_frames_of(room));
     EXPECT_FALSE(found[0]) << "the first one is what the others are against";
     for (std::size_t c = 1; c < 4; ++c) {
       ASSERT_TRUE(found[c]);
@@ -52,7 +52,7 @@ TEST(ClockOffsets, AreNotSaidWhereNobodyMoves) {
   options.picture = {1080, 1920};
   options.zoom = 1.3;
   const SeenRoom room(options, {});
-  for (const auto& offset : rk::find_clock_offsets(frames_of(room))) EXPECT_FALSE(offset);
+  for (const auto& offset : rk::find_clock_offsets(clock_frames_of(room))) EXPECT_FALSE(offset);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ class KeypointJob {
   KeypointSet set_;
   std::unique_ptr<KeypointFrames> frames_;
   std::vector<std::vector<double>> residuals_;  // by camera, px
-  std::vector<double> ratios_;                  // of all of them to the deviations that the keypoints state
+  std::vector<std::vector<double>> ratios_;     // of each of them to the deviation that the keypoint states
 };
 
 KeypointJob::Followed KeypointJob::follow(double noise, std::size_t most) const {
@@ -216,7 +216,7 @@ void KeypointJob::count(const rk::PersonTrack& track, const rk::PersonPath* path
         const auto pixel = cameras_[c]->project(*place);
         if (!pixel) continue;
         residuals_[c].push_back((*pixel - seen.points[i]->position).norm());
-        ratios_.push_back(residuals_[c].back() / std::sqrt(std::sqrt(seen.points[i]->covariance.determinant())));
+        ratios_[c].push_back(residuals_[c].back() / std::sqrt(std::sqrt(seen.points[i]->covariance.determinant())));
       }
     }
   }
@@ -280,18 +280,20 @@ KeypointsSummary::Person person_of(const rk::PersonTrack& track, std::string lab
 }
 
 void KeypointJob::report(const Followed& followed) {
-  summary_.noise = median_value(ratios_) / kMedianLength;
   summary_.set = set_.name;
   summary_.points = static_cast<int>(set_.points.size());
   summary_.frames = static_cast<std::int64_t>(frames_->size());
   summary_.rate_hz = frames_->rate_hz();
   summary_.seconds = static_cast<double>(frames_->size() - 1) / frames_->rate_hz();
-  std::vector<double> all, times = followed.times_ms;
+  std::vector<double> all, ratios, times = followed.times_ms;
   for (std::size_t c = 0; c < residuals_.size(); ++c) {
     all.insert(all.end(), residuals_[c].begin(), residuals_[c].end());
+    ratios.insert(ratios.end(), ratios_[c].begin(), ratios_[c].end());
     summary_.cameras[c].residual_px = median_value(residuals_[c]);
+    summary_.cameras[c].noise = median_value(ratios_[c]) / kMedianLength;
   }
   summary_.residual_px = median_value(all);
+  summary_.noise = median_value(ratios) / kMedianLength;
   summary_.place_ms = median_value(times);
   summary_.views = followed.seen;
   summary_.placed = followed.placed;
@@ -311,7 +313,7 @@ void KeypointJob::warn_of_misfit() {
   bool misfit =
       static_cast<double>(summary_.placed) < kMostPlaced * static_cast<double>(summary_.views) || summary_.noise > kWorstNoise;
   for (const KeypointsSummary::Camera& camera : summary_.cameras) {
-    if (camera.residual_px <= kWorstCamera * summary_.residual_px) continue;
+    if (camera.noise <= kWorstCamera * summary_.noise) continue;
     misfit = true;
     summary_.warnings.push_back(fmt::format(
         "camera \"{}\": keypoints lie {:.0f} px (median) from where space has them, and {:.0f} px in all cameras: was it "
@@ -330,6 +332,7 @@ Recording KeypointJob::run() {
     throw Error(
         "no two cameras have frames at the same time: the offsets in the rig are wrong, or the files are of other recordings");
   residuals_.resize(cameras_.size());
+  ratios_.resize(cameras_.size());
   const double noise = learn_noise();
   Followed followed = follow(kGateSlack * noise, frames_->size());
   std::vector<rk::PersonTrack> people = people_kept(std::move(followed.tracks));

@@ -34,6 +34,7 @@ struct KeypointsSummary {
     std::string name;
     std::int64_t frames = 0, people = 0, placed = 0;  ///< people in its images, and those of them that were placed
     double residual_px = 0;                           ///< median distance between its keypoints and those in space
+    double noise = 0;                                 ///< the same, times what keypoints of their confidence have
     std::int64_t swapped = 0;                         ///< limbs that were read with left and right exchanged
     std::optional<double> offset_s, offset_sigma_s;   ///< where it was found
   };

@@ -12,7 +12,7 @@ constexpr double kMostSquare = 25;
 constexpr double kWide = 1.5;  // times the noise, of the first paths
 constexpr double kLeastNoise = 0.1;
 constexpr double kMedianSquare = 1.386;  // of two standard normal variables' squares
-constexpr double kBound = 3;             // standard deviations at which an error has a quarter of its weight
+constexpr double kLastingBound = 3;      // standard deviations at which an error has a quarter of its weight
 constexpr double kFewErrors = 5;         // instants by which a mean error is drawn to none
 
 class PathFinder {
@@ -108,7 +108,8 @@ class PathFinder {
           if (!(depth > 0.1)) continue;
           scales[t] = line->scale() / depth;
           const Vector<2> error = line->error(path.points[i][t].position);
-          const double share = kBound * kBound / (kBound * kBound + error.squaredNorm() / (line->sigma * line->sigma));
+          const double share =
+              kLastingBound * kLastingBound / (kLastingBound * kLastingBound + error.squaredNorm() / (line->sigma * line->sigma));
           sums[t + 1] += share * share * Vector<3>(error.x() / scales[t], error.y() / scales[t], 1);
         }
         for (std::size_t t = 0; t < count; ++t) {
