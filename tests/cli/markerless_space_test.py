@@ -1,6 +1,6 @@
 """Body keypoints of several cameras in space, as docs/markerless_space.md tells it, and input that cannot be used.
 
-Usage: keypoints_test.py MAREY [unittest options]. Nothing else is needed; MAREY_DATA adds real cameras.
+Usage: markerless_space_test.py MAREY [unittest options]. Nothing else is needed; MAREY_DATA adds real cameras.
 """
 
 import csv
