@@ -43,9 +43,10 @@ struct MovieWriter::Parts {
   std::string path;
   CodecPtr codec;
   std::optional<Mp4File> file;
-  PacketPtr packet{av_packet_alloc()};
+  PacketPtr packet{allocated(av_packet_alloc())};
   std::int64_t last_tick = -1;
   std::int64_t ticks_a_frame = 0;
+  std::int64_t frames = 0, packets = 0;
 
   void open_codec(cv::Size size, double rate, Quality quality);
   void encode(const AVFrame* frame);
@@ -58,7 +59,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
   if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
   if (encoder == nullptr) throw Error("{}: no H.264 encoder is installed; install FFmpeg's libraries built with x264", path);
-  codec.reset(avcodec_alloc_context3(encoder));
+  codec.reset(allocated(avcodec_alloc_context3(encoder)));
   codec->log_level_offset = kSilent;
   codec->width = (size.width + 1) & ~1;  // 4:2:0 wants even sides
   codec->height = (size.height + 1) & ~1;
@@ -87,6 +88,7 @@ void MovieWriter::Parts::encode(const AVFrame* frame) {
     check(code);
     packet->duration = ticks_a_frame;
     file->write(*packet);
+    ++packets;
     av_packet_unref(packet.get());
   }
 }
@@ -106,7 +108,7 @@ MovieWriter::~MovieWriter() = default;
 
 void MovieWriter::write(const Picture& picture, Timestamp time) {
   Parts& p = *parts_;
-  const FramePtr frame(av_frame_alloc());
+  const FramePtr frame(allocated(av_frame_alloc()));
   frame->format = p.codec->pix_fmt;
   frame->width = p.codec->width;
   frame->height = p.codec->height;
@@ -122,11 +124,15 @@ void MovieWriter::write(const Picture& picture, Timestamp time) {
     frame->linesize[i] = static_cast<int>(planes[i]->step);
   }
   p.encode(frame.get());
+  ++p.frames;
 }
 
 void MovieWriter::finish() {
   Parts& p = *parts_;
   p.encode(nullptr);
+  // x264 keeps frames for itself without a word where it found no memory for its threads.
+  if (p.packets != p.frames)
+    throw Error("{}: the encoder returned {} of {} frames; memory is short here", p.path, p.packets, p.frames);
   p.file->finish();
 }
 

@@ -53,7 +53,7 @@ std::int64_t Mp4File::IndexSize::bound() const {
 }
 
 Mp4File::Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep)
-    : path_(path), keep_(keep), file_(path), parameters_(avcodec_parameters_alloc()) {
+    : path_(path), keep_(keep), file_(path), parameters_(allocated(avcodec_parameters_alloc())) {
   check(avcodec_parameters_from_context(parameters_.get(), &codec));
   ticks_a_second_ = codec.time_base.den;
   rate_num_ = codec.framerate.num, rate_den_ = codec.framerate.den;
@@ -76,7 +76,7 @@ Mp4File::Output Mp4File::open(const std::string& path, const AVCodecParameters& 
   AVFormatContext* opened = nullptr;
   check(avformat_alloc_output_context2(&opened, nullptr, "mp4", ("file:" + path).c_str()));
   Output output(opened);
-  AVStream* const stream = avformat_new_stream(opened, nullptr);
+  AVStream* const stream = allocated(avformat_new_stream(opened, nullptr));
   check(avcodec_parameters_copy(stream->codecpar, &parameters));
   stream->codecpar->codec_tag = 0;
   stream->time_base = {1, ticks_a_second_};
@@ -127,7 +127,7 @@ void Mp4File::rewrite(const std::string& to) const {
 }
 
 Mp4File::Input Mp4File::read_fragments() const {
-  AVFormatContext* opened = avformat_alloc_context();
+  AVFormatContext* opened = allocated(avformat_alloc_context());
   opened->flags |= AVFMT_FLAG_NOPARSE | AVFMT_FLAG_NOFILLIN;  // the packets as they were written
   check(avformat_open_input(&opened, ("file:" + fragments_path_).c_str(), av_find_input_format("mp4"), nullptr));
   Input input(opened);
@@ -136,7 +136,7 @@ Mp4File::Input Mp4File::read_fragments() const {
 }
 
 void Mp4File::copy_packets(AVFormatContext& input, AVFormatContext& output) const {
-  const ReadPacket packet(av_packet_alloc());
+  const ReadPacket packet(allocated(av_packet_alloc()));
   for (std::int64_t i = 0; i < index_.packets; ++i) {
     check(av_read_frame(&input, packet.get()));
     packet->pos = -1;

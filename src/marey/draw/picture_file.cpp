@@ -54,7 +54,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   const std::vector<cv::Mat> planes = planes_of(picture, jpeg);
   const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
   if (encoder == nullptr) throw Error("{}: FFmpeg was built without an encoder for {}", path, jpeg ? "JPEG" : "PNG");
-  const CodecPtr codec(avcodec_alloc_context3(encoder));
+  const CodecPtr codec(allocated(avcodec_alloc_context3(encoder)));
   codec->log_level_offset = AV_LOG_TRACE;  // the host program's log gets nothing of ours
   codec->width = picture.size().width;
   codec->height = picture.size().height;
@@ -65,8 +65,8 @@ void write_picture(const std::string& path, const Picture& picture) {
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = FF_QP2LAMBDA * kJpegQuality;
   }
-  const FramePtr frame(av_frame_alloc());
-  const PacketPtr packet(av_packet_alloc());
+  const FramePtr frame(allocated(av_frame_alloc()));
+  const PacketPtr packet(allocated(av_packet_alloc()));
   frame->format = codec->pix_fmt;
   frame->width = codec->width;
   frame->height = codec->height;

@@ -86,14 +86,15 @@ class Pictures {
  public:
   explicit Pictures(const Clock& clock) : clock_(clock.again()) {}
 
-  /// Of the moment of this index, which grows from call to call; false where there are none any more.
-  bool attach_to(Instant& instant) {
+  /// Of the instant of this index, which grows from call to call. Throws Error if the images end before it.
+  void attach_to(Instant& instant) {
     while (!now_ || now_->index < instant.index) {
       now_ = clock_.next();
-      if (!now_) return false;
+      if (!now_)
+        throw Error("{}: has no frame {} when it is read again to be drawn; memory is short, or the file has changed",
+                    clock_.feeds().front().info().name, instant.index);
     }
     if (now_->index == instant.index) attach(instant.frames, *now_);
-    return true;
   }
 
  private:
@@ -112,7 +113,7 @@ void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& coun
   if (sinks.want_pictures()) pictures.emplace(clock);
   std::int64_t done = 0;
   while (auto instant = rest.next()) {
-    if (pictures && instant->frames.empty() && !pictures->attach_to(*instant)) pictures.reset();
+    if (pictures && instant->frames.empty()) pictures->attach_to(*instant);
     counter.add(*instant);
     if (!sinks.write(std::move(*instant))) break;
     if (!sinks.want_pictures() || hooks.report({"drawing", ++done, summary.frames}) == Continue::yes) continue;

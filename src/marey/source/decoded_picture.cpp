@@ -2,6 +2,8 @@
 
 #include <tuple>
 
+#include "marey/core/c_deleter.h"
+
 extern "C" {
 #include <libavutil/frame.h>
 #include <libavutil/pixdesc.h>
@@ -18,7 +20,7 @@ using ScaledFrame = std::unique_ptr<AVFrame, FreeFrame>;
 
 /// Keeps the planes alive for as long as the Picture lives.
 std::shared_ptr<const void> share(const AVFrame& decoded) {
-  return std::shared_ptr<AVFrame>(av_frame_clone(&decoded), FreeFrame());
+  return std::shared_ptr<AVFrame>(allocated(av_frame_clone(&decoded)), FreeFrame());
 }
 
 cv::Mat plane(const AVFrame& decoded, int number, int width, int height, int type = CV_8UC1) {
@@ -100,7 +102,7 @@ Picture PictureMaker::converted(const AVFrame& decoded, cv::Size size, bool full
   const bool full = full_range && !grey;
   SwsContext* scaler = scaler_->get({decoded.width, decoded.height, decoded.format, size.width, size.height, target, full});
   if (scaler == nullptr) return {};
-  const ScaledFrame result(av_frame_alloc());
+  const ScaledFrame result(allocated(av_frame_alloc()));
   result->format = target;
   result->width = size.width;
   result->height = size.height;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <new>
 #include <vector>
 
 #include <tbb/global_control.h>
@@ -37,6 +38,11 @@ std::string reason(int code) {
   return text;
 }
 
+/// A video that memory is missing for is not a damaged one.
+void check_memory(int code) {
+  if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
+}
+
 /// Degrees clockwise that a camera held askew asks its pictures to be turned by: 0, 90, 180 or 270.
 int turn_of(const AVStream& stream) {
   std::size_t size = 0;
@@ -52,8 +58,8 @@ int turn_of(const AVStream& stream) {
 class PipeBytes {
  public:
   explicit PipeBytes(const std::string& path) : file_(path) {
-    auto* const buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
-    io_.reset(avio_alloc_context(buffer, kBuffer, 0, this, read, nullptr, nullptr));
+    auto* const buffer = static_cast<unsigned char*>(allocated(av_malloc(kBuffer)));
+    io_.reset(allocated(avio_alloc_context(buffer, kBuffer, 0, this, read, nullptr, nullptr)));
     io_->seekable = 0;
   }
 
@@ -99,7 +105,7 @@ std::unique_ptr<PipeBytes> pipe_of(const std::string& path) {
 FormatPtr open_format(const std::string& path, PipeBytes* pipe) {
   AVFormatContext* opened = nullptr;
   if (pipe != nullptr) {
-    opened = avformat_alloc_context();
+    opened = allocated(avformat_alloc_context());
     opened->pb = pipe->io();
   }
   // "file:" keeps FFmpeg from reading a protocol out of a name that holds a colon.
@@ -137,8 +143,8 @@ struct Decoder::Parts {
   FormatPtr format;
   CodecPtr codec;
   AVStream* stream = nullptr;
-  PacketPtr packet{av_packet_alloc()};
-  DecodedFrame frame{av_frame_alloc()};
+  PacketPtr packet{allocated(av_packet_alloc())};
+  DecodedFrame frame{allocated(av_frame_alloc())};
   PictureMaker maker;
   cv::Size coded_size;
   int turn = 0;
@@ -165,7 +171,7 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
     throw Error("{}: holds no video that can be decoded; give a video file or a folder of pictures", path);
   p.stream = p.format->streams[stream];
   check_size({p.stream->codecpar->width, p.stream->codecpar->height}, path);
-  p.codec.reset(avcodec_alloc_context3(codec));
+  p.codec.reset(allocated(avcodec_alloc_context3(codec)));
   avcodec_parameters_to_context(p.codec.get(), p.stream->codecpar);
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -238,6 +244,7 @@ bool Decoder::Parts::receive() {
     const int code = avcodec_receive_frame(codec.get(), frame.get());
     if (code == 0) return true;
     if (code == AVERROR_EOF) return false;
+    check_memory(code);
     if (code != AVERROR(EAGAIN)) ++trouble.undecodable;
     if (drained && ++errors_while_draining > kMostErrorsWhileDraining) return false;
     if (!drained) feed();
@@ -249,6 +256,7 @@ void Decoder::Parts::feed() {
   for (;;) {
     av_packet_unref(packet.get());
     const int code = av_read_frame(format.get(), packet.get());
+    check_memory(code);
     if (code < 0) {
       trouble.stopped = pipe != nullptr && pipe->stopped();
       if (code != AVERROR_EOF && !trouble.stopped) trouble.broken = reason(code);
@@ -257,7 +265,9 @@ void Decoder::Parts::feed() {
       return;
     }
     if (packet->stream_index != stream->index || packet->size == 0) continue;
-    if (avcodec_send_packet(codec.get(), packet.get()) == 0) return;
+    const int sent = avcodec_send_packet(codec.get(), packet.get());
+    if (sent == 0) return;
+    check_memory(sent);
     ++trouble.undecodable;
   }
 }

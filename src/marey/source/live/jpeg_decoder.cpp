@@ -14,14 +14,14 @@ namespace marey::source::live {
 
 struct JpegDecoder::Parts {
   std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcodec_free_context>> codec;
-  std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>> packet{av_packet_alloc()};
-  std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>> frame{av_frame_alloc()};
+  std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>> packet{allocated(av_packet_alloc())};
+  std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>> frame{allocated(av_frame_alloc())};
   PictureMaker maker;
 };
 
 JpegDecoder::JpegDecoder() : parts_(std::make_unique<Parts>()) {
   const AVCodec* codec = avcodec_find_decoder(AV_CODEC_ID_MJPEG);
-  parts_->codec.reset(avcodec_alloc_context3(codec));
+  parts_->codec.reset(allocated(avcodec_alloc_context3(codec)));
   parts_->codec->thread_count = 1;  // frame threads would add a frame of delay each
   parts_->codec->max_pixels = static_cast<std::int64_t>(Limits::in_force().picture_px);
   parts_->codec->log_level_offset = AV_LOG_TRACE;

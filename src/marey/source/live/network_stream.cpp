@@ -73,7 +73,7 @@ class NetworkStream final : public Connection {
 
  private:
   void open() {
-    AVFormatContext* opened = avformat_alloc_context();
+    AVFormatContext* opened = allocated(avformat_alloc_context());
     opened->interrupt_callback = {Patience::is_over, &patience_};
     opened->flags |= AVFMT_FLAG_NOBUFFER | AVFMT_FLAG_DISCARD_CORRUPT;
     AVDictionary* settings = nullptr;
@@ -101,7 +101,7 @@ class NetworkStream final : public Connection {
     const int stream = av_find_best_stream(format_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
     if (stream < 0 || codec == nullptr) throw Error("{}: sends no video that can be decoded", shown_);
     stream_ = format_->streams[stream];
-    codec_.reset(avcodec_alloc_context3(codec));
+    codec_.reset(allocated(avcodec_alloc_context3(codec)));
     avcodec_parameters_to_context(codec_.get(), stream_->codecpar);
     codec_->thread_count = 1;
     codec_->flags |= AV_CODEC_FLAG_LOW_DELAY;
@@ -158,8 +158,8 @@ class NetworkStream final : public Connection {
   NetworkFormat format_;
   NetworkCodec codec_;
   AVStream* stream_ = nullptr;
-  NetworkPacket packet_{av_packet_alloc()};
-  NetworkFrame frame_{av_frame_alloc()};
+  NetworkPacket packet_{allocated(av_packet_alloc())};
+  NetworkFrame frame_{allocated(av_frame_alloc())};
   PictureMaker maker_;
   SourceInfo info_;
   bool wait_for_key_ = true;
