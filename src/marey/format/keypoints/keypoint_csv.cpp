@@ -134,8 +134,10 @@ KeypointSequence read_keypoint_csv(std::string_view text, const std::string& pat
   const CsvLines lines(text);
   const std::string_view head = text.substr(0, text.find('\n'));
   if (head.starts_with("scorer")) return read_deeplabcut(lines, path, set);
+  if (head.starts_with("frame,") && head.find(",point,x,y") != std::string_view::npos) return read_keypoint_rows(text, path, set);
   if (head.find("frame_idx") != std::string_view::npos) return read_sleap(lines, path, set);
-  throw Error("{}: is no table of keypoints: DeepLabCut's begins with \"scorer\", SLEAP's names \"frame_idx\"", path);
+  throw Error("{}: is no table of keypoints: DeepLabCut's begins with \"scorer\", SLEAP's names \"frame_idx\", Marey's \"point\"",
+              path);
 }
 
 }  // namespace marey::format::keypoints

@@ -47,13 +47,15 @@ bool may_hold_keypoints(const std::string& path) {
     }
     return false;
   }
-  return ending_of(path) == ".json" || ending_of(path) == ".csv";
+  const std::string ending = ending_of(path);
+  return ending == ".json" || ending == ".csv" || ending == ".jsonl";
 }
 
 KeypointSequence read_keypoints(const std::string& path, std::string_view set) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return read_openpose_folder(path, set);
   const std::string text = read_file(path);
+  if (ending_of(path) == ".jsonl") return read_keypoint_lines(text, path, set);
   return ending_of(path) == ".csv" ? read_keypoint_csv(text, path, set) : read_keypoint_json(text, path, set);
 }
 

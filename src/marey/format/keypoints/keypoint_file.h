@@ -1,5 +1,6 @@
 // Body keypoints in images, as other programs write them: OpenPose's folder of JSON files (BODY_25, BODY_25B, COCO), COCO keypoints
-// JSON (results, or annotations with their categories), AlphaPose's JSON, MMPose's JSON, DeepLabCut's and SLEAP's CSV.
+// JSON (results, or annotations with their categories), AlphaPose's JSON, MMPose's JSON, DeepLabCut's and SLEAP's CSV; and as
+// `marey track --targets keypoints` does: JSON lines and CSV.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace marey::format::keypoints {
 
-/// Whether a path may hold keypoints: a folder with a .json file in it, or a .json or .csv file.
+/// Whether a path may hold keypoints: a folder with a .json file in it, or a .json, .jsonl or .csv file.
 bool may_hold_keypoints(const std::string& path);
 
 /// One camera's keypoints, known by their content. `set` names the keypoint set where the file does not; empty: by how many points

@@ -28,7 +28,8 @@ class KeypointFile : public ::testing::Test {
       read_keypoints(path, set);
     } catch (const Error& error) {
       EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);
-      EXPECT_NE(std::string_view(error.what()).find(path.substr(0, path.find(".json"))), std::string_view::npos) << error.what();
+      EXPECT_NE(std::string_view(error.what()).find(path.substr(0, path.find_last_of('.'))), std::string_view::npos)
+          << error.what();
       return error.what();
     }
     return "";
@@ -119,6 +120,29 @@ TEST_F(KeypointFile, ReadsTablesOfDeepLabCutAndSleap) {
   ASSERT_EQ(sleap.frames.size(), 5U);
   EXPECT_EQ(sleap.frames[4][0].presence, 0.5);
   EXPECT_FALSE(sleap.frames[4][0].points[1]);
+}
+
+TEST_F(KeypointFile, ReadsWhatMareyTracks) {
+  const std::string line =
+      R"({"frame":2,"time":0.04,"id":1,"keypoints":{"presence":0.9,"points":{"nose":[10,20,3,0.5,0.8],"left_foot_index":[11,90,4,1,1]}}})";
+  const std::string csv =
+      "frame,time,id,point,x,y,sd,visibility,presence\n2,0.04,1,nose,10,20,3,0.5,0.8\n2,0.04,1,left_foot_index,11,90,4,1,1\n";
+  for (const std::string& path : {write("t.jsonl", R"({"frame":0,"time":0,"id":1})"
+                                                   "\n" +
+                                                       line + "\n"),
+                                  write("t.csv", csv)}) {
+    const KeypointSequence read = read_keypoints(path);
+    EXPECT_EQ(read.set.name, "body_25") << "the smallest set with a nose and a big toe";
+    ASSERT_EQ(read.frames.size(), 3U);
+    ASSERT_EQ(read.frames[2].size(), 1U);
+    const auto& nose = read.frames[2][0].points[0];
+    ASSERT_TRUE(nose);
+    EXPECT_NEAR(nose->visibility, 0.4, 1e-9);
+    EXPECT_GT(nose->covariance(0, 0), 9) << "the network's own spread, and what networks are off besides";
+    EXPECT_TRUE(read.frames[2][0].points[static_cast<std::size_t>(*point_named(read.set, "left_big_toe"))]);
+  }
+  EXPECT_NEAR(*read_keypoints(folder_ / "t.jsonl").rate_hz, 50, 1e-9);
+  EXPECT_NE(error_of(write("cut.jsonl", line.substr(0, 70))).find("breaks off"), std::string::npos);
 }
 
 TEST_F(KeypointFile, RefusesWhatIsMalformedInOneSentence) {

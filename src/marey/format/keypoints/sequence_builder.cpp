@@ -26,17 +26,15 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-void set_noise(Keypoints<2>& person) {
+/// The noise of a point of full confidence.
+double noise_of(const Keypoints<2>& person) {
   Vector<2> low = Vector<2>::Constant(kFarthestPixel), high = -low;
   for (const auto& point : person.points) {
     if (!point) continue;
     low = low.cwiseMin(point->position);
     high = high.cwiseMax(point->position);
   }
-  const double noise = std::max(kLeastNoise, kNoiseShare * (high - low).norm());
-  for (auto& point : person.points) {
-    if (point) point->covariance = noise * noise / std::max(kLeastConfidence, point->visibility) * Matrix<2>::Identity();
-  }
+  return std::max(kLeastNoise, kNoiseShare * (high - low).norm());
 }
 
 }  // namespace
@@ -57,9 +55,9 @@ std::int64_t frame_number_in(std::string_view name) {
   return length > 0 && result.ec == std::errc() ? number : -1;
 }
 
-void SequenceBuilder::add_frame(std::int64_t frame) {
+void SequenceBuilder::add_frame(std::int64_t frame, std::optional<double> time_s) {
   if (frame < 0) throw Error("{}: frame {} is negative; frames count from 0 or 1", sequence_.from, frame);
-  numbers_.add(frame);
+  numbers_.add(frame, time_s);
   last_frame_ = std::max(last_frame_, frame);
 }
 
@@ -83,7 +81,13 @@ void SequenceBuilder::add(std::int64_t frame, const std::vector<FilePoint>& poin
   }
   add_frame(frame);
   if (!any) return;
-  set_noise(person);
+  const double noise = noise_of(person);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!person.points[i]) continue;
+    const double usual = noise / std::sqrt(std::max(kLeastConfidence, person.points[i]->visibility));
+    const double sigma = points[i].sigma ? std::hypot(*points[i].sigma, noise) : usual;
+    person.points[i]->covariance = sigma * sigma * Matrix<2>::Identity();
+  }
   people_.push_back({frame, std::move(person)});
 }
 
@@ -146,6 +150,7 @@ void SequenceBuilder::choose_set(std::string_view set) {
 
 KeypointSequence SequenceBuilder::finish(std::string_view set) {
   numbers_.check(sequence_.from);
+  if (!sequence_.rate_hz) sequence_.rate_hz = numbers_.rate_hz();
   choose_set(set);
   sequence_.frames.resize(static_cast<std::size_t>(last_frame_ + 1));
   for (Person& person : people_) sequence_.frames[static_cast<std::size_t>(person.frame)].push_back(std::move(person.keypoints));

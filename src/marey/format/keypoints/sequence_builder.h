@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,7 @@ namespace marey::format::keypoints {
 /// A point as files have it: absent where its confidence is 0.
 struct FilePoint {
   double x = 0, y = 0, confidence = 0;
+  std::optional<double> sigma = {};  ///< px, of each coordinate, where the file says it
 };
 
 /// Gathers people as a file brings them, in any order of frames, and finds the keypoint set.
@@ -23,7 +25,7 @@ class SequenceBuilder {
 
   KeypointSequence& sequence() { return sequence_; }
   /// A frame that is there, with or without people. Throws Error for a negative number.
-  void add_frame(std::int64_t frame);
+  void add_frame(std::int64_t frame, std::optional<double> time_s = {});
   /// A person. `score` is in [0, 1]; `where` names the place for messages. Throws Error where points are as many as another person
   /// does not have, or are no places in an image.
   void add(std::int64_t frame, const std::vector<FilePoint>& points, double score, const std::string& where);
@@ -52,6 +54,8 @@ std::int64_t frame_number_in(std::string_view name);
 
 KeypointSequence read_openpose_folder(const std::string& path, std::string_view set);
 KeypointSequence read_keypoint_json(std::string_view text, const std::string& path, std::string_view set);
+KeypointSequence read_keypoint_lines(std::string_view text, const std::string& path, std::string_view set);
+KeypointSequence read_keypoint_rows(std::string_view text, const std::string& path, std::string_view set);
 KeypointSequence read_keypoint_csv(std::string_view text, const std::string& path, std::string_view set);
 
 }  // namespace marey::format::keypoints
