@@ -162,18 +162,19 @@ void PeopleInViews::extend(Start& start, std::span<const PersonView> views) cons
   }
 }
 
-/// Whether it lies where a person is already.
-bool PeopleInViews::is_known(const Start& start) const {
-  return std::any_of(people_.begin(), people_.end(), [&](const Person& person) {
+/// The person who is there already; nothing where nobody is.
+std::optional<std::size_t> PeopleInViews::known_at(const Start& start) const {
+  for (std::size_t p = 0; p < people_.size(); ++p) {
     double sum = 0;
     int count = 0;
     for (std::size_t i = 0; i < start.points.size(); ++i) {
-      if (!start.points[i] || !person.points[i]) continue;
-      sum += (start.points[i]->position - person.points[i]->position).norm();
+      if (!start.points[i] || !people_[p].points[i]) continue;
+      sum += (start.points[i]->position - people_[p].points[i]->position).norm();
       ++count;
     }
-    return count > 0 && sum < kSamePerson_m * count;
-  });
+    if (count > 0 && sum < kSamePerson_m * count) return p;
+  }
+  return std::nullopt;
 }
 
 void PeopleInViews::begin_people(std::span<const PersonView> views) {
@@ -202,8 +203,16 @@ void PeopleInViews::begin_people(std::span<const PersonView> views) {
       if (!is_free(start)) continue;
       extend(start, views);
     }
-    if (is_known(start)) continue;
+    const auto known = known_at(start);
+    if (known && given_[*known].size() >= 2) continue;
     for (const int v : start.views) taken_[static_cast<std::size_t>(v)] = 1;
+    if (known) {  // they moved farther than was expected
+      for (const int v : given_[*known]) taken_[static_cast<std::size_t>(v)] = 0;
+      people_[*known].points = std::move(start.points);
+      people_[*known].is_new = true;
+      given_[*known] = std::move(start.views);
+      continue;
+    }
     people_.push_back({.id = next_id_++, .unseen_s = 0, .points = std::move(start.points)});
     given_.push_back(std::move(start.views));
   }

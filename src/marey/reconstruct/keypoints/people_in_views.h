@@ -84,7 +84,7 @@ class PeopleInViews {
   std::optional<Start> start_of(const PersonView& a, const PersonView& b) const;
   void extend(Start& start, std::span<const PersonView> views) const;
   bool is_body(const std::vector<std::optional<Point>>& points) const;
-  bool is_known(const Start& start) const;
+  std::optional<std::size_t> known_at(const Start& start) const;
   std::optional<PlacedPerson> place(Person& person, std::span<const PersonView> views, const std::vector<int>& own, double seconds);
   void find_mirrored(const Person& person, std::span<const PersonView> views, const std::vector<int>& own,
                      std::vector<Mirrored>& mirrored) const;
