@@ -1,8 +1,10 @@
 #include "marey/pipeline/reconstruct.h"
 
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -13,6 +15,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
+#include "reconstruct_keypoints.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
 #include "set_option.h"
@@ -26,6 +29,8 @@ struct ReconstructCommand {
   RigInputs inputs;
   std::string out, labels, set, skeleton;
   pipeline::MarkersInSpaceOptions options;
+  bool of_keypoints = false;
+  pipeline::KeypointsInSpaceOptions keypoints;
   bool json = false;
   bool quiet = false;
 };
@@ -70,7 +75,25 @@ void print_points_summary(const pipeline::Summary& summary, const std::string& o
   fmt::print(stderr, "take: {}\n", out);
 }
 
+void run_keypoints(const ReconstructCommand& command) {
+  if (!command.inputs.observations.empty() || !command.labels.empty() || !command.set.empty() || !command.skeleton.empty())
+    throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
+  pipeline::KeypointsInSpaceOptions options = command.keypoints;
+  options.rate_hz = command.options.rate_hz;
+  run_with_progress(
+      command.quiet,
+      [&](const Hooks& hooks) { return pipeline::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks); },
+      [&](const pipeline::KeypointsSummary& summary, double) {
+        if (command.json) {
+          print(keypoints_json(summary, command.out));
+        } else if (!command.quiet) {
+          print_keypoints_summary(summary, command.out);
+        }
+      });
+}
+
 void run(const ReconstructCommand& command) {
+  if (command.of_keypoints) return run_keypoints(command);
   pipeline::MarkersInSpaceOptions options = command.options;
   if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   options.skeleton = skeleton_of(command.skeleton);
@@ -93,12 +116,17 @@ void run(const ReconstructCommand& command) {
 
 void add_reconstruct(Command& program) {
   auto options = std::make_shared<ReconstructCommand>();
-  Command command = program.subcommand("reconstruct", "Place and follow the markers that several calibrated cameras see");
+  Command command =
+      program.subcommand("reconstruct", "Place and follow the markers, or people's keypoints, that several calibrated cameras see");
   add_rig_inputs(command, options->inputs);
   pipeline::MarkersInSpaceOptions& how = options->options;
   command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")
       .required()
       .ends_in({".marey", ".c3d", ".trc", ".csv"});
+  constexpr std::array<std::pair<const char*, bool>, 2> kTargets{{{"markers", false}, {"keypoints", true}}};
+  command.choice("--targets", options->of_keypoints, kTargets,
+                 "what is placed: markers; or people's body keypoints, which CAMERA=FILE or CAMERA=FOLDER names (OpenPose, COCO, "
+                 "AlphaPose, MMPose, DeepLabCut, SLEAP)");
   command.input_file("--labels", options->labels,
                      "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");
   add_set_option(command, options->set);
@@ -112,6 +140,7 @@ void add_reconstruct(Command& program) {
   command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
   command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
   add_blob_options(command, how.markers);
+  add_keypoint_options(command, options->keypoints);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

@@ -62,6 +62,7 @@ simulate::room::RoomOptions room_of(const SimulateRoom& command) {
   const bool people = scene_of_people(room.motion);
   if (!people && (room.actors > 1 || room.skin_m > 0))
     throw WrongUsage("{}", "--actors and --skin are of people: give a --motion of theirs");
+  if (!people && command.files.keypoints) throw WrongUsage("{}", "--keypoints: of people; give a --motion of theirs");
   if (room.bump && room.bump->camera >= room.cameras)
     throw WrongUsage("--bump {}: there are {} cameras", command.bump, room.cameras);
   return room;
@@ -81,8 +82,9 @@ void run(const SimulateRoom& command) {
   if (command.quiet || command.json) return;
   fmt::print(stderr,
              "{} cameras, {} markers, {} frames at {} Hz\n{}: rig.toml (the truth), start.toml, observations.csv, blobs.csv, "
-             "truth.csv{}\n",
+             "truth.csv{}{}\n",
              scene.rig().cameras.size(), scene.labels().size(), scene.options().frames, scene.options().rate_hz, command.folder,
+             command.files.keypoints ? ", keypoints_CAMERA.json, keypoints_truth.csv" : "",
              command.files.videos ? ", and a video of each camera" : "");
 }
 
@@ -106,6 +108,7 @@ void add_scene(Command& room, SimulateRoom& options) {
   room.whole("--frames", scene.frames, "N", 1, 100'000'000, "length");
   room.number("--rate", scene.rate_hz, "Hz", closed(1, 10000), "frames a second");
   room.wholes("--size", options.size, "px", 64, 8192, "of the pictures: width and height");
+  room.number("--zoom", scene.zoom, "x", closed(0.1, 20), "times the focal length of a lens that sees 66° across");
   room.numbers("--volume", options.volume, "m", closed(0.1, 1000), "that the cameras stand round: along x, y and z");
   room.seed(scene.seed, "which of the endlessly many; the same one gives the same cameras for every motion");
 }
@@ -124,6 +127,10 @@ void add_troubles(Command& room, SimulateRoom& options) {
       .check(bump_of);
   room.flag("--no-occlusion", scene.occlusion, "limbs hide nothing", false);
   room.flag("--unnamed", options.files.unnamed, "the points without names too, as tracks that end at gaps, with ghosts among them");
+  room.flag("--keypoints", options.files.keypoints,
+            "people's body keypoints with a network's errors: keypoints_CAMERA.json (COCO) and keypoints_truth.csv");
+  room.number("--swapped", options.files.keypoint_errors.swapped, "share", closed(0, 0.99),
+              "of time during which arms, or legs, are exchanged in a camera's keypoints");
   room.flag("--videos", options.files.videos, "render a video of each camera too");
 }
 

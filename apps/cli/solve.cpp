@@ -194,15 +194,25 @@ void add_file_options(Command& command, SolveCommand& options) {
 
 void add_solve(Command& program) {
   auto options = std::make_shared<SolveCommand>();
-  Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers in space");
+  Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers or body keypoints in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
+<<<<<<< HEAD
   command.input_file("--skeleton", options->skeleton,
                      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
   command.input_file("--static", options->options.static_trial,
                      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
                      "given; without either "
                      "it is made from RECORDING alone, less surely");
+=======
+  command.input_file(
+      "--skeleton", options->skeleton,
+      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); left out: the human skeleton, of "
+      "--static or of body keypoints");
+  command.input_file(
+      "--static", options->options.static_trial,
+      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given");
+>>>>>>> origin/pose3d
   command
       .text("--marker-set", options->options.marker_set,
             "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
@@ -211,6 +221,8 @@ void add_solve(Command& program) {
   command.input_file(
       "--motion", options->options.motion,
       "beside --static: the same person moving hips, knees and elbows through their range; says where the joints are");
+  command.text("--person", options->options.person,
+               "of several people whose body keypoints RECORDING has the one to solve: P2; left out: the first");
   command.flag("--calibrate", options->options.calibrate,
                "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
   command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");

@@ -15,6 +15,7 @@
 
 #include "marey/core/whole_file.h"
 #include "marey/format/bodies/body_file.h"
+#include "marey/format/keypoints/keypoint_file.h"
 #include "marey/format/observations.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
@@ -262,6 +263,33 @@ class RoomTruth {
   std::optional<UnnamedPoints> unnamed_;
 };
 
+/// A file of keypoints for each camera, and where the joints truly are.
+void write_room_keypoints(const RoomScene& scene, const fs::path& folder, const simulate::room::KeypointErrors& errors) {
+  for (int camera = 0; camera < std::ssize(scene.rig().cameras); ++camera) {
+    const std::string& name = scene.rig().cameras[static_cast<std::size_t>(camera)].name;
+    format::keypoints::write_coco_keypoints(simulate::room::keypoints_of_camera(scene, camera, errors),
+                                            (folder / fmt::format("keypoints_{}.json", name)).string());
+  }
+  WholeFile file((folder / "keypoints_truth.csv").string());
+  file.write("frame,time,label,x,y,z\n");
+  const KeypointSet& set = simulate::room::room_keypoint_set();
+  std::string rows;
+  for (std::int64_t i = 0; i < scene.options().frames; ++i) {
+    const double time_s = static_cast<double>(i) / scene.options().rate_hz;
+    const auto people = simulate::room::true_keypoints(scene, time_s);
+    rows.clear();
+    for (std::size_t p = 0; p < people.size(); ++p) {
+      for (std::size_t k = 0; k < set.points.size(); ++k) {
+        const Vector<3>& at = people[p][k];
+        fmt::format_to(std::back_inserter(rows), "{},{:.6f},{}{},{:.6f},{:.6f},{:.6f}\n", i, time_s,
+                       people.size() > 1 ? fmt::format("P{}:", p + 1) : "", set.points[k], at.x(), at.y(), at.z());
+      }
+    }
+    file.write(rows);
+  }
+  file.finish();
+}
+
 }  // namespace
 
 void write_room(const RoomScene& scene, const std::string& folder, const RoomFilesOptions& options, const Hooks& hooks) {
@@ -291,6 +319,7 @@ void write_room(const RoomScene& scene, const std::string& folder, const RoomFil
   write_labels(scene, place);
   for (int actor = 0; actor < scene.actors(); ++actor)
     write_room_text(of_actor(place, "skeleton", actor, ".toml"), format::skeleton::to_toml(*scene.skeleton(actor)));
+  if (options.keypoints) write_room_keypoints(scene, place, options.keypoint_errors);
   if (!scene.props().empty()) format::bodies::write_bodies((place / "bodies.toml").string(), scene.props());
 }
 

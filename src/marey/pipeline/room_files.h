@@ -5,6 +5,7 @@
 
 #include "marey/core/hooks.h"
 #include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/room_keypoints.h"
 
 namespace marey::pipeline {
 
@@ -12,6 +13,8 @@ struct RoomFilesOptions {
   bool videos = false;   ///< renders camN.mp4, and makes it each camera's source
   bool unnamed = false;  ///< unnamed.csv too
   simulate::room::RoomFilmOptions film;
+  bool keypoints = false;  ///< what a network for body keypoints finds, and the truth
+  simulate::room::KeypointErrors keypoint_errors;
 };
 
 /// Writes a simulated room into a folder, which must exist:
@@ -27,8 +30,11 @@ struct RoomFilesOptions {
 ///   poses.csv         where all bodies and segments are, as `marey convert --format poses` writes them
 ///   unnamed.csv       frame,time,id,label,x,y,z of what two cameras see, as a system gives it that knows no names: tracks end at
 ///                     gaps, ghosts are among them
-/// Memory does not grow with the length. Throws Error where a file cannot be written, Stopped where it is asked to end; nothing
-/// that is begun is left behind then.
+///   keypoints_camN.json, keypoints_truth.csv: people's body keypoints (COCO), and frame,time,label,x,y,z of the joints; labels
+///   bear
+///                     "P1:", … where there are several people
+/// Memory does not grow with the length, but for keypoints. Throws Error where a file cannot be written, Stopped where it is asked
+/// to end; nothing that is begun is left behind then.
 void write_room(const simulate::room::RoomScene& scene, const std::string& folder, const RoomFilesOptions& options = {},
                 const Hooks& hooks = {});
 

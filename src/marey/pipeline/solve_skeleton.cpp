@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "marey/core/error.h"
 #include "marey/core/whole_file.h"
@@ -14,6 +15,7 @@
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
 #include "marey/pipeline/gait_markers.h"
+#include "marey/pipeline/keypoint_skeleton.h"
 #include "marey/pipeline/skeleton_in_space.h"
 #include "marey/solve/skeleton/calibrate.h"
 #include "marey/solve/skeleton/smooth.h"
@@ -25,6 +27,7 @@ namespace {
 using format::Content;
 using format::UpAxis;
 constexpr std::size_t kMostCalibrationFrames = 4096;
+constexpr double kKeypointSigma_m = 0.02, kKeypointRobust_m = 0.15, kKeypointLost_m = 0.4;  // unswept
 constexpr std::int64_t kLooksAtPerson = 2000;  // rows by which it is told whether the static trial is another's
 
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
@@ -261,6 +264,7 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
   return frames;
 }
 
+<<<<<<< HEAD
 /// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are no set.
 HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
   try {
@@ -272,12 +276,51 @@ HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& 
 }
 
 format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
+=======
+/// The name of a person whose labels begin with this.
+std::string person_named(const std::string& prefix) {
+  return prefix.empty() ? prefix : prefix.substr(0, prefix.size() - 1);
+}
+
+/// The skeleton of a person whose body keypoints are recorded; nothing where none are.
+std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::string& recording, SolveOptions& options) {
+  const auto reader = open_markers(recording, options);
+  const std::vector<std::string> people = people_with_keypoints(reader->tracks());
+  if (people.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const std::string& prefix : people) names.push_back(person_named(prefix));
+  const auto found = options.person.empty() ? names.begin() : std::find(names.begin(), names.end(), options.person);
+  if (found == names.end())
+    throw Error("{}: has no keypoints of a person {}; there are {}", recording, options.person, fmt::join(names, ", "));
+  format::skeleton::SkeletonFile file;
+  file.skeleton = skeleton_of_keypoints(read_all(*reader), people[static_cast<std::size_t>(found - names.begin())]);
+  if (people.size() > 1 && options.person.empty())
+    file.warnings.push_back(
+        fmt::format("{}: has keypoints of {}; {} is solved, the others with --person", recording, fmt::join(names, ", "), *found));
+  // A network's points lie farther off than markers do.
+  options.pose.marker_sigma_m = kKeypointSigma_m;
+  options.pose.robust_m = kKeypointRobust_m;
+  options.pose.lost_m = kKeypointLost_m;
+  return file;
+}
+
+format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, SolveOptions& options,
+>>>>>>> origin/pose3d
                                            SolveSummary& found, const Hooks& hooks) {
   if (!skeleton.empty()) {
     format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
     if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
     return with_a_marker_a_joint(std::move(file));
   }
+<<<<<<< HEAD
+=======
+  if (options.static_trial.empty()) {
+    if (auto by_keypoints = skeleton_by_keypoints(recording, options)) return std::move(*by_keypoints);
+    throw Error(
+        "a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field; without either "
+        "the recording must have body keypoints (left_hip, left_knee, left_shoulder, ...)");
+  }
+>>>>>>> origin/pose3d
   format::skeleton::SkeletonFile file;
   const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
   HumanSkeleton human =

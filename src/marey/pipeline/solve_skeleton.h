@@ -29,6 +29,7 @@ struct SolveOptions {
       static_trial;  ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
   std::string marker_set;      ///< its name; empty: known by the labels
   std::string motion;          ///< and of its range of motion: where its joints are; empty: none
+  std::string person;          ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
   bool calibrate = false;      ///< first fits the skeleton to the person, from the recording itself
   std::string write_skeleton;  ///< skeleton.toml of what was solved with; empty: none
 };
@@ -81,8 +82,13 @@ struct SolvedRecording {
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& skeleton,
                                 const SolveOptions& options, const Hooks& hooks = {});
 
+<<<<<<< HEAD
 /// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, else of the recording itself;
 /// calibrated where the options say so, and of the recording itself always.
+=======
+/// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, or else of the recording's own body
+/// keypoints; calibrated where the options say so.
+>>>>>>> origin/pose3d
 SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
                                     const Hooks& hooks = {});
 

@@ -50,6 +50,7 @@ struct RoomOptions {
   Vector<3> volume{4, 4, 2.5};   ///< m: that the cameras stand round, its floor's middle the world's origin
   cv::Size picture{1280, 1024};  ///< px
   bool distorted = true;         ///< lenses bend as real ones do; else all coefficients are 0
+  double zoom = 1;               ///< times the focal length of a lens that sees 66° across
 
   double noise_px = 0.1;  ///< standard deviation of a blob's place, per axis
   double dropped = 0;     ///< share of blobs that a camera misses, each by itself

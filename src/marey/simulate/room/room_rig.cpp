@@ -19,7 +19,7 @@ Vector<3> some_direction(Random& random) {
 
 geometry::BrownLens some_lens(const RoomOptions& options, Random& random) {
   geometry::BrownLens lens;
-  const double focal = options.picture.width * random.uniform(0.74, 0.80);  // about 66° across
+  const double focal = options.zoom * options.picture.width * random.uniform(0.74, 0.80);  // about 66° across at 1
   lens.focal = {focal, focal * random.uniform(0.999, 1.001)};
   lens.principal = {options.picture.width / 2.0 + random.uniform(-8, 8), options.picture.height / 2.0 + random.uniform(-8, 8)};
   if (options.distorted) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "marey/pipeline/keypoints_in_space.h"
+
+#include "command_line.h"
+#include "json_value.h"
+
+// What `marey reconstruct --targets keypoints` takes and tells.
+namespace marey::cli {
+
+void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& options);
+
+Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out);
+/// On standard error.
+void print_keypoints_summary(const pipeline::KeypointsSummary& summary, const std::string& out);
+
+}  // namespace marey::cli
