@@ -264,7 +264,6 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
   return frames;
 }
 
-<<<<<<< HEAD
 /// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are no set.
 HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
   try {
@@ -275,8 +274,6 @@ HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& 
   }
 }
 
-format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
-=======
 /// The name of a person whose labels begin with this.
 std::string person_named(const std::string& prefix) {
   return prefix.empty() ? prefix : prefix.substr(0, prefix.size() - 1);
@@ -305,22 +302,15 @@ std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::s
 }
 
 format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, SolveOptions& options,
->>>>>>> origin/pose3d
                                            SolveSummary& found, const Hooks& hooks) {
   if (!skeleton.empty()) {
     format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
     if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
     return with_a_marker_a_joint(std::move(file));
   }
-<<<<<<< HEAD
-=======
   if (options.static_trial.empty()) {
     if (auto by_keypoints = skeleton_by_keypoints(recording, options)) return std::move(*by_keypoints);
-    throw Error(
-        "a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field; without either "
-        "the recording must have body keypoints (left_hip, left_knee, left_shoulder, ...)");
   }
->>>>>>> origin/pose3d
   format::skeleton::SkeletonFile file;
   const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
   HumanSkeleton human =

@@ -82,13 +82,8 @@ struct SolvedRecording {
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& skeleton,
                                 const SolveOptions& options, const Hooks& hooks = {});
 
-<<<<<<< HEAD
-/// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, else of the recording itself;
-/// calibrated where the options say so, and of the recording itself always.
-=======
 /// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, or else of the recording's own body
-/// keypoints; calibrated where the options say so.
->>>>>>> origin/pose3d
+/// keypoints, or of its markers; calibrated where the options say so, and of markers alone always.
 SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
                                     const Hooks& hooks = {});
 
