@@ -236,8 +236,7 @@ void run(std::uint64_t first, int seeds, const Options& options) {
   for (int i = 0; i < seeds; ++i) {
     const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
     Spots spots = spots_of(options, seed);
-    const auto anywhere = [](const Vector<2>&) { return true; };
-    const Score score = score_of(spots, ball_way(spots.moments, spots.views, anywhere, {}));
+    const Score score = score_of(spots, ball_way(spots.moments, spots.views, {}, {}));
     print(std::to_string(seed), score);
     all.add(score);
   }

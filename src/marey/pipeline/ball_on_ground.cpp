@@ -14,7 +14,8 @@ namespace {
 using track::ball::BallMoment;
 using track::ball::BallState;
 
-constexpr double kBeyondLines = 12;  // m; farther out nothing is the ball
+constexpr double kBeyondLines = 12;  // m beyond where people count; farther out nothing is the ball
+constexpr double kOnLines = 1;       // m beyond the lines that count as within them
 
 /// Who is where, at each moment.
 void add_people(const Recording& recording, const reconstruct::GroundArea& area, std::vector<BallMoment>& moments) {
@@ -71,9 +72,13 @@ std::optional<TrackId> follow_ball(std::vector<BallMoment> moments, const std::s
                                    Recording& recording) {
   add_people(recording, area, moments);
   add_boxes(*views, moments);
-  const auto holds = [&](const Vector<2>& place) { return area.holds(place, kBeyondLines); };
+  track::ball::BallArea where;
+  if (area.bounded()) {
+    where.possible = [&](const Vector<2>& place) { return area.holds(place, kBeyondLines); };
+    where.pitch = [&](const Vector<2>& place) { return area.holds(place, kOnLines - area.margin()); };
+  }
   const auto stop = [&] { return hooks.stop.stop_requested(); };
-  const std::vector<std::optional<BallState>> way = track::ball::ball_way(moments, views, holds, options.way, stop);
+  const std::vector<std::optional<BallState>> way = track::ball::ball_way(moments, views, where, options.way, stop);
   const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
   TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}}, 3);
   std::size_t instant = 0;

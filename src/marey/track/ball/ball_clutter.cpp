@@ -10,7 +10,9 @@
 namespace marey::track::ball {
 namespace {
 
-enum Zone { kOpen, kNear, kOnPerson };
+enum Zone { kOpen, kNear, kOnPerson, kBeyond };
+constexpr int kZones = 4;
+constexpr std::size_t kBeyondEvery = 25;  // views, after which the area beyond the lines is counted again: PTZ cameras move
 
 bool holds(const Box& box, const Vector<2>& pixel) {
   return pixel.x() > box.left && pixel.x() < box.right() && pixel.y() > box.top && pixel.y() < box.bottom();
@@ -25,7 +27,26 @@ Box surroundings_of(const Box& person) {
   return grown(person, 0.4 * person.height + 2, 0.15 * person.height + 2, 0.2 * person.height + 2);
 }
 
-Zone zone_of(const BallView& view, const BallSighting& one, const BallClutterOptions& options) {
+bool is_beyond(const Vector<2>& pixel, const GroundView& ground, const GroundRegion& pitch) {
+  if (!pitch) return false;
+  const auto place = ground.place(pixel);
+  return !place || !pitch(place->ground);
+}
+
+/// px² of an image that show what lies beyond the lines: counted on a grid.
+double area_beyond(const GroundView& ground, const GroundRegion& pitch) {
+  constexpr int kGrid = 16;  // px
+  if (!pitch) return 0;
+  double area = 0;
+  for (int y = kGrid / 2; y < ground.size().height; y += kGrid) {
+    for (int x = kGrid / 2; x < ground.size().width; x += kGrid)
+      area += is_beyond({static_cast<double>(x), static_cast<double>(y)}, ground, pitch) ? kGrid * kGrid : 0;
+  }
+  return area;
+}
+
+Zone zone_of(const BallView& view, const BallSighting& one, const GroundView& ground, const GroundRegion& pitch,
+             const BallClutterOptions& options) {
   if (one.company > options.most_company) return kOnPerson;
   const Vector<2>& pixel = one.pixel;
   Zone zone = kOpen;
@@ -33,6 +54,7 @@ Zone zone_of(const BallView& view, const BallSighting& one, const BallClutterOpt
     if (holds(limbs_of(person), pixel)) return kOnPerson;
     if (holds(surroundings_of(person), pixel)) zone = kNear;
   }
+  if (zone == kOpen && is_beyond(pixel, ground, pitch)) return kBeyond;
   return zone;
 }
 
@@ -56,21 +78,34 @@ double recurrence(const CameraViews& views, std::size_t at, const Vector<2>& pix
   return frames == 0 ? 0 : static_cast<double>(again) / frames;
 }
 
-void weigh_camera(const CameraViews& views, double picture, const BallClutterOptions& options) {
-  std::array<double, 3> seen{options.least_open * static_cast<double>(views.size()), 1, 1}, area{};
+/// Areas of the zones in one view, px².
+std::array<double, kZones> areas_of(const BallView& view, double picture, double beyond) {
+  std::array<double, kZones> area{};
+  double round = 0;
+  for (const Box& person : view.people) {
+    area[kOnPerson] += limbs_of(person).area();
+    round += surroundings_of(person).area();
+  }
+  area[kNear] = round - area[kOnPerson];
+  area[kBeyond] = beyond;
+  area[kOpen] = picture - beyond;
+  return area;
+}
+
+void weigh_camera(const CameraViews& views, const GroundViews& grounds, const GroundRegion& pitch,
+                  const BallClutterOptions& options) {
+  std::array<double, kZones> seen{options.least_open * static_cast<double>(views.size()), 1, 1, 1}, area{};
   std::vector<std::vector<std::pair<Zone, double>>> known;
+  double beyond = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    double on = 0, round = 0;
-    for (const Box& person : views[i]->people) {
-      on += limbs_of(person).area();
-      round += surroundings_of(person).area();
-    }
-    area[kOnPerson] += on;
-    area[kNear] += round - on;
-    area[kOpen] += picture;
+    const GroundView& ground = grounds.view_at(views[i]->camera, views[i]->time);
+    const double picture = static_cast<double>(ground.size().width) * ground.size().height;
+    if (i % kBeyondEvery == 0) beyond = area_beyond(ground, pitch);
+    const auto of_this = areas_of(*views[i], picture, beyond);
+    for (int zone = 0; zone < kZones; ++zone) area[static_cast<std::size_t>(zone)] += of_this[static_cast<std::size_t>(zone)];
     auto& of_view = known.emplace_back();
     for (const BallSighting& one : views[i]->seen) {
-      of_view.emplace_back(zone_of(*views[i], one, options), recurrence(views, i, one.pixel, options));
+      of_view.emplace_back(zone_of(*views[i], one, ground, pitch, options), recurrence(views, i, one.pixel, options));
       constexpr double kRecurs = 0.3;
       if (of_view.back().second < kRecurs) seen[of_view.back().first] += 1;
     }
@@ -92,15 +127,13 @@ Box limbs_of(const Box& person) {
   return grown(person, 0.1 * person.height + 1, 0.04 * person.height + 1, 0.06 * person.height + 1);
 }
 
-void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options) {
+void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options,
+                     const GroundRegion& pitch) {
   std::map<CameraId, CameraViews> cameras;
   for (BallMoment& moment : moments) {
     for (BallView& view : moment.views) cameras[view.camera].push_back(&view);
   }
-  for (const auto& [camera, of_camera] : cameras) {
-    const cv::Size size = views.view_at(camera, of_camera.front()->time).size();
-    weigh_camera(of_camera, static_cast<double>(size.width) * size.height, options);
-  }
+  for (const auto& [camera, of_camera] : cameras) weigh_camera(of_camera, views, pitch, options);
 }
 
 }  // namespace marey::track::ball

@@ -17,10 +17,12 @@ struct BallClutterOptions {
   double recurs_within = 4;   ///< px
 };
 
-/// Sets `false_density` and `on_person` of everything seen, by what all the moments show. Densities are those of three zones, on
-/// people, close to them and elsewhere, each counted over all moments, and of what was seen at the place itself. The ball is
-/// counted too, which makes little of a difference where it moves. Boxes of people may overlap: their areas are added up.
-void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options);
+/// Sets `false_density` and `on_person` of everything seen, by what all the moments show. Densities are those of four zones, on
+/// people, close to them, beyond the lines (pixels whose rays meet the ground outside `pitch`, or not at all: stands) and
+/// elsewhere, each counted over all moments, and of what was seen at the place itself. The ball is counted too, which makes little
+/// of a difference where it moves. Boxes of people may overlap: their areas are added up.
+void weigh_sightings(std::span<BallMoment> moments, const GroundViews& views, const BallClutterOptions& options,
+                     const GroundRegion& pitch = {});
 
 /// Where a person's limbs may be seen, px: a little more than the box.
 Box limbs_of(const Box& person);

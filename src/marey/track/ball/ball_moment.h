@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct BallView {
   std::vector<BallSighting> seen;
   std::vector<Box> people;  ///< px; behind or before which the ball is hidden more often than not
 };
+
+/// Where on the ground, m, world. An empty function holds everywhere.
+using GroundRegion = std::function<bool(const Vector<2>& place)>;
 
 struct BallPerson {
   TrackId id{};

@@ -154,6 +154,10 @@ void look(const std::vector<BallNode>& all, const BallView& view, const GroundVi
   }
 }
 
+bool is_possible(const Vector<3>& place, const BallSearchOptions& options) {
+  return !options.possible || options.possible(place.head<2>());
+}
+
 BallStep lost_step(const BallMoment& moment) {
   BallStep step;
   step.used.assign(moment.views.size(), -1);
@@ -177,8 +181,9 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
   if (before->step.mode == BallMode::lost) {
     BallNode lost{before->step, before->score, before, 0};
     lost.step = lost_step(moment);
-    done.push_back(std::move(lost));
     be_born(before, moment, views, options, done);
+    std::erase_if(done, [&](const BallNode& born) { return !is_possible(born.step.belief.place(), options); });
+    done.push_back(std::move(lost));
     return done;
   }
   for (const Continuation& next : continuations(*before, moment, options)) {
@@ -205,6 +210,7 @@ std::vector<BallNode> successors(const std::shared_ptr<BallNode>& before, const 
       look(all, view, views.view_at(view.camera, view.time), options, looked);
       std::swap(all, looked);
     }
+    std::erase_if(all, [&](const BallNode& ball) { return !is_possible(ball.step.belief.place(), options); });
     std::move(all.begin(), all.end(), std::back_inserter(done));
   }
   return done;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "marey/core/ground_views.h"
+#include "marey/track/ball/ball_moment.h"
 #include "marey/track/ball/ball_motion.h"
 
 namespace marey::track::ball {
@@ -29,6 +30,7 @@ struct BallSearchOptions {
   double p_lose = 5e-4;        ///< of frames: nothing more is known
   double p_born = 0.02;        ///< of frames without a ball: it is found again
   double least_radius = 0.9;   ///< px; a smaller ball looks like any part of people far away: it is followed, and no evidence
+  GroundRegion possible = {};  ///< where the ball may be: no hypothesis begins or goes on elsewhere
   double false_seen = 8;       ///< things that are no ball in a frame, on average; fewer than are seen count as that many
 };
 

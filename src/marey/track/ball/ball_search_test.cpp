@@ -105,7 +105,7 @@ TEST(BallSearch, TwoCamerasTriangulate) {
 }
 
 std::vector<std::optional<BallState>> told(Scene scene) {
-  return ball_way(scene.moments, scene.views, [](const Vector<2>&) { return true; }, {});
+  return ball_way(scene.moments, scene.views, {}, {});
 }
 
 TEST(BallWay, WithoutABallNothingIsTold) {
@@ -150,6 +150,38 @@ TEST(BallWay, WhatMovesWithSomebodyIsNoBall) {
     }
   }
   for (const auto& state : told(scene)) EXPECT_FALSE(state);
+}
+
+/// A ball rolls on the pitch, often missed; a bright thing runs along the stands behind it, seen in every frame, between others.
+TEST(BallWay, WhatRunsAlongTheStandsIsNoBall) {
+  std::vector<Vector<3>> ball, runner;
+  for (int i = 0; i < 60; ++i) {
+    ball.emplace_back(20 + 8 * i / kRate, 20 + 3 * i / kRate, kBallRadius);
+    runner.emplace_back(15 + 12 * i / kRate, 110, kBallRadius);
+  }
+  Scene scene = seen(ball, {10, 50}, 2, 0.35, 16);
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> along(-20, 90), behind(85, 160);
+  for (std::size_t i = 0; i < scene.moments.size(); ++i) {
+    for (BallView& view : scene.moments[i].views) {
+      const Camera& camera = *scene.views->view_at(view.camera, view.time).camera();
+      view.seen.push_back(spot(*camera.project(runner[i]), 2));
+      for (int k = 0; k < 12; ++k) {
+        if (const auto pixel = camera.project({along(random), behind(random), 1})) view.seen.push_back(spot(*pixel, 1));
+      }
+    }
+  }
+  BallArea area;
+  area.possible = [](const Vector<2>& place) { return place.y() < 80; };
+  area.pitch = [](const Vector<2>& place) { return place.y() < 69; };
+  const auto way = ball_way(scene.moments, scene.views, area, {});
+  int found = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (!way[i]) continue;
+    ++found;
+    EXPECT_LT((way[i]->belief.place() - ball[i]).norm(), 0.5) << i;
+  }
+  EXPECT_GE(found, 50);
 }
 
 /// Everything that may follow, without a beam and without taking like for like.

@@ -103,8 +103,10 @@ std::vector<bool> told(const std::vector<BallMoment>& moments, const std::vector
 std::vector<std::optional<BallState>> ball_way(std::vector<BallMoment>& moments, const std::shared_ptr<const GroundViews>& views,
                                                const BallArea& area, const BallWayOptions& options,
                                                const std::function<bool()>& stop) {
-  weigh_sightings(moments, *views, options.clutter);
-  BallSearch search(views, options.search);
+  weigh_sightings(moments, *views, options.clutter, area.pitch);
+  BallSearchOptions within = options.search;
+  within.possible = area.possible;
+  BallSearch search(views, within);
   std::vector<BallStep> steps;
   const auto take = [&] {
     auto decided = search.take_decided();
@@ -122,7 +124,8 @@ std::vector<std::optional<BallState>> ball_way(std::vector<BallMoment>& moments,
   const std::vector<bool> known = told(moments, steps, seen_surely(moments, steps, states, options), options);
   std::vector<std::optional<BallState>> way(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (known[i] && area(states[i].belief.place().head<2>())) way[i] = states[i];
+    const bool possible = !area.possible || area.possible(states[i].belief.place().head<2>());
+    if (known[i] && possible) way[i] = states[i];
   }
   add_rests(moments, *views, options.rest, way);
   return way;

@@ -25,8 +25,10 @@ struct BallWayOptions {
   double unseen_held = 4;      ///< but where the same person has it all the while
 };
 
-/// Whether the ball may be at a place, m, world.
-using BallArea = std::function<bool(const Vector<2>& place)>;
+/// Where the ball is searched, and what lies within the lines.
+struct BallArea {
+  GroundRegion possible = {}, pitch = {};
+};
 
 /// Where the ball was at each moment, nothing where it is not known: search, smoothing, and what of it is told.
 std::vector<std::optional<BallState>> ball_way(std::vector<BallMoment>& moments, const std::shared_ptr<const GroundViews>& views,
