@@ -310,6 +310,7 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
   }
   if (options.static_trial.empty()) {
     if (auto by_keypoints = skeleton_by_keypoints(recording, options)) return std::move(*by_keypoints);
+    options.calibrate = true;
   }
   format::skeleton::SkeletonFile file;
   const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
@@ -364,8 +365,7 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
   format::skeleton::SkeletonFile file = skeleton_of(recording, skeleton, options, found, hooks);
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
-  const bool of_motion = skeleton.empty() && options.static_trial.empty();
-  if (options.calibrate || of_motion) {
+  if (options.calibrate) {
     calibration = solve::skeleton::calibrate(file.skeleton, all_seen(recording, file.skeleton, options));
     file.skeleton = calibration->skeleton;
   }
