@@ -197,8 +197,9 @@ void add_solve(Command& program) {
   Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers or body keypoints in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file("--skeleton", options->skeleton,
-                     "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); left out: the human skeleton");
+  command.input_file(
+      "--skeleton", options->skeleton,
+      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); left out: the human skeleton");
   command.input_file("--static", options->options.static_trial,
                      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
                      "given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its "
