@@ -1,19 +1,30 @@
 #include "marey/detect/keypoints/limb_swaps.h"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include "marey/detect/keypoints/blazepose.h"
-#include "marey/simulate/random.h"
 
 namespace marey::detect::keypoints {
 namespace {
 
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : engine_(seed) {}
+  double gaussian(double mean, double sigma) { return std::normal_distribution<double>(mean, sigma)(engine_); }
+  bool chance(double probability) { return std::bernoulli_distribution(probability)(engine_); }
+  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
+
+ private:
+  std::mt19937 engine_;
+};
+
 constexpr std::size_t kLeftHip = 23, kLeftAnkle = 27, kRightAnkle = 28;
 
 /// Somebody 180 px tall who walks past, seen from the side and a little from ahead: legs and arms swing against each other.
-Keypoints<2> walker(double t, simulate::Random& random, double noise) {
+Keypoints<2> walker(double t, Dice& random, double noise) {
   Keypoints<2> body;
   body.points.resize(33);
   for (std::size_t i = 0; i < 33; ++i) {
@@ -44,7 +55,7 @@ Keypoints<2> with_swapped_legs(const Keypoints<2>& body) {
 /// ankles are apart.
 std::pair<double, double> wrong_before_and_after(std::size_t lag, double rate) {
   constexpr int kPictures = 1000;
-  simulate::Random random(7);
+  Dice random(7);
   LimbSwaps swaps(blazepose());
   std::vector<Keypoints<2>> truth;
   int apart = 0, before = 0, after = 0, swapped_for = 0;
@@ -85,7 +96,7 @@ TEST(LimbSwaps, PutsMostRightWithoutWaiting) {
 }
 
 TEST(LimbSwaps, AWrongBeginningDoesNotLast) {
-  simulate::Random random(3);
+  Dice random(3);
   LimbSwaps swaps(blazepose());
   for (int i = 0; i < 60; ++i) {
     const Keypoints<2> real = walker(i / 25.0, random, 2);
@@ -98,7 +109,7 @@ TEST(LimbSwaps, AWrongBeginningDoesNotLast) {
 }
 
 TEST(LimbSwaps, WhoTurnsRoundKeepsTheirSides) {
-  simulate::Random random(3);
+  Dice random(3);
   LimbSwaps swaps(blazepose());
   for (int i = 0; i < 100; ++i) {
     Keypoints<2> body = walker(0, random, 1);  // they stand, and turn: left and right change sides in the picture
@@ -113,7 +124,7 @@ TEST(LimbSwaps, WhoTurnsRoundKeepsTheirSides) {
 }
 
 TEST(LimbSwaps, PointsThatAreNotKnownAreLeftAlone) {
-  simulate::Random random(3);
+  Dice random(3);
   LimbSwaps swaps(blazepose());
   for (int i = 0; i < 10; ++i) {
     Keypoints<2> body = walker(i / 25.0, random, 1);

@@ -1,12 +1,11 @@
 #include "marey/detect/network/convolution_layer.h"
 
 #include <algorithm>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/dnn.hpp>
-
-#include "marey/simulate/random.h"
 
 namespace marey::detect::network {
 namespace {
@@ -16,9 +15,10 @@ struct Shape {
   cv::Size picture;
 };
 
-cv::Mat random_values(std::vector<int> sizes, simulate::Random& random) {
+cv::Mat random_values(std::vector<int> sizes, std::mt19937& random) {
   cv::Mat values(static_cast<int>(sizes.size()), sizes.data(), CV_32F);
-  for (std::size_t i = 0; i < values.total(); ++i) values.ptr<float>()[i] = static_cast<float>(random.uniform(-1, 1));
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (std::size_t i = 0; i < values.total(); ++i) values.ptr<float>()[i] = uniform(random);
   return values;
 }
 
@@ -40,7 +40,7 @@ float plain_convolution(const cv::Mat& input, const cv::Mat& weights, const cv::
   return static_cast<float>(sum);
 }
 
-void check_convolution(const Shape& shape, bool clipped, simulate::Random& random) {
+void check_convolution(const Shape& shape, bool clipped, std::mt19937& random) {
   const cv::Mat input = random_values({1, shape.inputs, shape.picture.height, shape.picture.width}, random);
   const cv::Mat weights = random_values({shape.outputs, shape.inputs / shape.groups, shape.size, shape.size}, random);
   const cv::Mat bias = random_values({shape.outputs}, random);
@@ -74,7 +74,7 @@ void check_convolution(const Shape& shape, bool clipped, simulate::Random& rando
 
 TEST(OwnConvolutions, AreWhatTheDefinitionSays) {
   use_own_convolutions();
-  simulate::Random random(5);
+  std::mt19937 random(5);
   for (const bool clipped : {false, true}) {
     for (const Shape& shape :
          {Shape{8, 8, 8, 3, 1, 1, {64, 64}}, Shape{3, 3, 3, 5, 1, 2, {17, 9}}, Shape{5, 5, 5, 5, 2, 2, {33, 31}},
