@@ -59,9 +59,9 @@ struct RecordingHeader {
   std::string name;         ///< free text; by default the file's
   std::string recorded_at;  ///< ISO 8601, UTC; empty where unknown
   FrameOfReference frame;
-  double rate_hz = 0;        ///< instants a second, positive: the median step, where the file does not tell
-  std::optional<Rig> rig;    ///< the cameras with their sources; nothing where a file brings positions alone
-  std::vector<Body> bodies;  ///< by id, parents before children; none where none were solved
+  double rate_hz = 0;                    ///< instants a second, positive: the median step, where the file does not tell
+  std::optional<Rig> rig;                ///< the cameras with their sources; nothing where a file brings positions alone
+  std::vector<Body> bodies;              ///< by id, parents before children; none where none were solved
   std::optional<KeypointSet> keypoints;  ///< which body points samples have, where they have some
   MadeBy made_by;
   bool smoothed = false;  ///< a second pass has smoothed positions and velocities: who measures does not smooth again
