@@ -99,11 +99,7 @@ class TakeWriter::Recorder {
   void add_edit(const Edit& edit) {
     begin();
     add_edit_.bind(0, edit.id);
-    if (edit.parent) {
-      add_edit_.bind(1, *edit.parent);
-    } else {
-      add_edit_.bind_null(1);
-    }
+    edit.parent ? add_edit_.bind(1, *edit.parent) : add_edit_.bind_null(1);
     add_edit_.bind(2, std::string_view(edit.operation));
     add_edit_.bind(3, std::string_view(edit.payload));
     run(add_edit_);
