@@ -30,12 +30,8 @@ Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string
     people.push_back({{"label", person.label}, {"instants", person.instants}, {"views", person.views}});
   for (const auto& camera : summary.cameras) {
     Json& said = cameras[camera.name];
-    said = {{"frames", camera.frames},
-            {"people", camera.people},
-            {"placed", camera.placed},
-            {"residual_px", camera.residual_px},
-            {"noise", camera.noise},
-            {"swapped_limbs", camera.swapped}};
+    said = {{"frames", camera.frames},           {"people", camera.people}, {"placed", camera.placed},
+            {"residual_px", camera.residual_px}, {"noise", camera.noise},   {"swapped_limbs", camera.swapped}};
     said["offset_s"] = camera.offset_s ? Json(*camera.offset_s) : Json();
     said["offset_sigma_s"] = camera.offset_sigma_s ? Json(*camera.offset_sigma_s) : Json();
   }
