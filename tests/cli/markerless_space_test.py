@@ -8,6 +8,8 @@ import json
 import math
 import os
 import pathlib
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -52,6 +54,14 @@ class Keypoints(unittest.TestCase):
         self.marey("convert", recording, "rows.csv")
         with open(self.folder / "rows.csv") as file:
             return {(int(row["frame"]), row["label"]): tuple(float(row[axis]) for axis in "xyz") for row in csv.DictReader(file)}
+
+    def test_the_page_as_it_is_written(self):
+        page = (pathlib.Path(__file__).parents[2] / "docs/markerless_space.md").read_text()
+        lines = [line for block in re.findall(r"^```\n(.*?)^```", page, re.S | re.M) for line in block.splitlines() if line.startswith("marey ")]
+        self.assertGreaterEqual(len(lines), 3)
+        for line in lines:
+            with self.subTest(line=line):
+                self.marey(*shlex.split(line)[1:])
 
     def test_one_person_is_where_it_truly_is(self):
         summary = self.reconstruct("one")
