@@ -38,6 +38,15 @@ Detection detection_of_find(const Candidate& one, cv::Size picture) {
   return detection;
 }
 
+/// Black where the tile reaches beyond the picture.
+cv::Mat pixels_in(const cv::Mat& picture, const cv::Rect& tile) {
+  const cv::Rect there = tile & cv::Rect({}, picture.size());
+  if (there == tile) return picture(tile);
+  cv::Mat part(tile.size(), picture.type(), cv::Scalar::all(0));
+  picture(there).copyTo(part(there - tile.tl()));
+  return part;
+}
+
 double share_in(const Box& inner, const Box& outer) {
   return inner.empty() ? 0 : geometry::intersection(inner, outer).area() / inner.area();
 }
@@ -101,7 +110,7 @@ std::vector<cv::Rect> NetworkDetector::tiles_of(cv::Size picture) const {
 std::vector<Detection> NetworkDetector::look_at(const Frame& frame, std::span<const cv::Rect> tiles) {
   const cv::Mat bgr = frame.picture.bgr();
   std::vector<cv::Mat> parts;
-  for (const cv::Rect& tile : tiles) parts.push_back(bgr(tile));
+  for (const cv::Rect& tile : tiles) parts.push_back(pixels_in(bgr, tile));
   const std::vector<std::vector<Candidate>> found = network_.find_all(parts);
   tiles_ += std::ssize(tiles);
   std::vector<TileFinds> finds;

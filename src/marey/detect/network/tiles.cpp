@@ -59,8 +59,8 @@ std::vector<int> begins(int length, int side, double overlap) {
 
 void add_tiles(cv::Size picture, const HeightAt& height_at, double height, const TileOptions& options,
                std::vector<cv::Rect>& tiles) {
-  const int shorter = std::min(picture.width, picture.height);
-  const int side = static_cast<int>(std::lround(std::min<double>(std::max(height / options.share, kSmallestTile), shorter)));
+  const int longer = std::max(picture.width, picture.height);
+  const int side = static_cast<int>(std::lround(std::min<double>(std::max(height / options.share, kSmallestTile), longer)));
   const double overlap = std::min(options.overlap * height, 0.75 * side);
   for (const int top : begins(picture.height, side, overlap)) {
     for (const int left : begins(picture.width, side, overlap)) {
@@ -70,13 +70,12 @@ void add_tiles(cv::Size picture, const HeightAt& height_at, double height, const
   }
 }
 
-/// The square round a box, within the picture.
+/// The square round a box, within the picture as far as it has room.
 cv::Rect square_round(const Box& box, int side, cv::Size picture) {
   const auto begin = [side](double middle, int length) {
     return std::clamp(static_cast<int>(std::lround(middle - side / 2.0)), 0, std::max(0, length - side));
   };
-  return {begin(box.left + box.width / 2, picture.width), begin(box.top + box.height / 2, picture.height),
-          std::min(side, picture.width), std::min(side, picture.height)};
+  return {begin(box.left + box.width / 2, picture.width), begin(box.top + box.height / 2, picture.height), side, side};
 }
 
 /// How well a find is one person: its score, less where two side by side, or a part, would have its shape.
@@ -99,7 +98,7 @@ std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, do
   std::vector<cv::Rect> tiles;
   const auto range = height_at ? heights_over(picture, height_at) : std::nullopt;
   if (!range) {
-    const double largest = options.share * std::min(picture.width, picture.height);
+    const double largest = options.share * std::max(picture.width, picture.height);
     for (double height = std::min(usual, largest); height < largest; height *= options.levels)
       add_tiles(picture, {}, height, options, tiles);
     add_tiles(picture, {}, largest, options, tiles);
@@ -113,7 +112,7 @@ std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, do
 }
 
 std::vector<cv::Rect> tiles_round(cv::Size picture, std::span<const Box> people, const TileOptions& options) {
-  const int shorter = std::min(picture.width, picture.height);
+  const int longer = std::max(picture.width, picture.height);
   const auto grown = [&](const Box& box) {
     const double by = options.margin * box.height;
     return Box{box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
@@ -126,7 +125,7 @@ std::vector<cv::Rect> tiles_round(cv::Size picture, std::span<const Box> people,
     const Box first = left.front();
     Box all = grown(first);
     const double wanted = std::max({first.height / options.share, all.width, all.height, kSmallestTile});
-    const int side = static_cast<int>(std::lround(std::min<double>(wanted, shorter)));
+    const int side = static_cast<int>(std::lround(std::min<double>(wanted, longer)));
     std::vector<Box> others;
     for (std::size_t i = 1; i < left.size(); ++i) {
       const Box with = geometry::hull(all, grown(left[i]));

@@ -26,8 +26,8 @@ struct TileOptions {
 /// How high a person with feet at (x, y) is, px; nothing where nobody can stand.
 using HeightAt = std::function<std::optional<double>(double, double)>;
 
-/// The tiles of a picture; without `height_at`, tiles of several sizes: for people of `usual` px, and larger ones up to the
-/// picture's height.
+/// The tiles of a picture, all square, of up to the picture's longer side: they may reach beyond its right and lower edge. Without
+/// `height_at`, tiles of several sizes: for people of `usual` px, and larger ones up to the picture's height.
 std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, double usual, const TileOptions& options = {});
 
 /// Few tiles in which everybody of `people` (px of the picture) lies whole, or as far as the picture allows; people of like size
