@@ -14,7 +14,7 @@
 namespace marey::pipeline {
 namespace {
 
-constexpr double kWorthIt = 0.6;  // of the pictures of the beginning: with fewer, what is left out costs more than shaking does
+constexpr double kWorthIt = 0.5;  // of the pictures of the beginning: with fewer, what is left out costs more than shaking does
 
 /// The calibrated lens, without its distortion, in pixels of the whole picture.
 std::optional<source::steady::PinholeView> pinhole_of(const RigCamera& camera, cv::Size picture) {
