@@ -1,23 +1,25 @@
 // How well each filter predicts: a target on paths that no filter's model is, measured with noise, followed with every filter's
-// defaults. Prints, for each kind of path, the root mean square and the median distance between the position predicted before a
-// frame and the true one (px), the share of frames in which the measurement fell outside the search area (lost), and the median
-// radius of the search area (px), so that a filter that is never lost because it searches everywhere is seen for what it is.
+// defaults. Prints, for each kind of path, the root mean square of the distance between the position predicted before a frame and
+// the true one (px), the share of frames in which the measurement fell outside the search area (lost), and the median radius of the
+// search area (px), so that a filter that is never lost because it searches everywhere is seen for what it is.
 // Paths, speeds and noise are drawn from a seed. A measurement outside the search area is taken in all the same, so that
 // errors are comparable.
 //
-//   filter_accuracy [TARGETS A KIND] [SEED]
+//   filter_accuracy [--targets N] [--seed N] [--rate HZ] [--noise PX]
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "marey/filter/filters.h"
+
+#include "experiments/markdown_table.h"
 
 namespace marey {
 namespace {
@@ -173,35 +175,37 @@ double root_mean_square(const std::vector<double>& values) {
 }  // namespace
 }  // namespace marey
 
-int main(int argc, char** argv) {
+int main(int count, char** words) {
   using namespace marey;
-  const int targets = argc > 1 ? std::atoi(argv[1]) : 40;
-  const auto seed = static_cast<unsigned>(argc > 2 ? std::atoi(argv[2]) : 1);
+  int targets = 40;
+  unsigned seed = 1;
+  double rate = 30, noise = 0.05;
+  CLI::App app("How well each filter predicts");
+  app.add_option("--targets", targets, "of each kind of path")->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--rate", rate, "Hz")->capture_default_str();
+  app.add_option("--noise", noise, "px, standard deviation along each axis")->capture_default_str();
+  CLI11_PARSE(app, count, words);
   const std::vector<std::pair<std::string, Place (*)(Draw&)>> kinds = {{"straight", straight},         {"zigzag", zigzag},
                                                                        {"acceleration", accelerating}, {"stops", stopping},
                                                                        {"circle", circling},           {"limb", swinging}};
-  for (const double rate : {30.0, 120.0}) {
-    for (const double noise : {0.05, 0.5}) {
-      fmt::print("\n{} Hz, measured with a standard deviation of {} px an axis; RMS / median px, lost %, search radius px\n", rate,
-                 noise);
-      fmt::print("{:22}", "");
-      for (const auto& [name, make] : kinds) fmt::print("{:^26}", name);
-      fmt::print("\n");
-      for (const filter::NamedFilter& filter : filter::named_filters()) {
-        fmt::print("{:22}", filter.name);
-        for (const auto& [name, make] : kinds) {
-          Result result;
-          for (int i = 0; i < targets; ++i) {
-            Draw draw{std::mt19937(seed * 1000 + static_cast<unsigned>(i))};
-            const Place place = make(draw);
-            filter::with_filter<2>(filter.options, Follow{place, rate, noise, seed + static_cast<unsigned>(i), result});
-          }
-          fmt::print("{:6.2f}/{:5.2f} {:4.1f}% {:4.0f}   ", root_mean_square(result.errors), median(result.errors),
-                     100.0 * static_cast<double>(result.outside) / static_cast<double>(result.errors.size()), median(result.radii));
-        }
-        fmt::print("\n");
+  std::vector<std::string> titles{"filter"};
+  for (const auto& [name, make] : kinds) titles.push_back(name);
+  fmt::print("{}", experiments::markdown_header(titles));
+  for (const filter::NamedFilter& filter : filter::named_filters()) {
+    std::vector<std::string> cells{std::string(filter.name)};
+    for (const auto& [name, make] : kinds) {
+      Result result;
+      for (int i = 0; i < targets; ++i) {
+        Draw draw{std::mt19937(seed * 1000 + static_cast<unsigned>(i))};
+        const Place place = make(draw);
+        filter::with_filter<2>(filter.options, Follow{place, rate, noise, seed + static_cast<unsigned>(i), result});
       }
+      cells.push_back(fmt::format("{:.2f} · {:.1f} % · {:.0f}", root_mean_square(result.errors),
+                                  100.0 * static_cast<double>(result.outside) / static_cast<double>(result.errors.size()),
+                                  median(result.radii)));
     }
+    fmt::print("{}", experiments::markdown_row(cells));
   }
   return 0;
 }

@@ -10,14 +10,13 @@ more; false is a stretch of points that had the right name before and has anothe
 where its constant velocity leads, from the first frame on, which knows no bodies.
 """
 import argparse
-import csv
 import math
 import pathlib
 import random
 import subprocess
 import tempfile
 
-from labels import key, read, write
+from labels import key, print_row, read, rows_of, write
 
 NEAR_M = 0.4
 
@@ -82,8 +81,7 @@ def by_marey(marey, teacher, before, work):
     write(work / "swapped.csv", sorted(before.items()), 100)
     subprocess.run([marey, "label", "learn", work / "teacher.csv", "-o", work / "set.toml", "-q"], check=True)
     subprocess.run([marey, "label", work / "swapped.csv", "--set", work / "set.toml", "-o", work / "named.csv", "-q"], check=True)
-    with open(work / "named.csv", newline="") as rows:
-        return [(int(r["frame"]), r["label"], (float(r["x"]), float(r["y"]), float(r["z"]))) for r in csv.DictReader(rows) if r["label"]]
+    return rows_of(work / "named.csv")
 
 
 def by_velocity(before):
@@ -122,14 +120,17 @@ def main():
     parser.add_argument("--from", dest="teacher", choices=["turn", "static"], default="turn")
     options = parser.parse_args()
     work = pathlib.Path(tempfile.mkdtemp(prefix="marey_swaps_"))
+    print_row(["subject", "seconds", "marey label: put right", "spoilt", "points right, %", "naive peer: put right", "spoilt", "points right, %"])
+    print_row(["---"] * 8)
     for subject in options.subjects.split(","):
         folder = options.data / "gait_children" / subject
         points, teacher = (read(options.marey, next(folder.glob(kind + "_*.c3d")), work) for kind in ("straight", options.teacher))
         before, swaps = inject(points, options.swaps, random.Random(f"{options.seed} {subject}"))
-        minutes = len({f for places in points.values() for f in places}) / 100 / 60
-        for name, named in (("marey label", by_marey(options.marey, teacher, before, work)), ("naive peer", by_velocity(before))):
+        cells = [subject, f"{len({f for places in points.values() for f in places}) / 100:.1f}"]
+        for named in (by_marey(options.marey, teacher, before, work), by_velocity(before)):
             right, false, share = judge(named, points, before, swaps)
-            print(f"{subject} {name:11}  put right {right:2} of {len(swaps)}  false {false} in {60 * minutes:.1f} s  points right {100 * share:.2f} %", flush=True)
+            cells += [f"{right} of {len(swaps)}", str(false), f"{100 * share:.2f}"]
+        print_row(cells)
 
 
 if __name__ == "__main__":

@@ -4,21 +4,20 @@
 Usage: labels.py MAREY DATA [--subjects HC002D,...] [--hidden 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live]
 
 DATA is the folder that tests call MAREY_DATA. For each child of gait_children the walk straight on is named by a set learned from its turn, and
-by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Right, wrong (ghosts with a name among them) and
-unnamed are shares of the points that belong to the set. With --live each walk is played too, at a third of its speed, and its points are named within the
-frame (`marey play --set`): of those frames that come after the first with a name. Beside it a naive peer, which knows the true names of the first frame and hands each on to the
-nearest point within 50 mm. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
+by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Prints a Markdown table: right and wrong (ghosts
+with a name among them), % of the points that belong to the set; the rest has no name. With --live the points are named within the frame too
+(build/release/bench/live_labels): of those frames that come after the first with a name. The last column is a naive peer, which knows the true names of the first
+frame and hands each on to the nearest point within 50 mm. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
 """
 import argparse
 import csv
 import json
 import pathlib
 import random
-import socket
 import subprocess
 import tempfile
-import time
 
+LIVE = pathlib.Path(__file__).resolve().parent.parent / "build/release/bench/live_labels"
 MARKERS = """LFHD RFHD LBHD RBHD C7 T10 CLAV STRN RBAK LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN LASI RASI LPSI RPSI SACR
 LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE""".split()
 
@@ -85,7 +84,7 @@ def judge(named, truth, known):
         right += true == label
         wrong += true != label
     total = sum(label in known for label in truth.values())
-    return f"right {100 * right / total:6.2f} %  wrong {100 * wrong / total:5.2f} %  unnamed {100 * (total - right - wrong) / total:6.2f} %"
+    return f"{100 * right / total:.2f}, {100 * wrong / total:.2f}"
 
 
 def label(marey, train, tracks, truth, work, scaled=False):
@@ -98,35 +97,24 @@ def label(marey, train, tracks, truth, work, scaled=False):
     subprocess.run([marey, "label", "learn", *names, "--markers", ",".join(known), "-o", work / "set.toml", "-q"] + ["--scaled"] * scaled, check=True)
     done = subprocess.run([marey, "label", work / "bare.csv", "--set", work / "set.toml", "-o", work / "named.csv", "-q"], capture_output=True, text=True)
     if done.returncode != 0:
-        return done.stderr.strip()
-    with open(work / "named.csv", newline="") as rows:
-        named = [(int(r["frame"]), r["label"], (float(r["x"]), float(r["y"]), float(r["z"]))) for r in csv.DictReader(rows) if r["label"]]
-    return judge(named, truth, known)
+        return "none: " + done.stderr.strip().splitlines()[-1].rpartition(": ")[2]
+    return judge(rows_of(work / "named.csv"), truth, known)
 
 
-def live(marey, truth, work):
-    """The last recording that was named, played, by the set that was learned for it."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-    played = subprocess.Popen([marey, "play", work / "bare.csv", "--set", work / "set.toml", "--speed", "0.33", "-q", "--stream", f"json::{port}"],
-                              stderr=subprocess.PIPE, text=True)
-    told = None
-    while told is None and played.poll() is None:
-        try:
-            told = socket.create_connection(("127.0.0.1", port), timeout=60).makefile()
-        except OSError:
-            time.sleep(0.02)
-    named, first = [], None
-    for line in told or []:
-        frame = json.loads(line)
-        for point in frame["points"] if frame["type"] == "frame" else []:
-            if not point.get("label"):
-                continue
-            first = frame["frame"] if first is None else first
-            named.append((frame["frame"], point["label"], (point["x"], point["y"], point["z"])))
-    said = played.communicate()[1].strip()
-    after = {of: label for of, label in truth.items() if first is not None and of[0] >= first}
-    return f"{judge(named, after, set(after.values()))}  from frame {first} on" if after else f"nothing was named: {said}"
+def rows_of(file):
+    with open(file, newline="") as rows:
+        return [(int(r["frame"]), r["label"], (float(r["x"]), float(r["y"]), float(r["z"]))) for r in csv.DictReader(rows) if r["label"]]
+
+
+def live(truth, work):
+    """The last recording that was named, within the frame, by the set that was learned for it."""
+    subprocess.run([LIVE, work / "bare.csv", "--set", work / "set.toml", "-o", work / "live.csv"], check=True)
+    named = rows_of(work / "live.csv")
+    if not named:
+        return "none"
+    first = min(frame for frame, _, _ in named)
+    after = {of: label for of, label in truth.items() if of[0] >= first}
+    return judge(named, after, set(after.values()))
 
 
 def naive(tracks, truth):
@@ -171,18 +159,28 @@ def main():
     def take(subject, kind):
         return read(options.marey, next((folder / subject).glob(kind + "_*.c3d")), work)
 
+    titles = ["subject", "its turn", "its static trial"]
+    if options.live:
+        titles = ["subject", "its turn", "its turn, live", "its static trial", "its static trial, live"]
+    titles += ["the others"] * options.unseen + ["naive peer"]
+    print_row(titles)
+    print_row(["---"] * len(titles))
     for subject in subjects:
         tracks, truth = strip(take(subject, "straight"), options, random.Random(f"{options.seed} {subject}"))
-        print(f"{subject} {len(tracks)} tracks")
+        cells = [subject]
         for kind in ("turn", "static"):
-            print(f"  from its {kind:8} {label(options.marey, [take(subject, kind)], tracks, truth, work)}", flush=True)
+            cells.append(label(options.marey, [take(subject, kind)], tracks, truth, work))
             if options.live:
-                print(f"    in the frame    {live(options.marey, truth, work)}", flush=True)
+                cells.append(live(truth, work))
         if options.unseen:
             others = [take(other, kind) for other in sorted(p.name for p in folder.iterdir() if p.is_dir()) if other != subject
                       for kind in ("straight", "turn")]
-            print(f"  from others      {label(options.marey, others, tracks, truth, work, scaled=True)}", flush=True)
-        print(f"  naive peer       {naive(tracks, truth)}", flush=True)
+            cells.append(label(options.marey, others, tracks, truth, work, scaled=True))
+        print_row([*cells, naive(tracks, truth)])
+
+
+def print_row(cells):
+    print("| " + " | ".join(cells) + " |", flush=True)
 
 
 if __name__ == "__main__":

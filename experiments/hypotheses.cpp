@@ -4,12 +4,16 @@
 #include <chrono>
 #include <mutex>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "marey/evaluate/ground_evaluation.h"
+
+#include "experiments/markdown_table.h"
 
 namespace marey::experiments {
 namespace {
@@ -178,6 +182,27 @@ std::string to_text(const HypothesesExperiment& experiment) {
     fmt::format_to(out, "{:<12}", row.method);
     for (const auto& score : row.scores) fmt::format_to(out, "{:>16.1f}", score.step_us);
     fmt::format_to(out, "\n");
+  }
+  return text;
+}
+
+std::string to_markdown(const HypothesesExperiment& experiment) {
+  std::vector<std::string> titles{""}, meetings{"encounters"};
+  for (const std::string& kind : experiment.kinds) titles.push_back(kind);
+  for (const int of_kind : experiment.meetings) meetings.push_back(std::to_string(of_kind));
+  std::string text = markdown_header(titles) + markdown_row(meetings);
+  const auto share = [](std::int64_t part, std::int64_t all) {
+    return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, all));
+  };
+  for (const auto& row : experiment.rows) {
+    std::vector<std::string> cells{row.method};
+    for (std::size_t kind = 0; kind < row.scores.size(); ++kind) {
+      const auto& score = row.scores[kind];
+      cells.push_back(fmt::format("{} ({:.2f}); {:.2f} / {:.2f}", score.switches,
+                                  share(score.switches, experiment.rows.front().scores[kind].switches),
+                                  100 * share(score.misses, score.people), 100 * share(score.strangers, score.people)));
+    }
+    text += markdown_row(cells);
   }
   return text;
 }

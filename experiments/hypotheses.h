@@ -46,4 +46,7 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
 /// As text: a table of switches and one of times.
 std::string to_text(const HypothesesExperiment& experiment);
 
+/// One table in Markdown: switches, with the ratio to the first method's, and missed and false, % of people and frames.
+std::string to_markdown(const HypothesesExperiment& experiment);
+
 }  // namespace marey::experiments

@@ -13,6 +13,7 @@
 #include "marey/simulate/random.h"
 #include "marey/track/roster_tracker.h"
 
+#include "experiments/markdown_table.h"
 #include "experiments/plain_markers.h"
 
 namespace marey::experiments {
@@ -142,6 +143,16 @@ std::string to_text(const std::vector<MarkerNamesRow>& rows) {
   for (const MarkerNamesRow& row : rows) {
     text += fmt::format("{:30} {:7} {:15} {:13}         {:15} {:13}\n", row.scene, row.videos, row.lost, row.lost_exact,
                         row.peer_lost, row.peer_lost_exact);
+  }
+  return text;
+}
+
+std::string to_markdown(const std::vector<MarkerNamesRow>& rows) {
+  std::string text = markdown_header({"scene", "videos", "Marey, from images", "Marey, exact points", "plain tracker, from images",
+                                      "plain tracker, exact points"});
+  for (const MarkerNamesRow& row : rows) {
+    text += markdown_row({row.scene, std::to_string(row.videos), std::to_string(row.lost), std::to_string(row.lost_exact),
+                          std::to_string(row.peer_lost), std::to_string(row.peer_lost_exact)});
   }
   return text;
 }

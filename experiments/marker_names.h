@@ -31,4 +31,7 @@ std::vector<MarkerNamesRow> run_marker_names(const MarkerNamesOptions& options);
 /// As text, a line a scene.
 std::string to_text(const std::vector<MarkerNamesRow>& rows);
 
+/// One table in Markdown, a row a scene.
+std::string to_markdown(const std::vector<MarkerNamesRow>& rows);
+
 }  // namespace marey::experiments

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -357,28 +356,6 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
     what.true_jitter = total.truth.score().jitter;
   }
   return experiment;
-}
-
-std::string to_text(const OutlineExperiment& experiment) {
-  std::string text;
-  const auto number = [](const std::optional<double>& value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
-  };
-  for (std::size_t c = 0; c < experiment.cases.size(); ++c) {
-    const OutlineCase& what = experiment.cases[c];
-    fmt::format_to(std::back_inserter(text), "{}{}: {} {}, {} people; the true centres' jitter is {} px\n", c > 0 ? "\n" : "",
-                   what.name, what.videos, what.videos == 1 ? "film" : "films", what.people, number(what.true_jitter, 2));
-    fmt::format_to(std::back_inserter(text), "{:<28}{:>8}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>10}{:>8}{:>12}\n", "", "IoU", "alone",
-                   "front", "behind", "centre, px", "lost", "followed", "jitter", "wild", "us a target");
-    for (const auto& row : experiment.rows) {
-      const OutlineScore& score = row.scores[c];
-      fmt::format_to(std::back_inserter(text), "{:<28}{:>8.3f}{:>8}{:>8}{:>8}{:>12}{:>8}{:>11.1f}%{:>10}{:>8}{:>12}\n", row.method,
-                     score.iou, number(score.alone, 3), number(score.front, 3), number(score.behind, 3),
-                     number(score.centre_error, 2), score.lost, 100 * score.followed, number(score.jitter, 2), score.wild,
-                     number(score.target_us, 1));
-    }
-  }
-  return text;
 }
 
 }  // namespace marey::experiments

@@ -72,4 +72,7 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
 /// A table a case.
 std::string to_text(const OutlineExperiment& experiment);
 
+/// One table in Markdown, a row a case: IoU, centre error and names lost of each method.
+std::string to_markdown(const OutlineExperiment& experiment);
+
 }  // namespace marey::experiments

@@ -13,6 +13,7 @@
 #include "marey/filter/filters.h"
 #include "marey/simulate/markers/marker_scene.h"
 
+#include "experiments/markdown_table.h"
 #include "experiments/trackers.h"
 
 namespace marey::experiments {
@@ -142,6 +143,20 @@ std::string to_text(const TrackerExperiment& experiment) {
   add_losses(text, experiment);
   for (std::size_t motion = 0; motion < TrackerRow::kMotions; ++motion) add_errors(text, experiment, motion);
   add_times(text, experiment);
+  return text;
+}
+
+std::string to_markdown(const TrackerExperiment& experiment) {
+  std::vector<std::string> titles{""};
+  for (const char* name : kNames) titles.emplace_back(name);
+  for (std::size_t motion = 0; motion < TrackerRow::kMotions; ++motion) titles.push_back(fmt::format("{}, px", kNames[motion]));
+  std::string text = markdown_header(titles);
+  for (const TrackerRow* row : all_rows(experiment)) {
+    std::vector<std::string> cells{row->method};
+    for (const auto& losses : row->losses) cells.push_back(losses ? std::to_string(*losses) : "–");
+    for (const auto& error : row->errors) cells.push_back(error && error->samples > 0 ? fmt::format("{:.2f}", error->mean) : "–");
+    text += markdown_row(cells);
+  }
   return text;
 }
 

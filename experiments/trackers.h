@@ -56,6 +56,9 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
 /// Tables I–VII as text, the paper's rows above ours.
 std::string to_text(const TrackerExperiment& experiment);
 
+/// One table in Markdown: losses and mean prediction errors.
+std::string to_markdown(const TrackerExperiment& experiment);
+
 /// Writes a plot of each table and a picture like the paper's Figure 3 into `folder`, as SVG. Returns their names.
 /// Throws Error where it cannot.
 std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, const std::string& folder);

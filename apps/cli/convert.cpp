@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/edit/request.h"
 #include "marey/format/register.h"
 
 #include "command_line.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct ConvertCommand {
   std::string from, to;
-  std::string size = "105x68";
+  std::string size = "105x68", frames;
   std::vector<std::string> periods;
   pipeline::ConvertOptions options;
   bool json = false;
@@ -41,10 +42,17 @@ format::match::GroundPeriod parse_period(const std::string& text, int number) {
   return {number, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)};
 }
 
+edit::FrameRange parse_frames(const std::string& text) {
+  const auto frames = edit::parse_range(text);
+  if (!frames) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
+  return *frames;
+}
+
 void run(ConvertCommand& command) {
   command.options.read.pitch = parse_pitch_size(command.size);
   for (const std::string& period : command.periods)
     command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
+  if (!command.frames.empty()) command.options.frames = parse_frames(command.frames);
   const pipeline::ConvertSummary done = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::convert(command.from, command.to, command.options, hooks); });
   warn(done.warnings);
@@ -111,10 +119,14 @@ void add_convert(Command& program) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", how.up, kAxes,
-                 "the axis that is up in B (in A, where B is a take), z where it is left out; coordinates are turned accordingly");
+                 "the axis that is up in B, z where it is left out (in A, where B is a take); coordinates are turned accordingly");
   command.choice("--from-up", how.from_up, kAxes,
-                 "the axis that is up in A, z where it is left out; y of a skeleton's motion (.bvh, .asf)");
+                 "the axis that is up in A; as A says where it is left out, else z; y of a skeleton's motion (.bvh, .asf)");
   command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
+  command
+      .text("--frames", options->frames,
+            "FIRST:LAST, counted from 0, both included: these alone, with their numbers and times as they were")
+      .check(parse_frames);
   command.flag("--labelled", how.labelled, "leave out tracks that have no label");
   command.input_file("--analog", how.analog,
                      "a C3D file whose analog channels, force plates and events go along into B, a C3D file too: the one that A, a "

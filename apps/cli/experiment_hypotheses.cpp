@@ -16,6 +16,7 @@ namespace {
 struct ExperimentHypotheses {
   experiments::HypothesesExperimentOptions options;
   bool json = false;
+  bool markdown = false;
   bool quiet = false;
 };
 
@@ -41,6 +42,8 @@ void run(const ExperimentHypotheses& command) {
       command.quiet, [&](const Hooks& hooks) { return experiments::run_hypotheses_experiment(command.options, hooks); });
   if (command.json) {
     print(as_json(experiment));
+  } else if (command.markdown) {
+    fmt::print("{}", experiments::to_markdown(experiment));
   } else if (!command.quiet) {
     fmt::print("{}", experiments::to_text(experiment));
   }
@@ -61,7 +64,7 @@ void add_experiment_hypotheses(Command& experiment) {
   command.number("--merged", encounters.merged, "m", closed(0, 5), "two nearer than this are seen as one");
   command.whole("--hypotheses", tracker.hypotheses, "N", 1, 10'000, "kept for each cluster, at most");
   command.number("--window", tracker.window, "s", closed(0, 60), "what is older is decided");
-  command.reports(options->json, options->quiet, "tables");
+  command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }
 

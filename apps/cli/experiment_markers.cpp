@@ -16,6 +16,7 @@ namespace {
 struct ExperimentMarkers {
   experiments::MarkerNamesOptions options;
   bool json = false;
+  bool markdown = false;
   bool quiet = false;
 };
 
@@ -42,6 +43,8 @@ void run(const ExperimentMarkers& command) {
   }
   if (command.json) {
     print({{"seed", options.seed}, {"names", as_json(rows)}});
+  } else if (command.markdown) {
+    fmt::print("{}", experiments::to_markdown(rows));
   } else if (!command.quiet) {
     fmt::print("{}", experiments::to_text(rows));
   }
@@ -56,7 +59,7 @@ void add_experiment_markers(Command& experiment) {
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "of each scene");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.text("--only", options->options.only, "scenes whose names contain this");
-  command.reports(options->json, options->quiet, "tables");
+  command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }
 

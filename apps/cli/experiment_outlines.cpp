@@ -18,6 +18,7 @@ namespace {
 struct ExperimentOutlines {
   experiments::OutlineExperimentOptions options;
   bool json = false;
+  bool markdown = false;
   bool quiet = false;
 };
 
@@ -46,6 +47,8 @@ void run(const ExperimentOutlines& command) {
   if (experiment.cases.empty()) throw Error("no case's name holds \"{}\"", command.options.only);
   if (command.json) {
     print(as_json(experiment));
+  } else if (command.markdown) {
+    fmt::print("{}", experiments::to_markdown(experiment));
   } else if (!command.quiet) {
     fmt::print("{}", experiments::to_text(experiment));
   }
@@ -61,7 +64,7 @@ void add_experiment_outlines(Command& experiment) {
                 "of two people who meet or are hidden; of other cases a tenth");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.text("--only", options->options.only, "cases whose name holds this text");
-  command.reports(options->json, options->quiet, "tables");
+  command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }
 

@@ -17,6 +17,7 @@ struct ExperimentTrackers {
   experiments::TrackerExperimentOptions options;
   std::string out;
   bool json = false;
+  bool markdown = false;
   bool quiet = false;
 };
 
@@ -49,13 +50,17 @@ Json as_json(const std::vector<experiments::TrackerRow>& rows) {
 }
 
 void run(const ExperimentTrackers& command) {
+  experiments::TrackerExperimentOptions options = command.options;
+  if (command.markdown && command.out.empty()) options.timed_markers.clear();  // that table has no times
   const experiments::TrackerExperiment experiment =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_tracker_experiment(command.options, hooks); });
+      with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_tracker_experiment(options, hooks); });
   if (command.json) {
     print({{"videos", experiment.videos},
            {"seed", experiment.seed},
            {"paper", as_json(experiment.paper)},
            {"ours", as_json(experiment.ours)}});
+  } else if (command.markdown) {
+    fmt::print("{}", experiments::to_markdown(experiment));
   } else if (!command.quiet) {
     fmt::print("{}", experiments::to_text(experiment));
   }
@@ -73,7 +78,7 @@ void add_experiment_trackers(Command& experiment) {
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "in each situation");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.output_folder("-o,--output", options->out, "folder for a plot of each table and a picture like Figure 3, as SVG");
-  command.reports(options->json, options->quiet, "tables");
+  command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }
 

@@ -95,7 +95,7 @@ void add_gait(Command& program) {
       .ends_in({".c3d"});
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING, z where it is left out");
+  command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING; as it says where this is left out, else z");
   command.group("The person, where the files do not say");
   command.number("--leg-length", options->leg_length, "m", above(0, 2), "from the hip's front spine to the inner ankle");
   command.number("--knee-width", options->knee_width, "m", above(0, 0.5), "across its sides");

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "marey/core/other_ground.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/register.h"
@@ -169,11 +170,11 @@ void print_recording(const std::string& path, const format::Format& format, cons
   if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
   if (info.beside.channels > 0) print_row("analog", fmt::format("{} channels", info.beside.channels));
   if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
-  print_row("positions", to_string(info.header.frame));
+  print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
   for (const pipeline::EditLine& edit : edits)
     print_row("edit", fmt::format("{} {}{}", edit.id, edit.words, edit.counts ? "" : " (does not count)"));
-  if (info.header.rig) {
+  if (info.header.rig && !info.header.rig->cameras.empty()) {
     print_row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
     print_calibration(*info.header.rig);
     fmt::print("\n");
@@ -228,7 +229,8 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   if (info.beside.events > 0) result["events"] = info.beside.events;
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
-  if (info.header.rig) result["cameras"] = info_json(*info.header.rig);
+  if (info.header.rig && !info.header.rig->cameras.empty()) result["cameras"] = info_json(*info.header.rig);
+  if (y_grows_down(info.header)) result["y_down"] = true;
   Json told = Json::array();
   for (const Edit& edit : info.edits) {
     Json entry{{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}};
@@ -260,6 +262,7 @@ Json info_json(const format::Format& format, const format::match::GroundMatch& m
               {"away", match.away},
               {"pitch", {match.pitch.length, match.pitch.width}},
               {"cameras", cameras_of(recording)}};
+  if (y_grows_down(recording.header)) result["y_down"] = true;
   if (recording.samples() > 0) {
     const Extent extent = extent_of(recording);
     result["first_frame"] = recording.instants().front().index;
@@ -286,6 +289,7 @@ void print_match(const std::string& path, const format::Format& format, const fo
   const char* unit = recording.header.frame.metric() ? "m" : "px";
   print_row("places", fmt::format("{0}, x {2:.2f} to {3:.2f} {1}, y {4:.2f} to {5:.2f} {1}", recording.samples(), unit,
                                   extent.low.x(), extent.high.x(), extent.low.y(), extent.high.y()));
+  if (y_grows_down(recording.header)) print_row("axes", "y grows downwards, seen from above with x to the right");
   if (!match.home.empty() || !match.away.empty()) print_row("teams", fmt::format("{} at home, {}", match.home, match.away));
   fmt::print("\n  {:>6}  {:<24}  {:<24}  {:>9}\n", "id", "label", "team", "instants");
   for (const std::size_t i : format::match::listed_tracks(match)) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/format/motion/marker_set.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/labels_in_space.h"
@@ -30,7 +31,7 @@ struct LearnLabelsCommand {
 
 struct LabelCommand {
   std::string recording, set, out;
-  std::vector<std::string> leave_out;
+  std::vector<std::string> leave_out, accept;
   solve::labels::LabelOptions options;
   bool json = false, quiet = false;
 };
@@ -44,11 +45,20 @@ std::vector<std::string> patterns_in(const std::vector<std::string>& given) {
   return patterns;
 }
 
+std::string marker_set_names() {
+  std::string names;
+  for (const analyse::gait::BodyMarkerSet& set : analyse::gait::body_marker_sets())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", set.name());
+  return names + "; with -lower behind it its pelvis and legs";
+}
+
 void run(LearnLabelsCommand& command) {
   if (!command.markers.empty()) {
-    command.options.labels = std::filesystem::is_regular_file(command.markers)
-                                 ? format::motion::read_marker_set(command.markers).labels
-                                 : labels_in(command.markers);
+    const bool file = std::filesystem::is_regular_file(command.markers);
+    command.options.as_far_as_there = !file && command.markers.find(',') == std::string::npos;
+    command.options.labels = file                              ? format::motion::read_marker_set(command.markers).labels
+                             : command.options.as_far_as_there ? analyse::gait::marker_set_labels(command.markers)
+                                                               : labels_in(command.markers);
   }
   std::vector<std::string> warnings;
   const LearnedMarkers learned =
@@ -84,18 +94,24 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
              "  (seen: of the frames; gaps: times that it is missing in between; renamed: frames in which its track had another "
              "name of the set before; outliers: frames in which its distances to the others are off)\n");
   if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
+  if (summary.accepted > 0)
+    fmt::print(stderr, "accepted: {} {} the name that fits best\n", summary.accepted,
+               summary.accepted == 1 ? "piece got" : "pieces got");
   int told = 0;
   for (const auto& piece : summary.unnamed) {
     if (piece.best.empty() || piece.last - piece.first < 10 || told++ >= 10) continue;
     fmt::print(stderr, "  frames {}-{} of track {} have no name: {}{}{}?\n", piece.first, piece.last, number(piece.track),
                piece.best, piece.next.empty() ? "" : " or ", piece.next);
   }
+  if (told > 0 && command.accept.empty())
+    fmt::print(stderr, "  --accept all, or --accept with some of these names, gives pieces the first name\n");
   fmt::print(stderr, "{}\n", command.out);
 }
 
 Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& summary) {
-  Json json{{"frames", summary.instants}, {"points", summary.points}, {"named", summary.named},   {"renamed", summary.renamed},
-            {"scale", summary.scale},     {"misfit", summary.misfit}, {"recording", command.out}, {"warnings", summary.warnings}};
+  Json json{{"frames", summary.instants}, {"points", summary.points},     {"named", summary.named},
+            {"renamed", summary.renamed}, {"accepted", summary.accepted}, {"scale", summary.scale},
+            {"misfit", summary.misfit},   {"recording", command.out},     {"warnings", summary.warnings}};
   json["markers"] = Json::array();
   for (const auto& marker : summary.health)
     json["markers"].push_back({{"label", marker.label},
@@ -113,7 +129,7 @@ Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& su
 void run(const LabelCommand& command) {
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
     return pipeline::label_recording(command.recording, command.set, command.out, command.options, hooks,
-                                     patterns_in(command.leave_out));
+                                     patterns_in(command.leave_out), patterns_in(command.accept));
   });
   warn(summary.warnings);
   if (command.json) {
@@ -133,8 +149,10 @@ void add_learn(Command& label) {
   command.input_files("TAKES", options->recordings, "points in space with names: " + format::names_of_read(format::Content::space))
       .required();
   command.output_file("-o,--output", options->out, "the set, as set.toml").required();
-  command.text("--markers", options->markers,
-               "those that belong to it, commas between, or a file with one a line (default: all with names)");
+  command.text(
+      "--markers", options->markers,
+      "those that belong to it: commas between, a file with one a line, or a set of the field as far as they have its markers: " +
+          marker_set_names() + " (default: all with names)");
   command.also_reads([options] { return std::vector{options->markers}; });  // it may be a file
   add_leave_out(command, options->leave_out);
   command.flag("--scaled", options->options.scaled,
@@ -156,6 +174,10 @@ void add_label(Command& program) {
   command.output_file("-o,--output", options->out,
                       "the recording with names: " + format::endings_of_written(format::Content::space));
   add_leave_out(command, options->leave_out);
+  command.texts(
+      "--accept", options->accept,
+      "what stays without a name gets the one that fits it best, where nobody else bears it: all, or C7,T10; may be given "
+      "often");
   auto& how = options->options;
   command.number("--least-fit", how.least_fit, "nats", closed(0, 100), "what fits no name better stays without one");
   command.number("--least-margin", how.least_margin, "nats", closed(0, 100), "by so much a name must be better than the next");

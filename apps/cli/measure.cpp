@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "marey/pipeline/ground_orientation.h"
 #include "marey/pipeline/measure_match.h"
 
 #include "command_line.h"
@@ -22,7 +23,8 @@ namespace {
 struct MeasureCommand {
   std::string tracks;
   pipeline::MeasureOutput output;
-  std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68";
+  std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68", rig;
+  bool y_down = false;
   pipeline::MeasureMatchOptions options;
   bool json = false;
   bool quiet = false;
@@ -140,8 +142,11 @@ void run(const MeasureCommand& command) {
   options.how.path.method = analyse::parse_path_method(command.method);
   options.how.zones = parse_zones(command.zones);
   options.how.pitch = parse_pitch_size(command.size);
-  const analyse::Measurement measured = with_progress(
+  if (command.y_down) options.y_down = true;
+  if (!command.rig.empty()) options.y_down = pipeline::rig_has_y_down(command.rig);
+  const auto [measured, warnings] = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::measure_match(command.tracks, command.output, options, hooks); });
+  warn(warnings);
   if (command.json) {
     report_json(measured);
   } else if (!command.quiet) {
@@ -169,6 +174,10 @@ void add_measure(Command& program) {
   command.input_file("--metadata", options->options.metadata,
                      "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
   command.number("--rate", options->options.rate_hz, "Hz", kRates, "frames a second, where TRACKS does not say");
+  const Option y_down =
+      command.flag("--y-down", options->y_down,
+                   "y grows downwards, seen from above with x to the right, where TRACKS does not say; for the page");
+  command.input_file("--rig", options->rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
   command.also_writes([options] {
     if (options->output.report.empty()) return std::vector<std::string>{};
     return std::vector{report_file(*options)};

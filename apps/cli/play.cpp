@@ -95,9 +95,11 @@ void add_play(Command& program) {
   add_skeleton_option(command, options->skeleton);
   add_stream_options(command, options->streams);
   command.group("The recording");
-  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  command.choice("--from-up,--up", options->read.up, kAxes,
-                 "the axis that is up in a file of points; streams have z up, or what they want");
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice(
+      "--from-up,--up", options->read.up, kAxes,
+      "the axis that is up in a file of points, as it says where this is left out, else z; streams have z up, or what they want");
   command.number("--recorded-rate", options->read.rate_hz, "Hz", kRates, "frames a second, where the file does not say");
   command.input_file("--metadata", options->read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside it under a like name");

@@ -38,6 +38,17 @@ Picture picture_of(const std::string& path) {
   return frame->picture;
 }
 
+/// Where others than those asked for are in the film.
+std::vector<std::string> told_of(const SimulatePeople& command, const simulate::people::PeopleFilm& film) {
+  const int there = film.most_at_a_time();
+  if (!command.film.people || *command.film.people == there) return {};
+  using Situation = simulate::people::PeopleSituation;
+  if (command.situation == Situation::crossing || command.situation == Situation::overlap)
+    return {fmt::format("this situation is of {} people; --people {} is for the others", there, *command.film.people)};
+  return {fmt::format("{} of {} people have room to keep apart in {} x {} px: a smaller --height or a larger --size makes more",
+                      there, *command.film.people, command.size[0], command.size[1])};
+}
+
 std::vector<std::string> files_of(const SimulatePeople& command) {
   std::vector<std::string> files;
   for (const char* name : {"video.mp4", "rig.toml", "truth.txt", "positions.csv", "silhouettes.jsonl"})
@@ -50,12 +61,15 @@ void run(const SimulatePeople& command) {
   options.size = {command.size[0], command.size[1]};
   if (!command.ground.empty()) options.ground = picture_of(command.ground);
   const simulate::people::PeopleFilm film(command.situation, command.seed, options);
+  const std::vector<std::string> warnings = told_of(command, film);
+  warn(warnings);
   make_folder(command.folder);
   with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::film_people(film, command.folder, hooks); });
   if (command.json)
     print({{"frames", film.frames()},
            {"people", film.figures().size()},
            {"seed", command.seed},
+           {"warnings", warnings},
            {"folder", command.folder},
            {"files", files_of(command)}});
   if (command.quiet || command.json) return;

@@ -64,10 +64,10 @@ void print_worst(const SolveSummary& summary) {
   fmt::print(stderr, "worst markers: {}\n", fmt::join(said, ", "));
 }
 
-void print_solved(const SolveSummary& summary, const std::vector<std::string>& outputs) {
-  fmt::print(stderr, "{}: {} markers in {} frames ({:.1f} s at {:g} Hz)\n",
-             summary.skeleton.empty() ? "skeleton" : summary.skeleton, summary.markers.size(), summary.frames, summary.seconds,
-             summary.rate_hz);
+void print_solved(const std::string& recording, const SolveSummary& summary, const std::vector<std::string>& outputs) {
+  fmt::print(stderr, "{}: the skeleton{}, solved from {} markers in {} {} ({:.1f} s at {:g} Hz)\n", recording,
+             summary.skeleton.empty() ? "" : " " + summary.skeleton, summary.markers.size(), summary.frames,
+             summary.frames == 1 ? "frame" : "frames", summary.seconds, summary.rate_hz);
   fmt::print(stderr, "markers lie {:.2f} mm RMS from where the skeleton has them (worst {:.1f} mm): {}\n", 1000 * summary.rms_m,
              1000 * summary.worst_m, verdict(summary));
   print_worst(summary);
@@ -156,8 +156,18 @@ void run(SolveCommand& command) {
   if (command.json) {
     print(as_json(summary, command.outputs));
   } else if (!command.quiet) {
-    print_solved(summary, command.outputs);
+    print_solved(command.recording, summary, command.outputs);
   }
+}
+
+void require_one_skeleton(const SolveCommand& command) {
+  const pipeline::SolveOptions& how = command.options;
+  if (!command.skeleton.empty() && !how.static_trial.empty())
+    throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!how.marker_set.empty() && !command.skeleton.empty())
+    throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
+  if (!how.motion.empty() && how.static_trial.empty())
+    throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
 }
 
 void add_file_options(Command& command, SolveCommand& options) {
@@ -167,7 +177,7 @@ void add_file_options(Command& command, SolveCommand& options) {
   constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
       {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
   command.choice("--up", options.options.up, kAxes,
-                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else z");
+                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else as it says, else z");
   command.group("BVH");
   command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
                  "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
@@ -187,16 +197,16 @@ void add_solve(Command& program) {
   Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers or body keypoints in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file(
-      "--skeleton", options->skeleton,
-      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); left out: the human skeleton, of "
-      "--static or of body keypoints");
-  command.input_file(
-      "--static", options->options.static_trial,
-      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given");
+  command.input_file("--skeleton", options->skeleton,
+                     "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md)");
+  command.input_file("--static", options->options.static_trial,
+                     "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
+                     "given; without either "
+                     "it is made from RECORDING alone, of body keypoints or, less surely, of markers");
   command
       .text("--marker-set", options->options.marker_set,
-            "whose labels --static has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left out: known by them")
+            "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
+            "out: known by them")
       .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
   command.input_file(
       "--motion", options->options.motion,
@@ -220,12 +230,7 @@ void add_solve(Command& program) {
   add_file_options(command, *options);
   command.reports(options->json, options->quiet);
   command.runs([options] {
-    if (!options->skeleton.empty() && !options->options.static_trial.empty())
-      throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
-    if (!options->options.marker_set.empty() && options->options.static_trial.empty())
-      throw WrongUsage("{}", "--marker-set: is of a static trial; give --static too");
-    if (!options->options.motion.empty() && options->options.static_trial.empty())
-      throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
+    require_one_skeleton(*options);
     run(*options);
   });
 }

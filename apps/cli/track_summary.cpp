@@ -53,8 +53,9 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
 
 void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
   for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
-  fmt::print(stderr, "{} {} in {} frames ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
-             summary.frames, summary.seconds, static_cast<double>(summary.frames) / elapsed);
+  fmt::print(stderr, "{} {} in {} {} ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
+             summary.frames, summary.frames == 1 ? "frame" : "frames", summary.seconds,
+             static_cast<double>(summary.frames) / elapsed);
   print_left_out(summary);
   if (const auto measured = summary.figures.find("measurement_px"); measured != summary.figures.end()) {
     fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n", measured->second,

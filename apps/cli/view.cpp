@@ -9,6 +9,7 @@
 
 #include "marey/core/stop.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/ground_orientation.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -23,7 +24,8 @@ namespace {
 
 struct ViewCommand {
   std::string file;
-  std::string size;
+  std::string size, rig;
+  bool y_down = false;
   viewer::ViewOptions options;
   bool json = false;
   bool quiet = false;
@@ -34,6 +36,8 @@ void run(ViewCommand& command) {
     command.options.ground.pitch = parse_pitch_size(command.size);
     command.options.read.pitch = *command.options.ground.pitch;
   }
+  if (command.y_down) command.options.ground.y_down = true;
+  if (!command.rig.empty()) command.options.ground.y_down = pipeline::rig_has_y_down(command.rig);
   viewer::RecordingViewer shown(command.file, command.options);
   // The address alone stands on standard output, so that a script can read it.
   if (command.json) {
@@ -63,16 +67,19 @@ void add_view(Command& program) {
   command.input_file("--film", how.film, "the film that was tracked, to be shown behind tracks in a picture");
   command.flag("--edit", how.edit, "let the page change FILE, a take: what \"marey edit\" can do, each edit to be undone");
   add_web_place(command, how.place);
-  using Axis = format::UpAxis;
-  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", Axis::y}, {"z", Axis::z}}};
-  command.choice("--up", how.read.up, kAxes, "the axis that is up in FILE, of points in space");
+  using Axis = std::optional<format::UpAxis>;
+  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  command.choice("--up", how.read.up, kAxes,
+                 "the axis that is up in FILE, of points in space; as FILE says where it is left out, else z");
   command.group("People on the ground");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m; without it a pitch is drawn where people move on one")
       .check(parse_pitch_size);
   command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where FILE does not say");
-  command.flag("--y-down", how.ground.y_down, "y grows downwards, seen from above with x to the right");
+  const Option y_down =
+      command.flag("--y-down", options->y_down, "y grows downwards, seen from above with x to the right, where FILE does not say");
+  command.input_file("--rig", options->rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
   command.flag("--centred", how.ground.centred, "places count from the middle of the pitch, not from a corner");
   command.group("");
   command.reports(options->json, options->quiet, "address");

@@ -149,9 +149,12 @@ void Command::also_writes(Paths paths) {
   declared_->writes.push_back(std::move(paths));
 }
 
-void Command::reports(bool& json, bool& quiet, const std::string& what) {
+void Command::reports(bool& json, bool& quiet, const std::string& what, bool* markdown) {
   declared_->group.clear();
-  flag("--json", json, "print the " + what + " as JSON on standard output");
+  const Option as_json = flag("--json", json, "print the " + what + " as JSON on standard output");
+  if (markdown != nullptr) {
+    flag("--markdown", *markdown, "print the " + what + " as a Markdown table, without times").excludes(as_json);
+  }
   flag("-q,--quiet", quiet, "no progress and no " + what + "; warnings and JSON stay");
   add_process_options(*this);
   declared_->json = &json;

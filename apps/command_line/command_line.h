@@ -141,8 +141,8 @@ class Command {
   void also_reads(Paths paths);
   void also_writes(Paths paths);
 
-  /// --json and -q,--quiet, which every command has.
-  void reports(bool& json, bool& quiet, const std::string& what = "summary");
+  /// --json and -q,--quiet, which every command has; --markdown if there is a value for it.
+  void reports(bool& json, bool& quiet, const std::string& what = "summary", bool* markdown = nullptr);
 
   void runs(std::function<void()> run);
 

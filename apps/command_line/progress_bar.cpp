@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "marey/core/text_safety.h"
+
 namespace marey::cli {
 namespace {
 
@@ -49,6 +51,10 @@ void ProgressBar::show(std::string_view what, std::int64_t done, std::optional<s
   }
   fmt::print(stderr, "{}", line);
   std::fflush(stderr);
+}
+
+void ProgressBar::say(const std::string& sentence) {
+  if (!silent_) fmt::print(stderr, "\r\x1b[Kmarey: {}\n", plain_text(sentence));
 }
 
 }  // namespace marey::cli

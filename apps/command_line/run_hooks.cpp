@@ -69,7 +69,8 @@ std::stop_token stop_by_signals() {
 Hooks hooks_over(ProgressBar& bar) {
   return {.progress = [&bar](const Progress& progress) { bar.show(progress.step, progress.done, progress.total); },
           .stop = stop_by_signals(),
-          .options = given_options()};
+          .options = given_options(),
+          .news = [&bar](const std::string& sentence) { bar.say(sentence); }};
 }
 
 void warn(const std::vector<std::string>& sentences) {

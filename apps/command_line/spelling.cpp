@@ -22,11 +22,21 @@ int letters_apart(std::string_view a, std::string_view b) {
   return above[b.size()];
 }
 
+namespace {
+
+/// So many slips are still a slip of the pen: a third of the letters, at most three.
+int most_apart(std::string_view known) {
+  const std::size_t dashes = std::min(known.find_first_not_of('-'), known.size());
+  return std::clamp(static_cast<int>(known.size() - dashes) / 3, 1, 3);
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view word, std::span<const std::string> known) {
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
     return letters_apart(word, a) < letters_apart(word, b);
   });
-  if (nearest == known.end() || 2 * letters_apart(word, *nearest) > static_cast<int>(nearest->size())) return {};
+  if (nearest == known.end() || letters_apart(word, *nearest) > most_apart(*nearest)) return {};
   return " Did you mean " + *nearest + "?";
 }
 

@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/ground_orientation.h"
 
 #include "access.h"
 #include "edit_session.h"
@@ -139,7 +140,9 @@ std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
     reported = now;
     tell_all(kSceneChanged, "scene");
   }
-  const std::vector<std::string> warnings = reader_->warnings();
+  std::vector<std::string> warnings = reader_->warnings();
+  if (auto sentence = pipeline::orientation_unknown(path_, header_); sentence && !ground_.y_down)
+    warnings.push_back(std::move(*sentence));
   reader_.reset();  // who holds a take open may keep others from writing it
   recording_.finish(warnings);
   if (edits_) edits_->begin();

@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/LU>
-
+#include "marey/core/other_ground.h"
 #include "marey/geometry/camera.h"
 
 #include "json_value.h"
@@ -119,12 +118,6 @@ Json pitch_json(const GroundChoice& choice, const std::optional<Extent>& extent)
   return Json{{"length", size.length}, {"width", size.width}, {"x", corner.x()}, {"y", corner.y()}};
 }
 
-/// Whether the user's y grows to the right of x, seen from above.
-bool is_mirrored(const RecordingHeader& header) {
-  if (header.frame.kind != FrameOfReference::Kind::user_ground || !header.rig || !header.rig->ground_from_world) return false;
-  return header.rig->ground_from_world->topLeftCorner<2, 2>().determinant() < 0;
-}
-
 void add_extent(Json& scene, const std::optional<Extent>& extent) {
   if (!extent) return;
   scene["low"] = json_of(extent->low);
@@ -132,10 +125,10 @@ void add_extent(Json& scene, const std::optional<Extent>& extent) {
 }
 
 /// `pitch`: its corner and size, or null.
-void add_ground(Json& scene, const RecordingHeader& header, bool y_down, const Json& pitch) {
+void add_ground(Json& scene, const RecordingHeader& header, std::optional<bool> y_down, const Json& pitch) {
   if (frame_name(header.frame.kind) != std::string_view("ground")) return;
   scene["pitch"] = pitch;
-  scene["y_down"] = y_down || is_mirrored(header);
+  scene["y_down"] = y_down.value_or(y_grows_down(header));
 }
 
 }  // namespace

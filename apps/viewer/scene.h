@@ -14,7 +14,7 @@ namespace marey::viewer {
 /// What the user says of a ground.
 struct GroundChoice {
   std::optional<geometry::PitchSize> pitch = {};  ///< nothing: guessed from where people are, 105 × 68 m
-  bool y_down = false;
+  std::optional<bool> y_down = {};                ///< nothing: as the recording has it
   bool centred = false;
 };
 

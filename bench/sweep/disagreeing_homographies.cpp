@@ -1,11 +1,11 @@
 // A football match seen by six cameras that are known by homographies alone, each off by smooth errors: associations against a
 // tracker of an afternoon, and the same with exact cameras.
-//   disagreeing_homographies [SEEDS] [SECONDS] [RATE_HZ]
-#include <cstdlib>
+//   disagreeing_homographies [--seeds N] [--seconds S] [--rate HZ]
+#include <cstdint>
 #include <string>
 #include <utility>
 
-#include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
@@ -38,7 +38,7 @@ pipeline::PeopleOnGroundOptions with(track::ground::GroundAssociation associatio
 
 void run(int seeds, double seconds, double rate_hz) {
   using track::ground::GroundAssociation;
-  fmt::print("match of {} s at {} Hz, six cameras, each off by {} to {} m\n", seconds, rate_hz, kLeast, kMost);
+  print_titles();
   for (int seed = 1; seed <= seeds; ++seed) {
     const ScratchFolder folder;
     pipeline::MatchFilesOptions scene;
@@ -46,14 +46,13 @@ void run(int seeds, double seconds, double rate_hz) {
     scene.cameras.rate_hz = rate_hz;
     scene.seed = static_cast<std::uint64_t>(seed);
     pipeline::write_match(scene, folder.path());
-    fmt::print("seed {}\n", seed);
     for (const bool off : {false, true}) {
       if (off) use_homographies(folder.path(), scene.seed);
       const std::string cameras = off ? "off, " : "exact, ";
-      print_scores(cameras + "naive", run_naive(folder.path(), kFarthest));
+      print_scores(seed, cameras + "naive", run_naive(folder.path(), kFarthest));
       for (const auto& [name, association] : {std::pair("gnn", GroundAssociation::gnn), std::pair("mht", GroundAssociation::mht)}) {
-        print_scores(cameras + name + " as it was", run_ours(folder.path(), with(association, false), kFarthest));
-        print_scores(cameras + name, run_ours(folder.path(), with(association, true), kFarthest));
+        print_scores(seed, cameras + name + ", nothing learned", run_ours(folder.path(), with(association, false), kFarthest));
+        print_scores(seed, cameras + name, run_ours(folder.path(), with(association, true), kFarthest));
       }
     }
   }
@@ -62,6 +61,13 @@ void run(int seeds, double seconds, double rate_hz) {
 }  // namespace
 }  // namespace marey::sweep
 
-int main(int argc, char** argv) {
-  marey::sweep::run(argc > 1 ? std::atoi(argv[1]) : 2, argc > 2 ? std::atof(argv[2]) : 90, argc > 3 ? std::atof(argv[3]) : 25);
+int main(int count, char** words) {
+  int seeds = 2;
+  double seconds = 90, rate_hz = 25;
+  CLI::App app("A match, by cameras that are known by homographies");
+  app.add_option("--seeds", seeds, "from 1 on")->capture_default_str();
+  app.add_option("--seconds", seconds)->capture_default_str();
+  app.add_option("--rate", rate_hz, "Hz")->capture_default_str();
+  CLI11_PARSE(app, count, words);
+  marey::sweep::run(seeds, seconds, rate_hz);
 }

@@ -18,6 +18,8 @@
 #include "marey/pipeline/track_ground.h"
 #include "marey/reconstruct/place_people.h"
 
+#include "experiments/markdown_table.h"
+
 namespace marey::sweep {
 namespace {
 
@@ -153,9 +155,17 @@ GroundScores run_naive(const std::string& folder, double farthest) {
   return scores_of(folder, recording, farthest);
 }
 
-void print_scores(const std::string& name, const GroundScores& scores) {
-  fmt::print("  {:<28} IDF1 {:.3f}  MOTA {:.3f}  HOTA {:.3f}  switches {:4}  tracks {:4} of {:4}  median error {:.3f} m\n", name,
-             scores.idf1, scores.mota, scores.hota, scores.switches, scores.tracks, scores.people, scores.median_error);
+void print_titles() {
+  fmt::print("{}",
+             experiments::markdown_header({"seed", "", "IDF1", "MOTA", "HOTA", "switches", "tracks", "people", "median error, m"}));
+}
+
+void print_scores(int seed, const std::string& name, const GroundScores& scores) {
+  using experiments::markdown_figure;
+  fmt::print("{}", experiments::markdown_row({std::to_string(seed), name, markdown_figure(scores.idf1, 3),
+                                              markdown_figure(scores.mota, 3), markdown_figure(scores.hota, 3),
+                                              std::to_string(scores.switches), std::to_string(scores.tracks),
+                                              std::to_string(scores.people), markdown_figure(scores.median_error, 3)}));
 }
 
 ScratchFolder::ScratchFolder() {

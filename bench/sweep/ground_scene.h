@@ -25,7 +25,9 @@ GroundScores run_ours(const std::string& folder, const pipeline::PeopleOnGroundO
 /// 1 s of patience.
 GroundScores run_naive(const std::string& folder, double farthest = 1);
 
-void print_scores(const std::string& name, const GroundScores& scores);
+/// A table in Markdown: its titles, and a row.
+void print_titles();
+void print_scores(int seed, const std::string& name, const GroundScores& scores);
 
 /// A fresh folder that goes with the object.
 class ScratchFolder {

@@ -1,20 +1,22 @@
 // Markers in pictures that show more than markers: what is found, what is missed, what is false, beside three naive detectors. Each
 // picture is looked at alone, as the first of a recording.
-//   marker_pictures [PICTURES_A_SETTING] [SETTING] [FIRST_SEED]
+//   marker_pictures [--pictures N: of each setting] [--setting NAME] [--first-seed N] [--no-peers] [--times]
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <ctime>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "marey/detect/markers/marker_detector.h"
 #include "marey/simulate/markers/marker_picture.h"
+
+#include "experiments/markdown_table.h"
 
 namespace {
 
@@ -25,7 +27,7 @@ constexpr double kNear = 1.5;  // px; a marker further away than that, and than 
 
 struct Score {
   std::int64_t markers = 0, missed = 0, false_ones = 0;
-  int pictures = 0, clean = 0;
+  int pictures = 0;
   double ms = 0, worst_ms = 0;
 
   void add(const MarkerPicture& picture, std::vector<Vector<2>> found, double took) {
@@ -48,21 +50,21 @@ struct Score {
     missed += lost;
     false_ones += std::ssize(found);
     ++pictures;
-    clean += lost == 0 && found.empty() ? 1 : 0;
     ms += took;
     worst_ms = std::max(worst_ms, took);
   }
 
-  void print(std::string_view setting, std::string_view who) const {
-    fmt::print(
-        "{:<12} {:<22} {:>6} markers  missed {:6.2f} %  false {:8.2f} a picture  clean {:3} of {:3}  {:7.2f} ms, worst {:.1f}\n",
-        setting, who, markers, 100.0 * static_cast<double>(missed) / static_cast<double>(std::max<std::int64_t>(1, markers)),
-        static_cast<double>(false_ones) / pictures, clean, pictures, ms / pictures, worst_ms);
+  std::string text(bool times) const {
+    std::string cell = fmt::format("{:.2f} %, {:.2f}",
+                                   100.0 * static_cast<double>(missed) / static_cast<double>(std::max<std::int64_t>(1, markers)),
+                                   static_cast<double>(false_ones) / pictures);
+    if (times) cell += fmt::format("; {:.2f} ms, worst {:.1f}", ms / pictures, worst_ms);
+    return cell;
   }
 
   void add(const Score& other) {
     markers += other.markers, missed += other.missed, false_ones += other.false_ones;
-    pictures += other.pictures, clean += other.clean, ms += other.ms, worst_ms = std::max(worst_ms, other.worst_ms);
+    pictures += other.pictures, ms += other.ms, worst_ms = std::max(worst_ms, other.worst_ms);
   }
 };
 
@@ -121,36 +123,52 @@ std::vector<Vector<2>> simple_blobs(const MarkerPicture& picture) {
 
 using Finder = std::vector<Vector<2>> (*)(const MarkerPicture&);
 constexpr std::pair<std::string_view, Finder> kFinders[] = {
-    {"marey", ours}, {"half of the maximum", half_of_maximum}, {"Otsu", otsu}, {"SimpleBlobDetector", simple_blobs}};
+    {"Marey", ours}, {"half of the maximum", half_of_maximum}, {"Otsu", otsu}, {"SimpleBlobDetector", simple_blobs}};
+
+/// One picture's score is added to that of each finder.
+void look_at(const MarkerPicture& picture, std::vector<Score>& scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const std::clock_t begin = std::clock();
+    auto found = kFinders[i].second(picture);
+    const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    scores[i].add(picture, std::move(found), took);
+  }
+}
+
+void print_row(std::string setting, const std::vector<Score>& scores, bool times) {
+  std::vector<std::string> cells{std::move(setting), std::to_string(scores.front().markers)};
+  for (const Score& score : scores) cells.push_back(score.text(times));
+  fmt::print("{}", experiments::markdown_row(cells));
+}
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int count, char** words) {
   cv::setNumThreads(1);
-  const int pictures = argc > 1 ? std::atoi(argv[1]) : 20;
-  const std::string_view only = argc > 2 ? argv[2] : "";
-  const int first = argc > 3 ? std::atoi(argv[3]) : 1;
-  const bool peers = std::getenv("WITHOUT_PEERS") == nullptr;
-  std::vector<Score> all(std::size(kFinders));
+  int pictures = 20;
+  std::uint64_t first = 1;
+  std::string only;
+  bool no_peers = false, times = false;
+  CLI::App app("Markers in pictures that show more than markers: missed, false ones a picture");
+  app.add_option("--pictures", pictures, "of each setting")->capture_default_str();
+  app.add_option("--setting", only);
+  app.add_option("--first-seed", first)->capture_default_str();
+  app.add_flag("--no-peers", no_peers);
+  app.add_flag("--times", times, "processor time of a picture too");
+  CLI11_PARSE(app, count, words);
+  const std::size_t finders = no_peers ? 1 : std::size(kFinders);
+  std::vector<std::string> titles{"setting", "markers"};
+  for (std::size_t i = 0; i < finders; ++i) titles.emplace_back(kFinders[i].first);
+  fmt::print("{}", experiments::markdown_header(titles));
+  std::vector<Score> all(finders);
   for (const auto& [name, setting] : simulate::markers::marker_settings()) {
     if (!only.empty() && only != name) continue;
-    std::vector<Score> scores(std::size(kFinders));
-    for (int seed = first; seed < first + pictures; ++seed) {
-      const MarkerPicture picture = simulate::markers::simulate_marker_picture(setting, static_cast<std::uint64_t>(seed));
-      for (std::size_t i = 0; i < std::size(kFinders); ++i) {
-        if (i > 0 && !peers) break;
-        const std::clock_t begin = std::clock();
-        auto found = kFinders[i].second(picture);
-        const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-        scores[i].add(picture, std::move(found), took);
-      }
-    }
-    const bool counts = setting <= simulate::markers::MarkerSetting::everything;
-    for (std::size_t i = 0; i < std::size(kFinders) && (i == 0 || peers); ++i) {
-      scores[i].print(name, kFinders[i].first);
-      if (counts) all[i].add(scores[i]);
-    }
+    std::vector<Score> scores(finders);
+    for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(pictures); ++seed)
+      look_at(simulate::markers::simulate_marker_picture(setting, seed), scores);
+    print_row(std::string(name), scores, times);
+    if (setting > simulate::markers::MarkerSetting::everything) continue;
+    for (std::size_t i = 0; i < finders; ++i) all[i].add(scores[i]);
   }
-  for (std::size_t i = 0; i < std::size(kFinders) && only.empty() && (i == 0 || peers); ++i)
-    all[i].print("to everything", kFinders[i].first);
+  if (only.empty()) print_row("all up to everything", all, times);
 }

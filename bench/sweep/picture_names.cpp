@@ -18,6 +18,7 @@
 #include "marey/simulate/random.h"
 #include "marey/track/roster_tracker.h"
 
+#include "experiments/markdown_table.h"
 #include "experiments/plain_markers.h"
 
 namespace {
@@ -134,17 +135,17 @@ int main(int count, char** words) {
   app.add_flag("--detect", detect);
   app.add_flag("--which", which);
   CLI11_PARSE(app, count, words);
-  std::printf("videos of %d in which a marker loses its name, %s\n%-24s %6s %6s\n", videos,
-              detect ? "from pictures" : "exact points", "", "ours", "peer");
+  std::printf("%s", experiments::markdown_header({"scene", "videos", "Marey", "plain tracker"}).c_str());
   for (const Kind& kind : kinds()) {
     if (!only.empty() && only != kind.name) continue;
     Lost lost;
     for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(videos); ++seed) {
       const int before = lost.ours;
       run(kind, seed, detect, lost);
-      if (which && lost.ours > before) std::printf("  lost: %llu\n", static_cast<unsigned long long>(seed));
+      if (which && lost.ours > before) std::fprintf(stderr, "%s, lost: %llu\n", kind.name, static_cast<unsigned long long>(seed));
     }
-    std::printf("%-24s %6d %6d\n", kind.name, lost.ours, lost.peer);
+    const std::vector<std::string> cells{kind.name, std::to_string(videos), std::to_string(lost.ours), std::to_string(lost.peer)};
+    std::printf("%s", experiments::markdown_row(cells).c_str());
     std::fflush(stdout);
   }
   return 0;

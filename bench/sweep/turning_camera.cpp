@@ -2,18 +2,19 @@
 // would make them, the exact camera of every frame. Beside it a naive peer on the same pictures: homographies chained from frame to
 // frame (corners, Lucas-Kanade, RANSAC), begun at the exact first one.
 //
-//   turning_camera [SEEDS] [FRAMES] [SCENE]     scenes: plain, cut, graphics, blur
+//   turning_camera [--seeds N] [--frames N] [--scene NAME] [--times]     scenes: plain, cut, graphics, blur
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/LU>
+#include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -21,6 +22,8 @@
 #include "marey/calibrate/turning/follow.h"
 #include "marey/geometry/ground_view.h"
 #include "marey/simulate/match/turning_match.h"
+
+#include "experiments/markdown_table.h"
 
 namespace {
 
@@ -182,7 +185,7 @@ void run(const std::string& scene, std::uint64_t seed, int frames, Score& score)
   const TurningMatchOptions options = scene_of(scene);
   const std::vector<ClickedFrame> clicks = clicks_of(options, seed, frames);
   if (clicks.size() < 2) {
-    std::printf("  seed %llu: the camera looks to one side only; left out\n", static_cast<unsigned long long>(seed));
+    std::fprintf(stderr, "seed %llu: the camera looks to one side only; left out\n", static_cast<unsigned long long>(seed));
     return;
   }
   const ClickedTripod clicked = tripod_from_clicks(clicks, options.size, options.pitch);
@@ -210,24 +213,43 @@ void run(const std::string& scene, std::uint64_t seed, int frames, Score& score)
   judge(result, match.tripod(), truth, views, options.size, score);
 }
 
+void print_score(const std::string& scene, Score& score, bool times) {
+  const auto both = [](Sorted& of, int digits) { return fmt::format("{:.{}f}, {:.{}f}", of.at(.5), digits, of.at(.95), digits); };
+  std::vector<std::string> cells{scene,
+                                 both(score.pan, 4),
+                                 both(score.tilt, 4),
+                                 both(score.focal, 3),
+                                 both(score.ground, 3),
+                                 fmt::format("{:.1f}", 100.0 * score.lost / std::max(1, score.known)),
+                                 std::to_string(score.wrong),
+                                 fmt::format("{:.2f}", score.jitter.at(.95)),
+                                 fmt::format("{:.1f}", score.nees / std::max(1, score.known - score.lost)),
+                                 both(score.peer, 2)};
+  if (times) cells.push_back(fmt::format("{:.1f}", 1000 * score.follow_s / std::max(1, score.frames)));
+  std::printf("%s", marey::experiments::markdown_row(cells).c_str());
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-  const int seeds = count > 1 ? std::atoi(words[1]) : 3, frames = count > 2 ? std::atoi(words[2]) : 250;
-  const std::string only = count > 3 ? words[3] : "";
-  std::printf("1280 x 720, 25 Hz, %d frames, seeds 1 to %d, 4 frames clicked 1.5 px off\n", frames, seeds);
+  int seeds = 3, frames = 250;
+  std::string only;
+  bool times = false;
+  CLI::App app("A camera that pans, tilts and zooms over a simulated match, of 1280 x 720 at 25 Hz");
+  app.add_option("--seeds", seeds, "from 1 on")->capture_default_str();
+  app.add_option("--frames", frames)->capture_default_str();
+  app.add_option("--scene", only, "plain, cut, graphics or blur; all without it");
+  app.add_flag("--times", times, "processor time of a frame too");
+  CLI11_PARSE(app, count, words);
+  std::vector<std::string> titles{"scene", "pan, °",         "tilt, °", "focal length, %",   "places, m", "lost, %",
+                                  "wrong", "jitter p95, px", "NEES",    "chained: places, m"};
+  if (times) titles.emplace_back("processor, ms a frame");
+  std::printf("%s", experiments::markdown_header(titles).c_str());
   for (const std::string scene : {"plain", "cut", "graphics", "blur"}) {
     if (!only.empty() && scene != only) continue;
     Score score;
     for (int seed = 1; seed <= seeds; ++seed) run(scene, static_cast<std::uint64_t>(seed), frames, score);
-    std::printf(
-        "%-9s pan %.4f %.4f  tilt %.4f %.4f deg  focal %.3f %.3f %%  ground %.3f %.3f m (p50 p95)  lost %.1f %%  wrong %d  jitter "
-        "%.2f px"
-        "  nees %.1f  %.1f ms a frame (CPU)  peer %.3f %.3f m\n",
-        scene.c_str(), score.pan.at(.5), score.pan.at(.95), score.tilt.at(.5), score.tilt.at(.95), score.focal.at(.5),
-        score.focal.at(.95), score.ground.at(.5), score.ground.at(.95), 100.0 * score.lost / std::max(1, score.known), score.wrong,
-        score.jitter.at(.95), score.nees / std::max(1, score.known - score.lost), 1000 * score.follow_s / std::max(1, score.frames),
-        score.peer.at(.5), score.peer.at(.95));
-    std::fflush(stdout);
+    print_score(scene, score, times);
   }
 }

@@ -98,7 +98,7 @@ class Ball(unittest.TestCase):
         marey("convert", self.text, dat, "--quiet")
         self.assertIn("Alive", dat.read_text())
         back = self.folder / "back.csv"
-        marey("convert", dat, back, "--quiet")
+        marey("convert", dat, back, "--rig", self.match / "rig.toml", "--quiet")  # TRACAB's y grows upwards, the rig's downwards
         ours = {int(row["frame"]): row for row in rows(self.text) if row["label"] == "ball"}
         theirs = {int(row["frame"]): row for row in rows(back) if row["label"] == "ball"}
         self.assertEqual(ours.keys(), theirs.keys())

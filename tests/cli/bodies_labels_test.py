@@ -50,6 +50,36 @@ class BodiesAndLabels(unittest.TestCase):
         for line in lines:
             self.marey(*shlex.split(line)[1:])
 
+    def test_marker_sets_of_the_field_are_known_by_name(self):
+        labels = ("LASI", "RASI", "SACR", "LTHI", "LKNE", "RKNE", "C7", "STRN", "LHJC", "plate1")
+        with open(self.folder / "standing.csv", "w") as file:
+            file.write("frame,time,id,label,x,y,z\n")
+            file.writelines(f"{frame},{frame / 100},{m + 1},{label},{0.13 * m},{0.05 * (m * m % 7)},{0.9 - 0.07 * (m * 3 % 8) + 0.0001 * frame}\n" for frame in range(30) for m, label in enumerate(labels))
+        for name, wanted in (("plug-in-gait", labels[:8]), ("plug-in-gait-lower", labels[:6]), ("LASI,RASI,SACR,LHJC", ("LASI", "RASI", "SACR", "LHJC"))):
+            told = json.loads(self.marey("label", "learn", "standing.csv", "--markers", name, "-o", "set.toml", "--json").stdout)
+            self.assertEqual(sorted(told["labels"]), sorted(wanted), name)
+        for name in ("plugin-gait", "LASI"):
+            self.assertIn(f"{name}: no marker set that Marey knows; there are plug-in-gait, plug-in-gait-lower, cmu-41", self.marey("label", "learn", "standing.csv", "--markers", name, "-o", "set.toml", code=1).stderr)
+        self.assertIn("has no marker T10", self.marey("label", "learn", "standing.csv", "--markers", "LASI,RASI,SACR,T10", "-o", "set.toml", code=1).stderr)
+
+    def test_suggestions_are_accepted(self):
+        self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 120, "-o", "walk", "-q")
+        self.marey("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "-o", "walk.marey", "-q")
+        self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
+        # So much better than the next that hardly any name is: most stay suggestions.
+        strict = ("label", "walk.marey", "--set", "set.toml", "--least-margin", 90, "-o", "named.marey")
+        before, after = (json.loads(self.marey(*strict, *more, "--json").stdout) for more in ((), ("--accept", "all")))
+        self.assertEqual(before["accepted"], 0)
+        self.assertGreater(len(before["unnamed"]), 0)
+        self.assertGreater(after["accepted"], 0)
+        self.assertGreater(after["named"], before["named"])
+        self.assertEqual(len(after["unnamed"]), len(before["unnamed"]) - after["accepted"])
+        self.assertIn("--accept all", self.marey(*strict).stderr)
+        one = next(piece["best"] for piece in before["unnamed"] if piece["best"])
+        some = json.loads(self.marey(*strict, "--accept", one, "--json").stdout)
+        self.assertTrue(0 < some["accepted"] <= after["accepted"])
+        self.assertIn("set.toml: has no marker nose", self.marey(*strict, "--accept", "nose", code=1).stderr)
+
     def test_computed_points_are_named_as_what_they_are(self):
         self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 100, "-o", "walk", "-q")
         with open(self.folder / "walk" / "truth.csv", newline="") as file:

@@ -162,6 +162,9 @@ class CommandLine(unittest.TestCase):
                              (("simulate", "markers", "plain", "--frame=3"), "--frames"), (("reconstruct", "--ouput", "x.marey"), "--output"),
                              (("simulate", "room", "--motion", "wlak"), "walk"), (("track", "a.avi", "--targets", "marker"), "markers")):
             self.assertRegex(self.refused(*words), rf"Did you mean {right}\?$")
+        # What is like none of them is not taken for the one that is least unlike.
+        for words in (("track", "plain/video.mp4", "--in-step"), ("info", "boxes.txt", "--colour"), ("convert", "a", "b", "--teams")):
+            self.assertNotIn("Did you mean", self.refused(*words))
         self.assertIn("-z", self.refused("info", "boxes.txt", "-z"))
         self.refused("info", "boxes.txt", "one", "more")
 

@@ -6,6 +6,7 @@ Usage: edit_test.py MAREY [unittest options]
 import json
 import pathlib
 import random
+import shlex
 import shutil
 import signal
 import subprocess
@@ -69,6 +70,17 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "--to", 0)
         said = json.loads(marey("info", self.take, "--json").stdout)
         self.assertEqual([track["label"] for track in said["tracks"]], ["A", "B", "C"])
+
+    def test_the_line_for_those_who_come_from_elsewhere(self):
+        """As docs/coming_from.md has it, on a take that has these markers and gaps."""
+        page = (pathlib.Path(__file__).resolve().parent.parent.parent / "docs/coming_from.md").read_text()
+        line = next(line for line in page.splitlines() if "`marey edit walk.marey" in line and "swap" in line)
+        words = shlex.split(line[line.index("marey edit"):].split("`")[0])
+        marey("edit", self.take, "rename A LKNE", "rename B RKNE")
+        said = marey(*words[1:], cwd=self.folder).stderr
+        self.assertIn("5 edits count", said)
+        self.assertEqual(len(self.places("C")), FRAMES)
+        self.assertAlmostEqual(self.places("LKNE")[150], 2, places=2)
 
     def test_a_copy_keeps_the_edits_to_be_undone(self):
         marey("edit", self.take, "rename A ankle")

@@ -61,6 +61,44 @@ class Files(unittest.TestCase):
         row = (self.folder / "back.csv").read_text().splitlines()[-1].split(",")
         self.assertEqual([float(value) for value in row[4:7]], [0.3, 49 / 64, 1.5])
 
+    def test_a_part_keeps_its_numbers_and_times(self):
+        self.run_marey("convert", self.csv, "whole.marey")
+        whole = self.csv.read_text().splitlines()
+        for source in (self.csv, "whole.marey"):
+            for name in ("part.c3d", "part.trc", "part.marey", "part.csv"):
+                self.run_marey("convert", source, name, "--frames", "10:29")
+                self.run_marey("convert", name, "back.csv")
+                rows = [line.split(",") for line in (self.folder / "back.csv").read_text().splitlines()[1:]]
+                self.assertEqual([int(row[0]) for row in rows], [frame for frame in range(10, 30) for _ in range(3)], (source, name))
+                self.assertEqual((float(rows[0][1]), float(rows[0][5])), (0.1, 10 / 64), (source, name))
+        self.run_marey("convert", self.csv, "end.csv", "--frames", "48:")
+        self.assertEqual(len((self.folder / "end.csv").read_text().splitlines()), 1 + 2 * 3)
+        self.assertEqual(len(whole), 151)
+        self.assertIn("walk.csv: has none of the frames 70:80", self.refused("convert", self.csv, "none.c3d", "--frames", "70:80"))
+        self.assertFalse((self.folder / "none.c3d").exists())
+        for wrong in ("80:70", "12", "a:b", "-4:5"):
+            self.assertIn("no frames; write FIRST:LAST", self.refused("convert", self.csv, "none.c3d", f"--frames={wrong}", code=2))
+
+    def test_a_part_of_a_match_and_of_tracks(self):
+        (self.folder / "match.csv").write_text("frame,id,x,y,team\n" + "".join(f"{f},{p},{5 * p},{3 * p},red\n" for f in range(40) for p in range(1, 4)))
+        self.run_marey("convert", "match.csv", "part.csv", "--frames", "5:9")
+        self.assertEqual([int(line.split(",")[0]) for line in (self.folder / "part.csv").read_text().splitlines()[1:]], [f for f in range(5, 10) for _ in range(3)])
+        (self.folder / "tracks.txt").write_text("".join(f"{f},1,{10 + f},20,30,60,1,-1,-1,-1\n" for f in range(1, 41)))
+        self.run_marey("convert", "tracks.txt", "part.txt", "--rate", "25", "--frames", ":4")
+        self.assertEqual([int(line.split(",")[0]) for line in (self.folder / "part.txt").read_text().splitlines()], [1, 2, 3, 4, 5])
+
+    def test_the_axis_that_a_c3d_file_says_is_up(self):
+        self.run_marey("convert", self.csv, "y.c3d", "--up", "y")
+        said = self.run_marey("convert", "y.c3d", "back.csv").stderr
+        self.assertIn("y.c3d: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)", said)
+        row = (self.folder / "back.csv").read_text().splitlines()[-1].split(",")
+        self.assertEqual([round(float(value), 6) for value in row[4:7]], [0.3, round(49 / 64, 6), 1.5])
+        self.assertNotIn("taken for up", self.run_marey("convert", "y.c3d", "as_it_stands.csv", "--from-up", "z").stderr)
+        row = (self.folder / "as_it_stands.csv").read_text().splitlines()[-1].split(",")
+        self.assertEqual([round(float(value), 6) for value in row[4:7]], [0.3, 1.5, round(-49 / 64, 6)])
+        self.run_marey("convert", "y.c3d", "again.c3d", "--up", "y")
+        self.assertEqual((self.folder / "again.c3d").read_bytes()[512:], (self.folder / "y.c3d").read_bytes()[512:])
+
     def test_files_that_are_cut_off(self):
         for name in ("a.c3d", "a.marey"):
             self.run_marey("convert", self.csv, name)

@@ -132,9 +132,18 @@ class People(unittest.TestCase):
         self.assertIn("detections are given", said)
         self.run_marey("simulate", "people", "-o", "film", *SMALL)
         self.assertIn("not empty", self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--masks", "film", code=1).stderr)
+        # Before the film is looked at, which may take hours.
+        (self.folder / "broken.mp4").write_bytes(b"no film")
+        self.assertIn("film: is not empty", self.run_marey("track", "broken.mp4", "--steady", "-o", "t.txt", "--masks", "film", code=1).stderr)
         self.run_marey("track", "film/video.mp4", "--targets", "markers", "-o", "t.txt", "--masks", "seen", code=2)
         self.run_marey("track", "film/rig.toml", "--ground", "-o", "t.csv", "--masks", "seen", code=2)
         self.assertFalse((self.folder / "seen").exists() or (self.folder / "t.txt").exists())
+
+    def test_people_who_have_no_room_are_told(self):
+        apart = ("simulate", "people", "--situation", "apart", "--people", "4", "--frames", "2", "-o", "film")
+        self.assertIn("2 of 4 people have room to keep apart in 768 x 576 px", self.run_marey(*apart, "--height", "100").stderr)
+        self.assertNotIn("warning", self.run_marey(*apart, "--height", "60").stderr)
+        self.assertIn("is of 2 people", self.run_marey("simulate", "people", "--situation", "crossing", "--people", "3", "--frames", "2", "-o", "film").stderr)
 
     def test_what_cannot_be_is_refused(self):
         said = self.run_marey("simulate", "people", "-o", "film", "--size", "100", "100", "--height", "400", code=1).stderr

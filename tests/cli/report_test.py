@@ -40,10 +40,10 @@ class Report(unittest.TestCase):
         self.assertIn("&lt;b&gt;", self.page)
 
     def test_what_is_on_it(self):
-        for part in ("<th class=\"n\"><button>no.</button>", "Territories", "prefers-color-scheme: dark", "@media print", "class=\"sprint\"", "half of its time"):
+        for part in ("<button>no.</button>", "Territories", "prefers-color-scheme: dark", "@media print", "class=\"sprint\"", "half of its time"):
             self.assertIn(part, self.page)
-        self.assertRegex(self.page, r"<td class=\"n\" style=\"--w:100%\">")
-        areas = [int(a) for a in re.findall(r"(?:white|blue), the whole of it: (\d+) m²", self.page)]
+        self.assertRegex(self.page, r"<td class=\"n\" style=\"--w:100%\"")
+        areas = [int(a) for a in re.findall(r"(?:white|blue), whole recording: (\d+) m²", self.page)]
         self.assertEqual(len(areas), 2)
         self.assertTrue(all(0 < area < 105 * 68 for area in areas))
 
@@ -57,7 +57,7 @@ class Report(unittest.TestCase):
     def test_sorted_in_a_browser(self):
         press = self.folder / "press.html"
         press.write_text(self.page.replace("</body>", """<script>
-          const head = [...document.querySelectorAll("th")].find(each => each.textContent === "top, m/s"), numbers = () =>
+          const head = [...document.querySelectorAll("th")].find(each => each.textContent === "top"), numbers = () =>
             [...head.closest("table").tBodies[0].rows].map(row => row.cells[0].textContent);
           head.firstChild.click(); const first = numbers(); head.firstChild.click();
           document.title = JSON.stringify([first, numbers(), head.getAttribute("aria-sort")]);</script></body>"""))
@@ -66,6 +66,25 @@ class Report(unittest.TestCase):
         self.assertEqual((first[0], second[-1]), ("7", "7"))  # who sprinted; the others walked alike
         self.assertEqual(sorted(first), sorted(second))
         self.assertEqual(sort, "ascending")
+
+    def test_what_is_empty_is_left_out(self):
+        self.assertNotIn("The ball", self.page)
+        rows = [f"{i},{i / 25},{p},{10 * p + i / 25:.3f},20,{team}\n" for i in range(100) for p, team in ((1, "a"), (2, "b"))]
+        ball = [f"{i},{i / 25},3,90,60,\n" for i in range(100)]
+        for name, more in (("plain", []), ("far", ball)):
+            lines = [line[:-1] + ",\n" for line in rows] + [line[:-1] + ",ball\n" for line in more]
+            (self.folder / f"{name}.csv").write_text("frame,time,id,x,y,team,label\n" + "".join(sorted(lines, key=lambda line: int(line.split(",")[0]))))
+            subprocess.run([MAREY, "measure", f"{name}.csv", "-o", "figures.csv", "--report", name, "-q"], cwd=self.folder, check=True)
+            page = (self.folder / name / "report.html").read_text()
+            self.assertNotRegex(page, r"<tbody>\s*</tbody>", name)
+            self.assertNotIn("<button>name</button>", page, "nobody has a name")
+            self.assertEqual("The ball" in page, name == "far")
+            self.assertNotIn("Possession", page, "nobody has it")
+
+    def test_a_white_team_is_white(self):
+        colours = {team: colour for colour, team in re.findall(r"<i style=\"--c:(#\w+)\"></i>(\w+)", self.page)}
+        self.assertGreater(int(colours["white"][1:3], 16), 240)
+        self.assertIn(f"stroke=\"{colours['white']}\"", self.page)
 
     def test_seen_and_printed(self):
         self.browser("--screenshot=light.png", "--window-size=1300,1800", self.file.as_uri())

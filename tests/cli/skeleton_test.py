@@ -73,6 +73,7 @@ class Skeleton(unittest.TestCase):
 
     def test_the_summary_says_what_fits_and_what_is_not_seen(self):
         done = self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot")
+        self.assertIn("walk.trc: the skeleton subject01, solved from 31 markers in 73 frames", done.stderr)
         self.assertIn("mm RMS", done.stderr)
         self.assertIn("not observed, no marker shows them to 10°: mtp_angle_r, mtp_angle_l", done.stderr)
         summary = json.loads(self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot", "--json").stdout)
@@ -161,6 +162,25 @@ class Skeleton(unittest.TestCase):
             print(f"{name}: elbows off by {offs['left']:.1f} and {offs['right']:.1f} deg RMS, shoulders' markers {shoulder:.1f} mm, all {told['rms_mm']:.1f} mm")
             self.assertLess(max(offs.values()), 8, name)
             self.assertLess(shoulder, 20, name)
+
+    def test_from_the_motion_alone(self):
+        """Against the skeleton of the child's static trial: knees bend alike, and the person is as large."""
+        for name in self.CHILDREN[:2]:
+            static, walk = self.child(name, "static"), self.child(name, "straight")
+            done = self.marey("solve", walk, "-o", "alone.mot", "-o", "alone.bvh", "--json")
+            self.assertIn("without --static the skeleton is calibrated from this motion alone, by the posture at", done.stderr)
+            told = json.loads(done.stdout)
+            known = json.loads(self.marey("solve", walk, "--static", static, "-o", "known.mot", "--json").stdout)
+            offs = {}
+            for joint in ("left_knee_flexion", "right_knee_flexion", "left_hip_flexion", "right_hip_flexion"):
+                pairs = list(zip(self.column("alone.mot", joint, "\t"), self.column("known.mot", joint, "\t")))
+                mean = sum(a - b for a, b in pairs) / len(pairs)
+                offs[joint] = (mean, (sum((a - b - mean) ** 2 for a, b in pairs) / len(pairs)) ** 0.5)
+            print(f"{name}: {told['rms_mm']:.1f} mm (static trial: {known['rms_mm']:.1f} mm); angles off by " +
+                  ", ".join(f"{joint} {mean:.1f} ± {rms:.1f} deg" for joint, (mean, rms) in offs.items()))
+            self.assertLess(told["rms_mm"], 15, name)
+            self.assertLess(max(abs(mean) for mean, _ in offs.values()), 10, name)
+            self.assertLess(max(rms for _, rms in offs.values()), 5, name)
 
     def test_bones_have_ends(self):
         self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.bvh", "-q")
@@ -466,7 +486,7 @@ class Skeleton(unittest.TestCase):
                 self.assertIn(word, done.stderr)
 
         says(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
-        says(1, ["skeleton is wanted"], "walk.trc", "-o", "x.mot")
+        says(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
         says(1, ["stands still"], "walk.c3d", "--static", "walk.c3d", "-o", "x.mot")
         says(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
         says(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")

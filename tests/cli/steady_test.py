@@ -117,6 +117,14 @@ class Steady(unittest.TestCase):
         self.assertEqual(report["frames"], 40)
         self.assertIn("21 of 61 pictures could not be steadied", "".join(report["warnings"]))
 
+    def test_where_most_would_be_left_out_nothing_is_steadied_and_that_is_said(self):
+        scenes = [scene(seed) for seed in range(10, 14)]
+        pictures = [window(scenes[0], 0, 0) for _ in range(25)] + [window(scenes[1 + i // 12], i % 3, 0) for i in range(36)]
+        write_pictures(self.folder / "most", pictures)
+        report = json.loads(self.run_marey("track", "most", "--rate", "10", "--steady", "-o", "most.txt", "--json").stdout)
+        self.assertEqual(report["frames"], 61)
+        self.assertRegex("".join(report["warnings"]), r"--steady would leave out too many pictures \(\d+ of \d+ of the beginning could not be steadied\)")
+
     def test_what_it_cannot_be_asked_for(self):
         self.run_marey("track", "--detections", "still/truth.txt", "--steady", "-o", "none.txt", code=2)
         self.run_marey("track", "shaken/video.mp4", "--targets", "markers", "--steady", "-o", "none.txt", code=2)

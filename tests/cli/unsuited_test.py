@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import pathlib
+import pty
 import random
 import shutil
 import subprocess
@@ -64,6 +65,38 @@ class Unsuited(unittest.TestCase):
             with self.subTest(options):
                 said = self.warnings(f"cut{len(options)}", [window(scenes[i // 30], 0, 0) for i in range(90)], *options)
                 self.assertIn("the video is cut at 3.0, 6.0 s:", said[0])
+
+    def test_on_the_ground_the_same_is_said(self):
+        scenes = [scene(seed) for seed in (5, 6)]
+        films = {"ground_cut": [window(scenes[i // 30], 0, 0) for i in range(60)],
+                 "ground_pan": [window(scenes[0], -20 + i // 2, 0) for i in range(80)]}
+        for name, pictures in films.items():
+            write_pictures(self.folder / name, pictures)
+        (self.folder / "rig.toml").write_text(
+            "".join(f'[[camera]]\nname = "{name}"\nsource = "{name}"\nsize = [160, 120]\n'
+                    "ground_from_image = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 1.0]]\n" for name in films))
+        done = run("track", self.folder / "rig.toml", "--ground", "--area", "0,0 16,0 16,12 0,12", "--rate", "10", "-o", self.folder / "ground.csv", "--json")
+        said = "\n".join(json.loads(done.stdout)["warnings"])
+        self.assertIn('camera "ground_cut": the video is cut at 3.0 s', said)
+        self.assertIn('camera "ground_pan": the camera pans or tilts', said)
+
+    def test_a_terminal_is_told_before_the_end(self):
+        scenes = [scene(seed) for seed in (5, 6)]
+        write_pictures(self.folder / "early", [window(scenes[i // 30], 0, 0) for i in range(60)])
+        here, terminal = pty.openpty()
+        self.addCleanup(os.close, here)
+        done = subprocess.run([MAREY, "track", self.folder / "early", "--rate", "10", "-o", self.folder / "early.txt"], stdout=subprocess.PIPE,
+                              stderr=terminal, timeout=280)
+        os.close(terminal)
+        self.assertEqual(done.returncode, 0)
+        text = ""
+        try:
+            while part := os.read(here, 4096):
+                text += part.decode()
+        except OSError:  # its other end is closed
+            pass
+        first, last = text.index("the video is cut at 3.0 s: the scene is another from there on"), text.index("warning: the video is cut at 3.0 s:")
+        self.assertLess(first, last)
 
     def test_a_screen_that_is_scrolled(self):
         draw, here = random.Random(8), scene(8)

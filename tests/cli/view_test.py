@@ -1,11 +1,14 @@
 """`marey view` and the live viewer without a browser: what is served, to whom, and what strangers and slow readers can do. view_test.py MAREY LIVE_SCENE."""
 
+import contextlib
 import json
 import pathlib
 import random
 import re
+import shutil
 import signal
 import socket
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -142,6 +145,28 @@ class View(unittest.TestCase):
                 shown.process.send_signal(number)
                 self.assertEqual(shown.process.wait(timeout=5), 0)
                 self.assertLess(time.monotonic() - began, 4)  # at once, on a busy machine too
+
+    def test_a_take_of_another_version_is_told(self):
+        later = shown_page.FOLDER / "later.marey"
+        shutil.copy(shown_page.FOLDER / "walk.marey", later)
+        with contextlib.closing(sqlite3.connect(later)) as take:
+            take.execute("pragma user_version = 99")
+            take.commit()
+        self.assertRegex(marey("view", "later.marey", "--port", "0", code=1).stderr, r"^marey: later.marey: was written by a later version of Marey .*\n$")
+
+    def test_the_axis_that_a_c3d_file_says_is_up(self):
+        marey("convert", "walk.marey", "y_up.c3d", "--up", "y", "-q")
+        marey("convert", "walk.marey", "z_up.c3d", "-q")
+        extents = []
+        for words in (("z_up.c3d",), ("y_up.c3d",), ("y_up.c3d", "--up", "z")):
+            with Shown(shown_page.MAREY, "view", *words, "--port", "0", "-q") as shown:
+                scene = shown.scene()
+                extents.append((scene["low"], scene["high"]))
+                self.assertEqual(any("its y is taken for up" in warning for warning in scene["warnings"]), words == ("y_up.c3d",), scene["warnings"])
+        for one, other in zip(extents[0], extents[1]):
+            for a, b in zip(one, other):
+                self.assertAlmostEqual(a, b, places=3)
+        self.assertAlmostEqual(extents[2][1][1], extents[0][1][2], places=3)
 
     def test_what_cannot_be_is_said_in_one_sentence(self):
         with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0", "-q") as shown:

@@ -5,6 +5,7 @@
 Screenshots are left in FOLDER. `npm ci` in apps/viewer/page fetches the packages.
 """
 import filecmp
+import math
 import pathlib
 import shutil
 import subprocess
@@ -52,6 +53,27 @@ def make_recordings(marey, folder):
     run("track", "street/video.mp4", "-o", "street.marey")
 
 
+BONES = ("Hips", "lowerback", "LARM", "l_hand", "RARM", "r_hand", "LeftUpLeg", "lfoot", "RightUpLeg", "rfoot")
+
+
+def make_skeleton(path):
+    """One that swings its arms, named as one of several people."""
+    def joint(name, offset, children, depth):
+        tab = "  " * depth
+        inner = "".join(children) or f"{tab}  End Site\n{tab}  {{\n{tab}    OFFSET 0 -20 0\n{tab}  }}\n"
+        channels = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation" if depth == 0 else "3 Zrotation Xrotation Yrotation"
+        return f"{tab}{'ROOT' if depth == 0 else 'JOINT'} Anna:{name}\n{tab}{{\n{tab}  OFFSET {offset}\n{tab}  CHANNELS {channels}\n{inner}{tab}}}\n"
+
+    arms = [joint(f"{side}ARM", f"{x} 15 0", [joint(f"{side.lower()}_hand", "0 -30 0", [], 3)], 2) for side, x in (("L", 20), ("R", -20))]
+    legs = [joint(f"{side}UpLeg", f"{x} -8 0", [joint(f"{side[0].lower()}foot", "0 -45 0", [], 2)], 1) for side, x in (("Left", 10), ("Right", -10))]
+    rows = []
+    for frame in range(120):
+        swing = 30 * math.sin(frame / 12)
+        turns = {"LARM": swing, "RARM": -swing}
+        rows.append("0 95 0 " + " ".join(f"0 {turns.get(name, 0):.3f} 0" for name in BONES))
+    path.write_text("HIERARCHY\n" + joint("Hips", "0 0 0", [joint("lowerback", "0 30 0", arms, 1), *legs], 0) + f"MOTION\nFrames: {len(rows)}\nFrame Time: 0.0166667\n" + "\n".join(rows) + "\n")
+
+
 def look_at(command, folder, scenario, script="viewer_page.mjs"):
     shown = subprocess.Popen([str(part) for part in command], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
@@ -69,6 +91,9 @@ def main(marey, live_scene, folder):
     look_at([*view, "walk.marey"], folder, "space")
     look_at([*view, "edit.marey", "--edit"], folder, "edit", "viewer_edit.mjs")
     look_at([*view, "edit.marey", "--edit"], folder, "edit_phone", "viewer_edit.mjs")
+    make_skeleton(pathlib.Path(folder) / "anna.bvh")
+    look_at([*view, "anna.bvh"], folder, "bones", "viewer_bones.mjs")
+    look_at([*view, "walk.marey"], folder, "odd", "viewer_odd.mjs")
     look_at([*view, "street.csv", "--film", "street/video.mp4"], folder, "image")
     look_at([*view, "match.csv"], folder, "ground_phone")
     look_at([live_scene, "walk.marey", "60"], folder, "live")

@@ -30,6 +30,8 @@ struct Hooks {
   std::stop_token stop = {};
   /// What the user asked for, by option: recordings keep it with the inputs' names and hashes, so that they can be made again.
   std::map<std::string, std::string> options = {};
+  /// Called with what a user should know before the end, one sentence each, from the thread that calls `progress`.
+  std::function<void(const std::string&)> news = {};
 
   Continue report(const Progress& now) const {
     if (progress) progress(now);

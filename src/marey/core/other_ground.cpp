@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <Eigen/LU>
+
 namespace marey {
 namespace {
 
@@ -36,6 +38,21 @@ Recording on_other_ground(Recording recording, const FrameOfReference& frame, co
     track = TrackColumns({}, 2);
   }
   return result;
+}
+
+bool is_reflection(const Matrix<3>& ground_from_world) {
+  return ground_from_world.topLeftCorner<2, 2>().determinant() < 0;
+}
+
+bool y_grows_down(const RecordingHeader& header) {
+  return header.frame.kind == FrameOfReference::Kind::user_ground && header.rig && header.rig->ground_from_world &&
+         is_reflection(*header.rig->ground_from_world);
+}
+
+void set_y_down(RecordingHeader& header, bool down) {
+  if (header.rig && header.rig->ground_from_world) return;
+  if (!header.rig) header.rig.emplace();
+  header.rig->ground_from_world = Matrix<3>(Vector<3>(1, down ? -1 : 1, 1).asDiagonal());
 }
 
 }  // namespace marey

@@ -60,5 +60,37 @@ TEST(OtherGround, OnlyTheGroundHasAnother) {
   }
 }
 
+RecordingHeader user_header() {
+  RecordingHeader header;
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  return header;
+}
+
+TEST(OtherGround, YGrowsDownWhereTheUsersFrameIsAReflection) {
+  RecordingHeader header = user_header();
+  EXPECT_FALSE(y_grows_down(header)) << "nothing is known";
+  header.rig.emplace();
+  EXPECT_FALSE(y_grows_down(header)) << "the user's frame is the world's";
+  header.rig->ground_from_world = Matrix<3>{{0, -1, 3}, {-1, 0, 4}, {0, 0, 1}};
+  EXPECT_TRUE(is_reflection(*header.rig->ground_from_world));
+  EXPECT_TRUE(y_grows_down(header));
+  header.frame.kind = FrameOfReference::Kind::ground;
+  EXPECT_FALSE(y_grows_down(header)) << "the world is right-handed";
+  header.rig->ground_from_world = Matrix<3>{{0, -1, 3}, {1, 0, 4}, {0, 0, 1}};
+  header.frame.kind = FrameOfReference::Kind::user_ground;
+  EXPECT_FALSE(y_grows_down(header)) << "turned by a quarter";
+}
+
+TEST(OtherGround, WhatAFileStatesIsNotedWhereNoRigDoes) {
+  RecordingHeader header = user_header();
+  set_y_down(header, true);
+  EXPECT_TRUE(y_grows_down(header));
+  set_y_down(header, false);
+  EXPECT_TRUE(y_grows_down(header)) << "what is known stays";
+  header = user_header();
+  set_y_down(header, false);
+  EXPECT_FALSE(y_grows_down(header));
+}
+
 }  // namespace
 }  // namespace marey

@@ -13,16 +13,6 @@ namespace {
 constexpr Colour kSure{60, 230, 80}, kDoubtful{255, 150, 40};
 constexpr int kRingCorners = 24;
 
-/// Brought to the full range of 16 bits: cameras of 12 bits fill a sixteenth of it.
-Picture stretched(const Picture& picture) {
-  if (picture.luma().depth() != CV_16U) return picture;
-  double most = 0;
-  cv::minMaxLoc(picture.luma(), nullptr, &most);
-  cv::Mat luma;
-  picture.luma().convertTo(luma, CV_16U, 65535 / std::max(1.0, most));
-  return Picture(luma);
-}
-
 void add_ring(std::vector<Canvas::Stroke>& strokes, const Vector<2>& centre, double radius) {
   const auto corner = [&](int i) {
     const double angle = 2 * std::numbers::pi * i / kRingCorners;
@@ -35,7 +25,8 @@ void add_ring(std::vector<Canvas::Stroke>& strokes, const Vector<2>& centre, dou
 }  // namespace
 
 Picture draw_blobs(const Picture& picture, std::span<const Detection> blobs) {
-  Canvas canvas(stretched(picture));
+  // Cameras of 12 bits fill a sixteenth of the range of 16.
+  Canvas canvas(with_white(picture, lightest(picture)));
   const double unit = std::max(1.0, picture.size().height / 720.0);
   for (const bool sure : {false, true}) {
     std::vector<cv::Point2f> centres;

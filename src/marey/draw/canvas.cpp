@@ -74,6 +74,19 @@ Colour colour_of(const Appearance& appearance) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
+Picture with_white(const Picture& picture, double white) {
+  if (picture.luma().depth() != CV_16U) return picture;
+  cv::Mat luma;
+  picture.luma().convertTo(luma, CV_16U, 65535 / std::max(1.0, white));
+  return Picture(luma);
+}
+
+double lightest(const Picture& picture) {
+  double most = 0;
+  cv::minMaxLoc(picture.luma(), nullptr, &most);
+  return most;
+}
+
 Canvas::Canvas(const Picture& picture) {
   const bool full = picture.range() == Picture::Range::full;
   const double luma_scale = (full ? 219.0 / 255.0 : 1.0) * (picture.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);

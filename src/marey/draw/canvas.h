@@ -19,6 +19,11 @@ Colour colour_of(int number);
 /// The colour of an appearance.
 Colour colour_of(const Appearance& appearance);
 
+/// Grey of 16 bits brought so that `white` becomes the lightest there is; other pictures as they are.
+Picture with_white(const Picture& picture, double white);
+/// The largest luma of a picture.
+double lightest(const Picture& picture);
+
 /// A picture of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
 /// are pixels; what lies outside is cut off. Full-range pictures are brought to video's range on the way in.
 class Canvas {

@@ -11,24 +11,28 @@
 namespace marey::draw {
 namespace {
 
+constexpr double kMostXTicks = 12;  // under a part of a page
 constexpr double kHeight = 520, kLeft = 110, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
 // Okabe & Ito's colours, which the colour-blind tell apart as well.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999", "#f0e442"};
 
-const char* colour(std::size_t index) {
-  return kColours[index % kColours.size()];
-}
+/// Where a chart's plot is.
+struct Plot {
+  double left = kLeft, right = 0, top = kTop, height = kPlotHeight;
+  double baseline() const { return top + height; }
+};
 
 /// A value axis from `low` to `high` in round steps.
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
   std::vector<double> ticks;
+  Plot plot = {};
 
   double y(double value) const {
     const double share = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-    return kBaseline - kPlotHeight * std::clamp(share, 0.0, 1.0);
+    return plot.baseline() - plot.height * std::clamp(share, 0.0, 1.0);
   }
 };
 
@@ -69,13 +73,66 @@ void add_legend(Svg& svg, double width, const std::vector<std::string>& names) {
       x = kLeft;
       y += 18;
     }
-    svg.rect({x, y, 11, 11}, {{"fill", colour(i)}});
+    svg.rect({x, y, 11, 11}, {{"fill", line_colour(i)}});
     svg.text({x + 15, y + 10}, names[i]);
     x += advance;
   }
 }
 
+Axis value_axis(const LineChart& chart) {
+  double low = HUGE_VAL, high = 0;
+  for (const auto& line : chart.lines) {
+    for (const auto& [x, y] : line.points) {
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  }
+  if (low > high) low = high = 1;
+  return chart.logarithmic_y ? logarithmic_axis(low, high) : linear_axis(high);
+}
+
+/// Where an x is drawn.
+class XScale {
+ public:
+  XScale(const LineChart& chart, const Plot& plot) : plot_(plot) {
+    for (const auto& line : chart.lines) {
+      for (const auto& [x, y] : line.points) {
+        least_ = std::min(least_, x);
+        most_ = std::max(most_, x);
+      }
+    }
+  }
+  double least() const { return least_; }
+  double most() const { return most_; }
+  double operator()(double x) const {
+    constexpr double indent = 10;
+    return plot_.left + indent + (plot_.right - plot_.left - 2 * indent) * (most_ > least_ ? (x - least_) / (most_ - least_) : 0.5);
+  }
+
+ private:
+  Plot plot_;
+  double least_ = HUGE_VAL, most_ = -HUGE_VAL;
+};
+
+void add_lines(Svg& svg, const LineChart& chart, const Axis& axis, const XScale& scale) {
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    std::vector<Vector<2>> points;
+    for (const auto& [x, y] : chart.lines[i].points) points.emplace_back(scale(x), axis.y(y));
+    svg.polyline(points,
+                 {{"stroke", line_colour(i)}, {"stroke-width", 2}, {"stroke-dasharray", i < kColours.size() ? "none" : "6 3"}});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto& [x, y] = chart.lines[i].points[k];
+      svg.circle(points[k], 3, {{"fill", line_colour(i)}})
+          .add("title", {}, fmt::format("{}: {:g}, {:g}", chart.lines[i].name, x, y));
+    }
+  }
+}
+
 }  // namespace
+
+const char* line_colour(std::size_t index) {
+  return kColours[index % kColours.size()];
+}
 
 std::string to_svg(const BarChart& chart) {
   constexpr double kBar = 14, kGap = 22;
@@ -97,7 +154,7 @@ std::string to_svg(const BarChart& chart) {
       if (!group.bars[s]) continue;
       const Bar& bar = *group.bars[s];
       const double x = left + kBar * static_cast<double>(s), y = axis.y(bar.value);
-      svg.rect({x, y, kBar - 2, std::max(kBaseline - y, 0.5)}, {{"fill", colour(s)}})
+      svg.rect({x, y, kBar - 2, std::max(kBaseline - y, 0.5)}, {{"fill", line_colour(s)}})
           .add("title", {}, fmt::format("{}, {}: {:g}", group.name, chart.series[s], bar.value));
       if (bar.low && bar.high) {
         const double middle = x + kBar / 2 - 1;
@@ -113,40 +170,43 @@ std::string to_svg(const BarChart& chart) {
 }
 
 std::string to_svg(const LineChart& chart) {
-  constexpr double kWidth = 760, kRight = kWidth - 30;
-  double low = HUGE_VAL, high = 0, left = HUGE_VAL, right = -HUGE_VAL;
-  for (const auto& line : chart.lines) {
-    for (const auto& [x, y] : line.points) {
-      low = std::min(low, y);
-      high = std::max(high, y);
-      left = std::min(left, x);
-      right = std::max(right, x);
-    }
-  }
-  if (left > right) left = right = low = high = 1;
-  const Axis axis = chart.logarithmic_y ? logarithmic_axis(low, high) : linear_axis(high);
-  const auto place = [&](double x) {
-    return kLeft + 10 + (kRight - kLeft - 20) * (right > left ? (x - left) / (right - left) : 0.5);
-  };
+  constexpr double kWidth = 760;
+  Axis axis = value_axis(chart);
+  axis.plot.right = kWidth - 30;
   Svg svg(kWidth, kHeight, 12);
   add_frame(svg, kWidth, chart.title, chart.y_label, axis);
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
-    std::vector<Vector<2>> points;
-    for (const auto& [x, y] : chart.lines[i].points) points.emplace_back(place(x), axis.y(y));
-    svg.polyline(points, {{"stroke", colour(i)}, {"stroke-width", 2}, {"stroke-dasharray", i < kColours.size() ? "none" : "6 3"}});
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto& [x, y] = chart.lines[i].points[k];
-      svg.circle(points[k], 3, {{"fill", colour(i)}}).add("title", {}, fmt::format("{}: {:g}, {:g}", chart.lines[i].name, x, y));
-    }
-    names.push_back(chart.lines[i].name);
-  }
+  const XScale x(chart, axis.plot);
+  add_lines(svg, chart, axis, x);
   if (!chart.lines.empty()) {
-    for (const auto& [x, y] : chart.lines.front().points)
-      svg.text({place(x), kBaseline + 18}, fmt::format("{:g}", x), {{"text-anchor", "middle"}});
+    for (const auto& [value, y] : chart.lines.front().points)
+      svg.text({x(value), kBaseline + 18}, fmt::format("{:g}", value), {{"text-anchor", "middle"}});
   }
-  svg.text({(kLeft + kRight) / 2, kBaseline + 38}, chart.x_label, {{"text-anchor", "middle"}});
+  svg.text({(kLeft + axis.plot.right) / 2, kBaseline + 38}, chart.x_label, {{"text-anchor", "middle"}});
+  std::vector<std::string> names;
+  for (const LineChart::Line& line : chart.lines) names.push_back(line.name);
   add_legend(svg, kWidth, names);
+  return svg.str();
+}
+
+std::string part_svg(const LineChart& chart) {
+  constexpr double kWidth = 480, kBelow = 40;
+  Axis axis = value_axis(chart);
+  axis.plot = {.left = 40, .right = kWidth - 8, .top = 12, .height = 210};
+  Svg svg({{"viewBox", fmt::format("0 0 {} {}", kWidth, axis.plot.baseline() + kBelow)},
+           {"font-family", "sans-serif"},
+           {"font-size", 12}});
+  for (const double tick : axis.ticks) {
+    const double y = axis.y(tick);
+    svg.line({axis.plot.left, y}, {axis.plot.right, y}, {{"class", "grid"}});
+    svg.text({axis.plot.left - 5, y + 4}, fmt::format("{:g}", tick), {{"class", "axis"}, {"text-anchor", "end"}});
+  }
+  const XScale x(chart, axis.plot);
+  add_lines(svg, chart, axis, x);
+  const double step = std::ceil((x.most() - x.least() + 1) / kMostXTicks);
+  for (double value = x.least(); value <= x.most(); value += step)
+    svg.text({x(value), axis.plot.baseline() + 17}, fmt::format("{:g}", value), {{"class", "axis"}, {"text-anchor", "middle"}});
+  svg.text({(axis.plot.left + axis.plot.right) / 2, axis.plot.baseline() + 34}, chart.x_label,
+           {{"class", "axis"}, {"text-anchor", "middle"}});
   return svg.str();
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace marey::draw {
@@ -38,5 +40,10 @@ struct LineChart {
 /// A self-contained SVG picture that a browser shows.
 std::string to_svg(const BarChart& chart);
 std::string to_svg(const LineChart& chart);
+
+/// A part of a page (draw/page.h), which is its paper and writes title and legend: it is read on a phone too. x are whole numbers.
+std::string part_svg(const LineChart& chart);
+/// The CSS colour of the line of that index.
+const char* line_colour(std::size_t index);
 
 }  // namespace marey::draw

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/draw/page.h"
 #include "marey/draw/svg.h"
 
 namespace marey::draw {
@@ -51,20 +50,17 @@ std::string panel_svg(const GaitReport::Panel& panel) {
   const double step = round_step(std::max(scale.high - scale.low, 1.0) / 5);
   scale.low = step * std::floor(scale.low / step);
   scale.high = std::max(scale.low + step, step * std::ceil(scale.high / step));
-  Svg svg({{"width", kPanelWidth},
-           {"height", kPanelHeight},
-           {"viewBox", fmt::format("0 0 {} {}", kPanelWidth, kPanelHeight)},
-           {"font-family", "sans-serif"},
-           {"font-size", 11}});
+  Svg svg({{"viewBox", fmt::format("0 0 {} {}", kPanelWidth, kPanelHeight)}, {"font-family", "sans-serif"}, {"font-size", 11}});
   svg.text({kPanelLeft, 16}, panel.title + ", °", {{"font-weight", "bold"}});
   for (double v = scale.low; v <= scale.high + 1e-9; v += step) {
     const double y = scale.y(v);
-    svg.line({kPanelLeft, y}, {kPanelWidth - kPanelRight, y}, {{"stroke", std::abs(v) < 1e-9 ? "#888" : "#ddd"}});
+    svg.line({kPanelLeft, y}, {kPanelWidth - kPanelRight, y}, {{"class", std::abs(v) < 1e-9 ? "zero" : "grid"}});
     svg.text({kPanelLeft - 5, y + 4}, fmt::format("{:g}", std::round(v * 1000) / 1000 + 0.0), {{"text-anchor", "end"}});
   }
   for (const int percent : {0, 25, 50, 75, 100}) {
-    svg.text({kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0, kPanelHeight - 12},
-             fmt::format("{}{}", percent, percent == 100 ? " %" : ""), {{"text-anchor", "middle"}});
+    const bool last = percent == 100;  // ends at the panel's edge: about its middle it would be cut off
+    const double x = last ? kPanelWidth - 2 : kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0;
+    svg.text({x, kPanelHeight - 12}, fmt::format("{}{}", percent, last ? " %" : ""), {{"text-anchor", last ? "end" : "middle"}});
   }
   add_band(svg, panel.left, scale, kLeftColour);
   add_band(svg, panel.right, scale, kRightColour);
@@ -73,38 +69,46 @@ std::string panel_svg(const GaitReport::Panel& panel) {
 
 std::string figure_cell(const GaitReport::Figure& figure, std::size_t side) {
   if (!figure.mean[side]) return "–";
-  return figure.deviation[side] ? fmt::format("{:.3g} ± {:.2g}", *figure.mean[side], *figure.deviation[side])
-                                : fmt::format("{:.3g}", *figure.mean[side]);
+  const double mean = *figure.mean[side];
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(mean), 1e-9)))), 0, 3);
+  return figure.deviation[side] ? fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, *figure.deviation[side], decimals)
+                                : fmt::format("{:.{}f}", mean, decimals);
+}
+
+PageTable figures_of(const GaitReport& report) {
+  PageTable table{.title = "The walk", .head = {"", "left", "right"}, .rows = {}};
+  table.bars_end = 0;
+  for (const GaitReport::Figure& figure : report.figures)
+    table.rows.push_back(
+        {figure.unit.empty() ? figure.name : figure.name + ", " + figure.unit, figure_cell(figure, 0), figure_cell(figure, 1)});
+  return table;
+}
+
+PageTable events_of(const GaitReport& report) {
+  PageTable table{.title = "Events", .head = {"time, s", "side", "event", "deviation, ms"}, .rows = {}};
+  table.bars_end = 0;
+  for (const GaitReport::Event& event : report.events)
+    table.rows.push_back(
+        {fmt::format("{:.3f}", event.time_s), event.side, event.kind, fmt::format("{:.0f}", 1000 * event.deviation_s)});
+  return table;
 }
 
 }  // namespace
 
 std::string to_html(const GaitReport& report) {
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta "
-      "charset=\"utf-8\"><title>{0}</title>\n<style>body{{font-family:sans-serif;max-width:1000px;margin:2em auto}}"
-      "table{{border-collapse:collapse}}td,th{{border:1px solid #ccc;padding:3px "
-      "10px;text-align:left}}</style></head>\n<body><h1>{0}</h1>\n",
-      xml_escaped(report.title));
-  html += fmt::format(
-      "<p><span style=\"color:{}\">left</span>, <span style=\"color:{}\">right</span>: mean over the cycles, from a strike of the "
-      "foot to its next; the band is one standard deviation.</p>\n",
-      kLeftColour, kRightColour);
-  auto out = std::back_inserter(html);
-  html += "<table><tr><th></th><th>left</th><th>right</th><th></th></tr>\n";
-  for (const GaitReport::Figure& figure : report.figures)
-    fmt::format_to(out, "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", xml_escaped(figure.name), figure_cell(figure, 0),
-                   figure_cell(figure, 1), xml_escaped(figure.unit));
-  html += "</table>\n";
-  if (!report.notes.empty()) html += "<ul>\n";
-  for (const std::string& note : report.notes) fmt::format_to(out, "<li>{}</li>\n", xml_escaped(note));
-  html += report.notes.empty() ? "<p>\n" : "</ul>\n<p>\n";
-  for (const GaitReport::Panel& panel : report.panels) html += panel_svg(panel);
-  html += "</p>\n<h2>Events</h2>\n<table><tr><th>time, s</th><th>side</th><th>event</th><th>deviation, ms</th></tr>\n";
-  for (const GaitReport::Event& event : report.events)
-    fmt::format_to(out, "<tr><td>{:.3f}</td><td>{}</td><td>{}</td><td>{:.0f}</td></tr>\n", event.time_s, xml_escaped(event.side),
-                   xml_escaped(event.kind), 1000 * event.deviation_s);
-  return html + "</table>\n</body></html>\n";
+  Page page(report.title);
+  page.add_sentence(
+      "Angles over the gait cycle: mean over the cycles, from a strike of the foot to its next; the band is one standard "
+      "deviation.");
+  page.add_legend({{"left", kLeftColour}, {"right", kRightColour}});
+  page.add_list(report.notes);
+  page.add(figures_of(report));
+  page.add_heading("Angles");
+  page.add_html("<div class=\"four\">");
+  for (const GaitReport::Panel& panel : report.panels) page.add_html("<figure>" + panel_svg(panel) + "</figure>");
+  page.add_html("</div>\n");
+  page.add(events_of(report));
+  return page.html();
 }
 
 }  // namespace marey::draw

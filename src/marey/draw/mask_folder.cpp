@@ -22,9 +22,16 @@ std::filesystem::path mask_path(const std::string& folder, std::int64_t index) {
 MaskFolder::MaskFolder(std::string folder) : folder_(std::move(folder)) {
   std::error_code problem;
   made_ = std::filesystem::create_directories(folder_, problem);
-  if (problem || !std::filesystem::is_directory(folder_)) throw Error("{}: cannot be made a folder for masks", folder_);
-  if (!std::filesystem::is_empty(folder_, problem) || problem)
-    throw Error("{}: is not empty; masks go into a folder of their own", folder_);
+  if (problem) throw Error("{}: cannot be made a folder for masks", folder_);
+  require_free(folder_);
+}
+
+void MaskFolder::require_free(const std::string& folder) {
+  std::error_code problem;
+  if (!std::filesystem::exists(folder, problem)) return;
+  if (!std::filesystem::is_directory(folder, problem)) throw Error("{}: cannot be made a folder for masks", folder);
+  if (!std::filesystem::is_empty(folder, problem) || problem)
+    throw Error("{}: is not empty; masks go into a folder of their own", folder);
 }
 
 MaskFolder::~MaskFolder() {

@@ -12,6 +12,8 @@ namespace marey::draw {
 /// not belong to the scene, else 0. Public benchmarks of background models (changedetection.net) call and count them so.
 class MaskFolder {
  public:
+  /// Throws Error where `folder` is there and holds something, or is none.
+  static void require_free(const std::string& folder);
   /// Makes the folder. Throws Error where that cannot be, or it holds something already.
   explicit MaskFolder(std::string folder);
   /// Without `finish` the masks go away again.

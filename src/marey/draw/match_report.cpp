@@ -1,61 +1,63 @@
 #include "marey/draw/match_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/core/text_safety.h"
-#include "marey/draw/canvas.h"
+#include "marey/draw/pitch_svg.h"
 #include "marey/draw/svg.h"
 
 namespace marey::draw {
 namespace {
 
-constexpr double kPitchMargin = 3;     // m round the pitch
-constexpr int kDecimals = 2;           // of metres that are drawn
+constexpr int kDecimals = 2;           // of speeds that are drawn
 constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
 
 constexpr double kTerritoryCell = 5;  // m
 constexpr double kTerritory = 0.5;    // of a team's time on the pitch is spent in its territory
 
-/// The grass, to draw on.
-class PitchSvg : public Svg {
- public:
-  explicit PitchSvg(const MatchReport& report)
-      : PitchSvg(Box{report.corner.x() - kPitchMargin, report.corner.y() - kPitchMargin, report.pitch.length + 2 * kPitchMargin,
-                     report.pitch.width + 2 * kPitchMargin}) {}
-
- private:
-  explicit PitchSvg(const Box& shown)
-      : Svg({{"viewBox", fmt::format("{:.2f} {:.2f} {:.2f} {:.2f}", shown.left, shown.top, shown.width, shown.height)}},
-            kDecimals) {
-    rect(shown, {{"fill", "#5f9469"}});
-  }
-};
+// Of Okabe and Ito's colours those that are seen on grass, for teams whose shirts are not known.
+constexpr std::array<const char*, 5> kTeamColours{"#e69f00", "#cc79a7", "#56b4e9", "#f0e442", "#bbbbbb"};
 
 class ReportPage {
  public:
   explicit ReportPage(const MatchReport& report) : report_(report) {
-    for (const MatchReport::Person& person : report.people) teams_.try_emplace(person.team, static_cast<int>(teams_.size()));
+    for (const MatchReport::Person& person : report.people) {
+      if (colours_.contains(person.team)) continue;
+      if (person.appearance)
+        colours_[person.team] = colour_on_grass(*person.appearance);
+      else
+        colours_[person.team] = kTeamColours[colours_.size() % kTeamColours.size()];
+    }
   }
 
   std::string write() {
     Page page(report_.title);
+    page.add_sentence(report_.lead);
+    page.add_list(report_.notes);
     add_people(page);
-    for (const PageTable& table : report_.tables) page.add(table);
-    define_lines();
+    for (PageTable table : report_.tables) {
+      table.colours = colours_;
+      page.add(table);
+    }
+    add("{}", PitchSvg::lines_html(report_.pitch));
     write_territories();
-    add("<h2>Where everybody went</h2>");
-    PitchSvg all(report_);
+    add("<h2>Where everybody went</h2><div class=\"one\">");
+    PitchSvg all(report_.pitch);
     const double opacity = opacity_of(report_.people, 0.25);
-    for (const MatchReport::Person& person : report_.people) draw_paths(all, person, 0.25, opacity);
-    add_pitch(all);
-    add("<h2>One by one</h2>");
+    for (const MatchReport::Person& person : report_.people) draw_paths(all.field(), person, 0.25, opacity);
+    add("{}</div>", all.html());
+    page.add_html(std::exchange(text_, {}));
+    page.add_legend({colours_.begin(), colours_.end()});
+    add("<h2>One by one</h2><p>Where each was longest, the way, and the speed over time.</p>");
     for (const MatchReport::Person& person : report_.people) write_person(person);
     page.add_html(text_);
     return page.html();
@@ -70,7 +72,10 @@ class ReportPage {
 
   void add_people(Page& page) const {
     PageTable table{"People", {"no.", "name", "team"}, {}, 3};
+    table.groups.assign(table.head.size(), {});
+    table.groups.insert(table.groups.end(), report_.groups.begin(), report_.groups.end());
     table.head.insert(table.head.end(), report_.columns.begin(), report_.columns.end());
+    table.colours = colours_;
     for (const MatchReport::Person& person : report_.people) {
       auto& row = table.rows.emplace_back(std::vector{std::to_string(person.number), person.name, person.team});
       row.insert(row.end(), person.cells.begin(), person.cells.end());
@@ -88,7 +93,7 @@ class ReportPage {
         const auto& times = person.speeds[p];
         for (std::size_t i = 1; i < std::min(path.size(), times.size()); ++i) {
           if (times[i].first < period.begin_s || times[i].first > period.end_s) continue;
-          const Vector<2> at = (path[i] - report_.corner) / kTerritoryCell;
+          const Vector<2> at = (path[i] - report_.pitch.corner) / kTerritoryCell;
           const int column = static_cast<int>(std::floor(at.x())), row = static_cast<int>(std::floor(at.y()));
           if (column >= 0 && row >= 0 && column < columns && row < rows)
             seconds[static_cast<std::size_t>(row) * columns + column] += times[i].first - times[i - 1].first;
@@ -100,11 +105,11 @@ class ReportPage {
 
   /// A team's half of its time on the smallest part of the pitch; halves side by side.
   void write_territories() {
-    if (teams_.size() > 8 || (teams_.size() == 1 && teams_.begin()->first.empty())) return;
+    if (colours_.size() > 8 || (colours_.size() == 1 && colours_.begin()->first.empty())) return;
     std::vector<MatchReport::Period> periods = report_.periods;
-    if (periods.empty()) periods.push_back({"the whole of it", -1e300, 1e300});
+    if (periods.empty()) periods.push_back({"whole recording", -1e300, 1e300});
     add("<h2>Territories</h2><p>The smallest part of the pitch on which a team spent half of its time.</p><div class=\"two\">");
-    for (const auto& [team, number] : teams_) {
+    for (const auto& [team, colour] : colours_) {
       for (const MatchReport::Period& period : periods) {
         if (!team.empty()) write_territory(team, period);
       }
@@ -113,56 +118,28 @@ class ReportPage {
   }
 
   void write_territory(const std::string& team, const MatchReport::Period& period) {
-    const int columns = static_cast<int>(std::ceil(report_.pitch.length / kTerritoryCell));
-    const int rows = static_cast<int>(std::ceil(report_.pitch.width / kTerritoryCell));
+    const int columns = static_cast<int>(std::ceil(report_.pitch.size.length / kTerritoryCell));
+    const int rows = static_cast<int>(std::ceil(report_.pitch.size.width / kTerritoryCell));
     const std::vector<double> seconds = territory_seconds(team, period, columns, rows);
     const std::vector<bool> full = fullest_cells(seconds, kTerritory);
     const double most = *std::max_element(seconds.begin(), seconds.end());
     double area = 0;
-    PitchSvg svg(report_);
+    PitchSvg svg(report_.pitch);
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         const std::size_t cell = static_cast<std::size_t>(row) * columns + column;
         if (!full[cell]) continue;
         area += kTerritoryCell * kTerritoryCell;
-        svg.rect(cell_at(column, row, kTerritoryCell),
-                 {{"fill", team_colour(team)}, {"fill-opacity", 0.35 + 0.55 * seconds[cell] / most}});
+        svg.field().rect(cell_at(column, row, kTerritoryCell),
+                         {{"fill", colours_.at(team)}, {"fill-opacity", 0.35 + 0.55 * seconds[cell] / most}});
       }
     }
-    add("<figure>");
-    add_pitch(svg);
+    add("<figure>{}", svg.html());
     add("<figcaption>{}, {}: {:.0f} m²</figcaption></figure>", xml_escaped(team), xml_escaped(period.name), area);
   }
 
   Box cell_at(int column, int row, double size) const {
-    return {report_.corner.x() + column * size, report_.corner.y() + row * size, size, size};
-  }
-
-  void add_pitch(PitchSvg& svg) {
-    svg.add("use", {{"href", "#lines"}});
-    text_ += svg.str();
-  }
-
-  /// The pitch's lines, once for all its pictures.
-  void define_lines() {
-    constexpr double step = 0.1;  // m
-    Svg svg({{"style", "position: absolute; width: 0; height: 0"}}, kDecimals);
-    SvgElement lines = svg.add("defs", {}).add("g", {{"id", "lines"}});
-    for (geometry::PitchLine& line : geometry::pitch_lines(report_.pitch, step)) {
-      for (Vector<2>& point : line.points) point += report_.corner;
-      lines.polyline(line.points, {{"stroke", "#d8e6da"}, {"stroke-width", 0.15}});
-    }
-    text_ += svg.str();
-  }
-
-  std::string colour(const MatchReport::Person& person) const {
-    const Colour c = person.appearance ? colour_of(*person.appearance) : colour_of(teams_.at(person.team));
-    return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
-  }
-
-  std::string team_colour(const std::string& team) const {
-    return colour(
-        *std::find_if(report_.people.begin(), report_.people.end(), [&](const auto& person) { return person.team == team; }));
+    return {report_.pitch.corner.x() + column * size, report_.pitch.corner.y() + row * size, size, size};
   }
 
   static std::size_t step_of(std::size_t points) {
@@ -178,20 +155,21 @@ class ReportPage {
         for (std::size_t i = step; i < path.size(); i += step) length += (path[i] - path[i - step]).norm();
       }
     }
-    const double covered = length * width / (report_.pitch.length * report_.pitch.width);
-    return 0.8 / (1 + 8 * covered);
+    const double covered = length * width / (report_.pitch.size.length * report_.pitch.size.width);
+    return 0.95 / (1 + 5 * covered);
   }
 
-  void draw_paths(Svg& svg, const MatchReport::Person& person, double width, double opacity) const {
+  void draw_paths(SvgElement& svg, const MatchReport::Person& person, double width, double opacity) const {
     for (const auto& path : person.paths) {
       std::vector<Vector<2>> points;
       for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) points.push_back(path[i]);
-      svg.polyline(points,
-                   {{"stroke", colour(person)}, {"stroke-width", width}, {"stroke-opacity", fmt::format("{:.3f}", opacity)}});
+      svg.polyline(
+          points,
+          {{"stroke", colours_.at(person.team)}, {"stroke-width", width}, {"stroke-opacity", fmt::format("{:.3f}", opacity)}});
     }
   }
 
-  void draw_heat(Svg& svg, const MatchReport::Person& person) const {
+  void draw_heat(SvgElement& svg, const MatchReport::Person& person) const {
     const double most = person.heat.empty() ? 0 : *std::max_element(person.heat.begin(), person.heat.end());
     for (int row = 0; row < person.heat_rows; ++row) {
       for (int column = 0; column < person.heat_columns; ++column) {
@@ -200,6 +178,29 @@ class ReportPage {
         svg.rect(cell_at(column, row, person.heat_cell_m),
                  {{"fill", "#ffd54a"}, {"fill-opacity", std::sqrt(seconds / most) * 0.85}});
       }
+    }
+  }
+
+  static std::string sprints_of(const MatchReport::Person& person) {
+    const std::size_t count = person.sprints.size();
+    return count == 0 ? "no sprint" : count == 1 ? "1 sprint is marked" : fmt::format("{} sprints are marked", count);
+  }
+
+  /// The speeds that are known; `place(time, speed)` is where each is drawn.
+  template <typename Place>
+  static void draw_known(Svg& svg, const MatchReport::Person& person, const Place& place) {
+    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
+      const auto& path = person.speeds[p];
+      std::vector<Vector<2>> points;
+      const auto draw = [&] {
+        if (points.size() > 1) svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
+        points.clear();
+      };
+      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
+        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
+        if (!person.seen[p][i]) draw();
+      }
+      draw();
     }
   }
 
@@ -224,8 +225,7 @@ class ReportPage {
       svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
       svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
-    svg.text({left, height - 1},
-             fmt::format("m/s over {:.0f} s, where it is known; {} sprints are marked", end - begin, person.sprints.size()),
+    svg.text({left, height - 1}, fmt::format("m/s over {:.0f} s, where it is known; {}", end - begin, sprints_of(person)),
              {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;
@@ -233,19 +233,7 @@ class ReportPage {
       svg.rect({x, 0, std::max(narrowest, place(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
           .add("title", {}, fmt::format("{:.1f} s to {:.1f} s", from, to));
     }
-    for (std::size_t p = 0; p < person.speeds.size(); ++p) {
-      const auto& path = person.speeds[p];
-      std::vector<Vector<2>> points;
-      const auto draw = [&] {
-        if (points.size() > 1) svg.polyline(points, {{"class", "speed"}, {"stroke-width", 0.4}});
-        points.clear();
-      };
-      for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
-        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
-        if (!person.seen[p][i]) draw();
-      }
-      draw();
-    }
+    draw_known(svg, person, place);
     text_ += svg.str();
   }
 
@@ -256,17 +244,16 @@ class ReportPage {
         : person.name.empty() ? own
                               : own + " · ",
         xml_escaped(person.name), xml_escaped(person.team));
-    PitchSvg svg(report_);
-    draw_heat(svg, person);
-    draw_paths(svg, person, 0.3, opacity_of({&person, 1}, 0.3));
-    add_pitch(svg);
-    add("</div><div>");
+    PitchSvg svg(report_.pitch);
+    draw_heat(svg.field(), person);
+    draw_paths(svg.field(), person, 0.3, opacity_of({&person, 1}, 0.3));
+    add("{}</div><div>", svg.html());
     draw_speeds(person);
     add("</div></div></details>");
   }
 
   const MatchReport& report_;
-  std::map<std::string, int> teams_;
+  std::map<std::string, std::string> colours_;  // of teams, CSS
   std::string text_;
 };
 

@@ -8,7 +8,7 @@
 #include "marey/core/appearance.h"
 #include "marey/core/geometry.h"
 #include "marey/draw/page.h"
-#include "marey/geometry/pitch.h"
+#include "marey/draw/pitch_svg.h"
 
 namespace marey::draw {
 
@@ -34,10 +34,11 @@ struct MatchReport {
     double begin_s = 0, end_s = 0;
   };
 
-  std::string title;
-  geometry::PitchSize pitch;
-  Vector<2> corner = Vector<2>::Zero();  ///< m: the pitch's, in the frame of the paths
-  std::vector<std::string> columns;      ///< of the table of people, after number, name and team
+  std::string title, lead;           ///< what it is of, and in a sentence what is in it
+  std::vector<std::string> notes;    ///< what is doubtful
+  PitchFrame pitch;                  ///< in the frame of the paths
+  std::vector<std::string> columns;  ///< of the table of people, after number, name and team
+  std::vector<std::string> groups;   ///< of these columns, as PageTable has them
   std::vector<Person> people;
   std::vector<Period> periods;    ///< none: the whole of it
   std::vector<PageTable> tables;  ///< others, such as of teams

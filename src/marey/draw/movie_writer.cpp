@@ -93,7 +93,8 @@ void MovieWriter::Parts::encode(const AVFrame* frame) {
   }
 }
 
-MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality, Keep keep)
+MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality, Keep keep,
+                         const std::string& sound_of)
     : parts_(std::make_unique<Parts>()) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
@@ -101,7 +102,7 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
   const double rate = rate_hz.value_or(kUsualRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   parts_->open_codec(size, rate, quality);
-  parts_->file.emplace(path, *parts_->codec, keep);
+  parts_->file.emplace(path, *parts_->codec, keep, sound_of);
 }
 
 MovieWriter::~MovieWriter() = default;

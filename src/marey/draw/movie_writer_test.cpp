@@ -28,6 +28,10 @@ std::string probe(const test::TemporaryFolder& folder, const std::string& path, 
   return test::read_file(answer);
 }
 
+std::ptrdiff_t lines_of(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
 TEST(MovieWriter, WritesAFilmThatBrowsersPlay) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "film.mp4";
@@ -41,6 +45,34 @@ TEST(MovieWriter, WritesAFilmThatBrowsersPlay) {
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2)
       << "the film and the probe's answer, nothing else";
+}
+
+TEST(MovieWriter, ASoundGoesAlongUnchanged) {
+  const test::TemporaryFolder folder;
+  const std::string source = folder / "source.mp4", film = folder / "film.mp4";
+  test::ffmpeg("-f lavfi -i color=gray:size=64x48:rate=10:duration=3 -f lavfi -i sine=frequency=440:duration=5 -c:a aac " + source);
+  MovieWriter writer(film, {64, 48}, 10, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, source);
+  for (int i = 0; i < 30; ++i) writer.write(shade({64, 48}, 100), timestamp_from_seconds(0.1 * i));
+  writer.finish();
+  const auto sound = [&](const std::string& path) {
+    test::ffmpeg("-i " + path + " -vn -t 2.5 -ac 1 -f s16le " + (folder / "sound.raw"));
+    return test::read_file(folder / "sound.raw");
+  };
+  const std::string heard = sound(film), there = sound(source);
+  EXPECT_NEAR(static_cast<double>(heard.size()), static_cast<double>(there.size()), 9000) << "of 220,500 bytes";
+  EXPECT_EQ(lines_of(probe(folder, film, "packet=pts_time")), 30) << "every picture is there";
+  const std::string length = folder / "length.txt";
+  EXPECT_EQ(std::system(("ffprobe -v error -show_entries format=duration -of csv=p=0 " + film + " > " + length).c_str()), 0);
+  EXPECT_NEAR(std::stod(test::read_file(length)), 3.0, 0.15) << "no longer than the pictures";
+  const std::string bytes = test::read_file(film);
+  EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
+  // A film without sound gives none, and nothing that is no film harms.
+  for (const std::string& silent : {film + "x", folder / "sound.raw"}) {
+    MovieWriter mute(folder / "mute.mp4", {64, 48}, 10, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, silent);
+    mute.write(shade({64, 48}, 100), Timestamp{});
+    mute.finish();
+    EXPECT_EQ(lines_of(probe(folder, folder / "mute.mp4", "packet=pts_time")), 1);
+  }
 }
 
 TEST(MovieWriter, ShadesComeBack) {
@@ -76,10 +108,6 @@ std::string times_of_torn(const test::TemporaryFolder& folder, const std::string
                               times;
   EXPECT_EQ(std::system(command.c_str()), 0) << bytes;
   return test::read_file(times);
-}
-
-std::ptrdiff_t lines_of(const std::string& text) {
-  return std::count(text.begin(), text.end(), '\n');
 }
 
 TEST(MovieWriter, FramesWrittenBeforeAKillCanBeRead) {

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
@@ -52,8 +53,8 @@ std::int64_t Mp4File::IndexSize::bound() const {
   return kHeaders + 4 * packets + 8 * time_changes + 4 * key_frames + 20 * (2 * bytes / kJoined + 2);
 }
 
-Mp4File::Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep)
-    : path_(path), keep_(keep), file_(path), parameters_(allocated(avcodec_parameters_alloc())) {
+Mp4File::Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep, std::string sound_of)
+    : path_(path), keep_(keep), file_(path), sound_of_(std::move(sound_of)), parameters_(allocated(avcodec_parameters_alloc())) {
   check(avcodec_parameters_from_context(parameters_.get(), &codec));
   ticks_a_second_ = codec.time_base.den;
   rate_num_ = codec.framerate.num, rate_den_ = codec.framerate.den;
@@ -120,9 +121,18 @@ void Mp4File::rewrite(const std::string& to) const {
   const Input input = index_.packets > 0 ? read_fragments() : nullptr;
   // Packets of an MP4 have their lengths before them, and the parameters say so; an encoder's have start codes.
   Output output = open(to, input != nullptr ? *input->streams[0]->codecpar : *parameters_);
-  av_opt_set_int(output->priv_data, "moov_size", index_.bound(), 0);
+  const auto sound = input != nullptr && !sound_of_.empty() ? SoundTrack::of(sound_of_) : nullptr;
+  if (sound != nullptr) {
+    AVStream* const stream = allocated(avformat_new_stream(output.get(), nullptr));
+    check(avcodec_parameters_copy(stream->codecpar, &sound->parameters()));
+    stream->codecpar->codec_tag = 0;
+    stream->time_base = {1, sound->ticks_a_second()};
+    av_opt_set(output->priv_data, "movflags", "+faststart", 0);  // the index's size is known at the end
+  } else {
+    av_opt_set_int(output->priv_data, "moov_size", index_.bound(), 0);
+  }
   check(avformat_write_header(output.get(), nullptr));
-  if (input != nullptr) copy_packets(*input, *output);
+  if (input != nullptr) copy_packets(*input, *output, sound.get());
   close(output);
 }
 
@@ -135,16 +145,34 @@ Mp4File::Input Mp4File::read_fragments() const {
   return input;
 }
 
-void Mp4File::copy_packets(AVFormatContext& input, AVFormatContext& output) const {
-  const ReadPacket packet(allocated(av_packet_alloc()));
+/// The sound up to `until`, in its ticks; `packet` holds what was read beyond.
+void Mp4File::copy_sound(SoundTrack& sound, AVPacket& packet, std::int64_t until, AVFormatContext& output) const {
+  for (;;) {
+    if (packet.data == nullptr && !sound.next(packet)) return;
+    if (packet.dts > until) return;
+    packet.pos = -1;
+    packet.stream_index = 1;
+    av_packet_rescale_ts(&packet, {1, sound.ticks_a_second()}, output.streams[1]->time_base);
+    check(av_write_frame(&output, &packet));
+    check(output.pb->error);
+    av_packet_unref(&packet);
+  }
+}
+
+void Mp4File::copy_packets(AVFormatContext& input, AVFormatContext& output, SoundTrack* sound) const {
+  const ReadPacket packet(allocated(av_packet_alloc())), heard(allocated(av_packet_alloc()));
   for (std::int64_t i = 0; i < index_.packets; ++i) {
     check(av_read_frame(&input, packet.get()));
     packet->pos = -1;
     packet->duration = index_.last_duration;  // counts of the last one alone
     av_packet_rescale_ts(packet.get(), input.streams[0]->time_base, output.streams[0]->time_base);
+    const std::int64_t shown = packet->dts;
     check(av_write_frame(&output, packet.get()));
     check(output.pb->error);
     av_packet_unref(packet.get());
+    if (sound == nullptr) continue;
+    const std::int64_t until = av_rescale_q(shown, output.streams[0]->time_base, {1, sound->ticks_a_second()});
+    copy_sound(*sound, *heard, until, output);
   }
 }
 

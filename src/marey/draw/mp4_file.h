@@ -6,6 +6,7 @@
 
 #include "marey/core/whole_file.h"
 #include "marey/draw/movie_writer.h"
+#include "marey/draw/sound_track.h"
 
 struct AVCodecContext;
 struct AVCodecParameters;
@@ -14,12 +15,13 @@ struct AVPacket;
 
 namespace marey::draw {
 
-/// One stream of H.264 in an MP4. It is written as fragments of a quarter of a second, so that at any time what was written can be
-/// read; `finish` rewrites it without encoding anew as an ordinary MP4 whose index comes first.
+/// One stream of H.264 in an MP4, and in the finished one a film's sound beside it. It is written as fragments of a quarter of a
+/// second, so that at any time what was written can be read; `finish` rewrites it without encoding anew as an ordinary MP4 whose
+/// index comes first.
 class Mp4File {
  public:
-  /// `codec` is open. Throws Error if the file cannot be written.
-  Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep);
+  /// `codec` is open; `sound_of` is a film whose sound goes along, empty: none. Throws Error if the file cannot be written.
+  Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep, std::string sound_of = {});
   /// Without `finish`, keeps the fragments or removes them.
   ~Mp4File();
   Mp4File(const Mp4File&) = delete;
@@ -54,14 +56,15 @@ class Mp4File {
   Output open(const std::string& path, const AVCodecParameters& parameters) const;
   Input read_fragments() const;
   void rewrite(const std::string& to) const;
-  void copy_packets(AVFormatContext& input, AVFormatContext& output) const;
+  void copy_packets(AVFormatContext& input, AVFormatContext& output, SoundTrack* sound) const;
+  void copy_sound(SoundTrack& sound, AVPacket& packet, std::int64_t until, AVFormatContext& output) const;
   void close(Output& output) const;
   void check(int code) const;
 
   std::string path_;
   MovieWriter::Keep keep_;
   UnfinishedFile file_;
-  std::string fragments_path_;
+  std::string fragments_path_, sound_of_;
   std::unique_ptr<AVCodecParameters, FreeParameters> parameters_;
   int ticks_a_second_, rate_num_, rate_den_;
   IndexSize index_;

@@ -9,7 +9,7 @@ namespace marey::draw {
 
 struct MovieWriter::Parts {};
 
-MovieWriter::MovieWriter(const std::string& path, cv::Size, std::optional<double>, Quality, Keep) {
+MovieWriter::MovieWriter(const std::string& path, cv::Size, std::optional<double>, Quality, Keep, const std::string&) {
   throw Error("{}: this build of Marey writes no films; the Debian packages do", path);
 }
 MovieWriter::~MovieWriter() = default;

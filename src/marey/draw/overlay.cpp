@@ -91,8 +91,17 @@ Colour colour_of(const TrackName& name, TrackId id) {
   return {(*name.colour)[0], (*name.colour)[1], (*name.colour)[2]};
 }
 
+/// Cameras of 10 or 12 bits write pictures of 16, of which they fill the darkest part alone: white is the lightest that so many
+/// bits hold as the pictures have shown until now, so that it hardly ever changes.
+Picture Overlay::lightened(const Picture& picture) {
+  if (picture.luma().depth() != CV_16U) return picture;
+  const double most = lightest(picture);
+  while (white_ < most) white_ = 2 * white_ + 1;
+  return with_white(picture, white_);
+}
+
 Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
-  Canvas canvas(picture);
+  Canvas canvas(lightened(picture));
   // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
   const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
   for (const Sample& sample : samples) {

@@ -34,10 +34,12 @@ class Overlay {
   Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
+  Picture lightened(const Picture& picture);
   void write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
 
   OverlayOptions options_;
   FadingTrails trails_;
+  double white_ = 255;                    // of pictures of 16 bits
   std::map<TrackId, std::size_t> sides_;  // where each name stood last
 };
 

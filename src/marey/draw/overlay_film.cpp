@@ -3,7 +3,10 @@
 namespace marey::draw {
 
 OverlayFilm::OverlayFilm(const std::string& path, const View& view, const OverlayOptions& options)
-    : path_(path), view_(view), movie_(path, view.size, view.rate_hz), overlay_(options) {}
+    : path_(path),
+      view_(view),
+      movie_(path, view.size, view.rate_hz, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, view.sound_of),
+      overlay_(options) {}
 
 Sink::Wants OverlayFilm::begin(const RecordingHeader& header) {
   by_boxes_ = header.frame.metric();

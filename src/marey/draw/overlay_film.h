@@ -22,6 +22,7 @@ class OverlayFilm final : public Sink {
     CameraId camera{};
     cv::Size size;                  ///< px
     std::optional<double> rate_hz;  ///< of its pictures
+    std::string sound_of;           ///< the film whose sound goes along; empty: none
     Duration offset{};              ///< between its own clock, by which the film runs, and the recording's
   };
 

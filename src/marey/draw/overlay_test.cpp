@@ -101,6 +101,20 @@ TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   EXPECT_EQ(changed(empty, last, {0, 0, 200, 120}), 0) << "all of it has faded";
 }
 
+TEST(Overlay, PicturesOfTwelveBitsAreAsLightAsOthers) {
+  Overlay overlay;
+  cv::Mat deep(48, 64, CV_16UC1, cv::Scalar(2048));
+  deep.at<std::uint16_t>(3, 3) = 4000;
+  EXPECT_NEAR(overlay.draw(Picture(deep), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 16 + 219 / 2, 2);
+  // The next picture is darker, and is drawn so.
+  EXPECT_NEAR(
+      overlay.draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      16 + 219 / 4, 2);
+  EXPECT_NEAR(
+      Overlay().draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      235, 1);
+}
+
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
   const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   Sample sample = box_of(1, 50, 40);

@@ -9,73 +9,139 @@
 #include <fmt/format.h>
 
 #include "marey/core/text_safety.h"
+#include "marey/draw/page_style.h"
 
 namespace marey::draw {
 namespace {
 
-const char* const kPageStyle = R"(
-:root { color-scheme: light dark; --ground: #fff; --text: #1d232a; --faint: #687076; --line: #dde1e4; --bar: #cfe3d4; --head: #f3f5f6; --mark: #d9480f }
-@media (prefers-color-scheme: dark) {
-  :root { --ground: #14181c; --text: #e6e9eb; --faint: #9aa3aa; --line: #30373d; --bar: #2c4a37; --head: #1d2328; --mark: #ff922b }
-}
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 76em; padding: 0 1em; color: var(--text); background: var(--ground) }
-h1 { font-size: 1.6em } h2 { margin-top: 1.8em; font-size: 1.2em }
-.scroll { overflow-x: auto } table { border-collapse: collapse; font-variant-numeric: tabular-nums }
-th, td { padding: .3em .7em; border-bottom: 1px solid var(--line); text-align: left; white-space: nowrap }
-td.n, th.n { text-align: right } td.why { white-space: normal }
-td.n { background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) }
-th { background: var(--head); position: sticky; top: 0; padding: 0 }
-th button { all: unset; cursor: pointer; padding: .3em .7em; display: block } th button:focus-visible { outline: 2px solid var(--mark) }
-th[aria-sort=ascending] button::after { content: " ▲" } th[aria-sort=descending] button::after { content: " ▼" }
-svg { width: 100%; height: auto } details { margin: .5em 0; border-bottom: 1px solid var(--line) } summary { cursor: pointer; font-weight: 600; padding: .3em 0 }
-.two { display: grid; grid-template-columns: repeat(auto-fit, minmax(22em, 1fr)); gap: 1.2em } figure { margin: 0 } figcaption { color: var(--faint); font-size: .9em }
-.axis { fill: var(--faint) } .grid { stroke: var(--line) } .speed { stroke: var(--text) } .sprint { fill: var(--mark); fill-opacity: .25 }
-@media print {
-  :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #ddd; --head: #eee }
-  body { max-width: none; margin: 0; font-size: 10px; print-color-adjust: exact; -webkit-print-color-adjust: exact }
-  details, figure, tr { break-inside: avoid } th { position: static }
-}
-)";
+constexpr std::size_t kMostNarrow = 6, kMostHalf = 9;  // columns that fit on a phone, and on half a screen
+constexpr std::string_view kUnknown = "–", kPlusMinus = " ± ";
 
-// Sorts by the column whose head is pressed, numbers by size; opens everything before it is printed.
-const char* const kPageScript = R"(
-for (const head of document.querySelectorAll("th")) head.firstChild.onclick = () => {
-  const table = head.closest("table"), body = table.tBodies[0], column = head.cellIndex, numbers = head.classList.contains("n");
-  const down = head.getAttribute("aria-sort") === (numbers ? "descending" : "ascending") ? !numbers : numbers;
-  const value = row => row.cells[column].textContent;
-  const number = text => text === "" ? -Infinity : parseFloat(text);
-  const rows = [...body.rows].sort((a, b) => numbers ? number(value(a)) - number(value(b)) : value(a).localeCompare(value(b), undefined, {numeric: true}));
-  for (const other of table.querySelectorAll("th")) other.removeAttribute("aria-sort");
-  head.setAttribute("aria-sort", down ? "descending" : "ascending");
-  body.append(...(down ? rows.reverse() : rows));
-};
-addEventListener("beforeprint", () => document.querySelectorAll("details").forEach(each => each.open = true));
-)";
-
+/// The number of "7.5" and "7.5 ± 0.2".
 std::optional<double> number_of(const std::string& cell) {
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  const std::string_view rest(end, static_cast<std::size_t>(cell.data() + cell.size() - end));
+  return rest.empty() || rest.starts_with(kPlusMinus) ? std::optional(value) : std::nullopt;
 }
 
-struct Column {
+struct PageColumn {
+  std::size_t index = 0;
   bool numbers = false;
-  double largest = 0;
+  double least = 0, largest = 0;
+  std::string group;
 };
 
-/// Empty cells say nothing; a column without any other is none of numbers.
-Column column_of(const PageTable& table, std::size_t index) {
-  Column column;
+/// Empty cells tell nothing; a column without any other is left out.
+std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
+  PageColumn column{.index = index, .numbers = true, .least = HUGE_VAL, .largest = 0, .group = {}};
+  if (index < table.groups.size()) column.group = table.groups[index];
+  bool empty = true;
   for (const auto& row : table.rows) {
     if (row[index].empty()) continue;
+    empty = false;
+    if (row[index] == kUnknown) continue;
     const auto value = number_of(row[index]);
-    if (!value) return {};
-    column.numbers = true;
+    column.numbers &= value.has_value();
+    if (!value) continue;
+    column.least = std::min(column.least, *value);
     column.largest = std::max(column.largest, *value);
   }
-  return column;
+  return empty ? std::nullopt : std::optional(column);
 }
+
+std::string chip(const std::string& text, const std::string& colour) {
+  return fmt::format("<span class=\"chip\"><i style=\"--c:{}\"></i>{}</span>", xml_escaped(colour), xml_escaped(text));
+}
+
+/// A range, "4-5.5", is not broken in two.
+std::string unbroken(const std::string& head) {
+  std::string result;
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    const bool range = head[i] == '-' && i + 1 < head.size() && head[i + 1] >= '0' && head[i + 1] <= '9';
+    result.append(range ? "\u2011" : std::string(1, head[i]));
+  }
+  return result;
+}
+
+class TableHtml {
+ public:
+  explicit TableHtml(const PageTable& table) : table_(table) {
+    for (std::size_t i = 0; i < table.head.size(); ++i) {
+      if (auto column = column_of(table, i)) columns_.push_back(std::move(*column));
+    }
+  }
+
+  std::string html() {
+    const std::string title = xml_escaped(table_.title);
+    text_ = table_.folded ? fmt::format("<details><summary>{}: {}</summary>", title, table_.rows.size())
+                          : fmt::format("<h2>{}</h2>", title);
+    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMostHalf     ? " class=\"wide cards\""
+                                                                   : columns_.size() > kMostNarrow ? " class=\"cards\""
+                                                                                                   : "");
+    write_groups();
+    write_head();
+    text_ += "</thead><tbody>\n";
+    for (const auto& row : table_.rows) {
+      text_ += "<tr>";
+      for (const PageColumn& column : columns_) write_cell(row[column.index], column);
+      text_ += "</tr>\n";
+    }
+    return text_ + (table_.folded ? "</tbody></table></div></details>\n" : "</tbody></table></div>\n");
+  }
+
+ private:
+  /// Whether another group begins with this column: a line is drawn there.
+  bool begins(std::size_t c) const { return c > 0 && columns_[c].group != columns_[c - 1].group; }
+
+  void write_groups() {
+    if (std::all_of(columns_.begin(), columns_.end(), [](const PageColumn& column) { return column.group.empty(); })) return;
+    text_ += "<tr>";
+    for (std::size_t first = 0, end = 0; first < columns_.size(); first = end) {
+      while (end < columns_.size() && columns_[end].group == columns_[first].group) ++end;
+      fmt::format_to(std::back_inserter(text_), "<th class=\"group{}\" colspan=\"{}\">{}</th>", begins(first) ? " from" : "",
+                     end - first, xml_escaped(columns_[first].group));
+    }
+    text_ += "</tr>";
+  }
+
+  void write_head() {
+    text_ += "<tr>";
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const PageColumn& column = columns_[c];
+      fmt::format_to(std::back_inserter(text_), "<th class=\"{}{}\" data-label=\"{}\"><button>{}</button></th>",
+                     column.numbers ? "n" : "t", begins(c) ? " from" : "", label_of(column),
+                     xml_escaped(unbroken(table_.head[column.index])));
+    }
+    text_ += "</tr>";
+  }
+
+  /// What a column is called where its group is not above it.
+  std::string label_of(const PageColumn& column) const {
+    const std::string head = unbroken(table_.head[column.index]);
+    return xml_escaped(column.group.empty() ? head : column.group + ": " + head);
+  }
+
+  void write_cell(const std::string& cell, const PageColumn& column) {
+    auto out = std::back_inserter(text_);
+    const auto at = static_cast<int>(column.index);
+    const auto number =
+        column.numbers && column.largest > std::max(0.0, column.least) && at >= table_.bars_from && at < table_.bars_end
+            ? number_of(cell)
+            : std::nullopt;
+    const auto colour = table_.colours.find(cell);
+    fmt::format_to(out, "<td class=\"{}\"", column.numbers ? "n" : table_.head[column.index] == "why" ? "why" : "t");
+    if (number) fmt::format_to(out, " style=\"--w:{:.0f}%\"", 100 * std::max(0.0, *number) / column.largest);
+    fmt::format_to(out, " data-label=\"{}\">", label_of(column));
+    text_ += column.numbers || cell.empty() || colour == table_.colours.end() ? xml_escaped(cell) : chip(cell, colour->second);
+    text_ += "</td>";
+  }
+
+  const PageTable& table_;
+  std::vector<PageColumn> columns_;
+  std::string text_;
+};
 
 }  // namespace
 
@@ -87,34 +153,33 @@ void Page::add_sentence(const std::string& text) {
   body_ += "<p>" + xml_escaped(text) + "</p>\n";
 }
 
+void Page::add_list(const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return;
+  body_ += "<ul>\n";
+  for (const std::string& sentence : sentences) body_ += "<li>" + xml_escaped(sentence) + "</li>\n";
+  body_ += "</ul>\n";
+}
+
 void Page::add(const PageTable& table) {
-  auto out = std::back_inserter(body_);
-  std::vector<Column> columns;
-  fmt::format_to(out, "<h2>{}</h2><div class=\"scroll\"><table><thead><tr>", xml_escaped(table.title));
-  for (std::size_t i = 0; i < table.head.size(); ++i) {
-    columns.push_back(column_of(table, i));
-    fmt::format_to(out, "<th{}><button>{}</button></th>", columns.back().numbers ? " class=\"n\"" : "", xml_escaped(table.head[i]));
+  if (!table.rows.empty()) body_ += TableHtml(table).html();
+}
+
+void Page::add(const std::vector<LineChart>& charts) {
+  body_ += "<div class=\"two\">\n";
+  for (const LineChart& chart : charts) {
+    body_ += "<figure><h3>" + xml_escaped(chart.title + ", " + chart.y_label) + "</h3>" + part_svg(chart);
+    std::vector<std::pair<std::string, std::string>> legend;
+    for (std::size_t i = 0; i < chart.lines.size(); ++i) legend.emplace_back(chart.lines[i].name, line_colour(i));
+    add_legend(legend);
+    body_ += "</figure>\n";
   }
-  body_ += "</tr></thead><tbody>\n";
-  for (const auto& row : table.rows) {
-    body_ += "<tr>";
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const bool bar = columns[i].numbers && columns[i].largest > 0 && static_cast<int>(i) >= table.bars_from &&
-                       static_cast<int>(i) < table.bars_end && !row[i].empty();
-      if (bar) {
-        const double share = std::max(0.0, *number_of(row[i])) / columns[i].largest;
-        fmt::format_to(out, "<td class=\"n\" style=\"--w:{:.0f}%\">{}</td>", 100 * share, row[i]);
-      } else {
-        fmt::format_to(out, "<td{}>{}</td>",
-                       columns[i].numbers       ? " class=\"n\""
-                       : table.head[i] == "why" ? " class=\"why\""
-                                                : "",
-                       xml_escaped(row[i]));
-      }
-    }
-    body_ += "</tr>\n";
-  }
-  body_ += "</tbody></table></div>\n";
+  body_ += "</div>\n";
+}
+
+void Page::add_legend(const std::vector<std::pair<std::string, std::string>>& colours) {
+  body_ += "<div class=\"legend\">";
+  for (const auto& [text, colour] : colours) body_ += text.empty() ? "" : chip(text, colour);
+  body_ += "</div>\n";
 }
 
 std::string Page::html() const {

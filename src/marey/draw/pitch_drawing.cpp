@@ -68,13 +68,15 @@ Picture draw_pitch(const Picture& picture, const GroundView& view, const std::ve
   return canvas.take();
 }
 
-std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size,
+std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size, bool y_down,
                           const std::function<std::optional<double>(const Vector<2>&)>& metres) {
   constexpr double cell = 1, scale = 8, margin = 24, top = 40, bottom = 50;
   const double width = scale * size.length + 2 * margin, height = scale * size.width + top + bottom;
   Svg svg(width, height, 13, 2);
   svg.text({margin, 24}, title, {{"font-size", 16}, {"font-weight", "bold"}});
-  SvgElement map = svg.add("g", {{"transform", fmt::format("translate({},{}) scale({})", margin, top, scale)}});
+  const double origin = y_down ? top : top + scale * size.width;
+  SvgElement map =
+      svg.add("g", {{"transform", fmt::format("translate({},{}) scale({} {})", margin, origin, scale, y_down ? scale : -scale)}});
   for (double y = 0; y < size.width; y += cell) {
     for (double x = 0; x < size.length; x += cell) {
       const auto worth = metres({x + cell / 2, y + cell / 2});

@@ -25,8 +25,8 @@ Picture draw_pitch(const Picture& picture, const GroundView& view, const std::ve
                    const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks);
 
 /// A map of the pitch, SVG, coloured by `metres(x, y)`: how far a pixel's error reaches on the ground. Nothing is drawn where it
-/// gives nothing. Coordinates are the pitch's own, x to the right, y down.
-std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size,
+/// gives nothing. Coordinates are the pitch's own, x to the right, y downwards or not (core/other_ground.h).
+std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& size, bool y_down,
                           const std::function<std::optional<double>(const Vector<2>&)>& metres);
 
 }  // namespace marey::draw

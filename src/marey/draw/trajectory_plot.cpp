@@ -62,7 +62,7 @@ class PlotPage : public Svg {
   static std::vector<double> ticks(double from, double to) {
     std::vector<double> result;
     const double step = round_step((to - from) / 5);
-    for (double i = std::ceil(from / step); i * step <= to; ++i) result.push_back(i * step);
+    for (double i = std::ceil(from / step); i * step <= to; ++i) result.push_back(i * step + 0.0);  // without -0
     return result;
   }
 

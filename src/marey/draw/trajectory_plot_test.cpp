@@ -37,6 +37,15 @@ TEST(TrajectoryPlot, DrawsALineForEachTargetAndBreaksItWhereNothingIsKnown) {
   EXPECT_TRUE(svg.ends_with("</svg>\n"));
 }
 
+TEST(TrajectoryPlot, NothingIsMinusNought) {
+  TrajectoryPlot plot;
+  plot.add(instant_of(0, {point_of(1, -40, -3)}));
+  plot.add(instant_of(1, {point_of(1, 60, 90)}));
+  const std::string svg = plot.to_svg("way");
+  EXPECT_EQ(svg.find(">-0<"), std::string::npos);
+  EXPECT_NE(svg.find(">0<"), std::string::npos);
+}
+
 TEST(TrajectoryPlot, AnOutlineTellsTheCentre) {
   TrajectoryPlot one, other;
   for (int frame = 0; frame < 20; ++frame) {

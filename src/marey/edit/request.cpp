@@ -60,15 +60,7 @@ std::optional<Number> number_in(std::string_view text) {
 }
 
 std::optional<FrameRange> range_in(const Word& word) {
-  const std::size_t colon = word.text.find(':');
-  if (word.quoted || colon == std::string::npos) return std::nullopt;
-  const std::string_view first = std::string_view(word.text).substr(0, colon), last = std::string_view(word.text).substr(colon + 1);
-  const auto begin = first.empty() ? std::optional<std::int64_t>(0) : number_in<std::int64_t>(first);
-  const auto end = last.empty() ? std::optional<std::int64_t>(FrameRange::kToTheEnd) : number_in<std::int64_t>(last);
-  if (!begin || !end) return std::nullopt;
-  if (*begin < 0 || *end < *begin || *end > FrameRange::kToTheEnd)
-    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", plain_text(word.text));
-  return FrameRange{*begin, *end};
+  return word.quoted ? std::nullopt : parse_range(word.text);
 }
 
 /// What is left to be read of a request.
@@ -220,6 +212,18 @@ void read(Reader& words, Request& request) {
 }
 
 }  // namespace
+
+std::optional<FrameRange> parse_range(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const std::string_view first = text.substr(0, colon), last = text.substr(colon + 1);
+  const auto begin = first.empty() ? std::optional<std::int64_t>(0) : number_in<std::int64_t>(first);
+  const auto end = last.empty() ? std::optional<std::int64_t>(FrameRange::kToTheEnd) : number_in<std::int64_t>(last);
+  if (!begin || !end) return std::nullopt;
+  if (*begin < 0 || *end < *begin || *end > FrameRange::kToTheEnd)
+    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", plain_text(text));
+  return FrameRange{*begin, *end};
+}
 
 Request parse_request(std::string_view text) {
   const std::vector<std::vector<Word>> words = words_of(text);

@@ -64,11 +64,11 @@ struct ReadOptions {
   geometry::PitchSize pitch;  ///< of a match
   double rate_hz = 25;
   bool as_recorded = false;  ///< of a take: without its edits, which are then told beside it
-  UpAxis up = UpAxis::z;     ///< of points in space, the axis that is up in the file
   // Of a skeleton's motion, whose joints are the points: its z is up when it is read.
   double skeleton_unit_m = 0.01;   ///< of a BVH file: how many metres its unit has
   UpAxis skeleton_up = UpAxis::y;  ///< the axis that is up in a BVH or ASF file
   double amc_rate_hz = 120;        ///< of an AMC file, which does not say
+  std::optional<UpAxis> up = {};   ///< of points in space, the axis that is up in the file; nothing: as the file says, else z
 };
 
 /// The beginning of a file, by which its format is known.

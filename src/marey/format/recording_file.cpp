@@ -32,12 +32,16 @@ void turn(Instant& instant, const Matrix<3>& rotation) {
   }
 }
 
-/// Turns a world whose y is up so that its z is.
+/// Turns a world whose y is up so that its z is. `told` is a warning, or empty.
 class TurningReader : public FileReader {
  public:
-  explicit TurningReader(std::unique_ptr<FileReader> reader) : reader_(std::move(reader)) {}
+  TurningReader(std::unique_ptr<FileReader> reader, std::string told) : reader_(std::move(reader)), told_(std::move(told)) {}
   const FileInfo& info() const override { return reader_->info(); }
-  std::vector<std::string> warnings() const override { return reader_->warnings(); }
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings = reader_->warnings();
+    if (!told_.empty()) warnings.push_back(told_);
+    return warnings;
+  }
   std::optional<Instant> next() override {
     auto instant = reader_->next();
     if (instant) turn(*instant, z_up_from_y_up());
@@ -46,6 +50,7 @@ class TurningReader : public FileReader {
 
  private:
   std::unique_ptr<FileReader> reader_;
+  std::string told_;
 };
 
 /// And back.
@@ -153,14 +158,22 @@ std::unique_ptr<FileReader> edited(std::unique_ptr<FileReader> reader, const std
 
 }  // namespace
 
+UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& said) {
+  return said.value_or(info.up.value_or(UpAxis::z));
+}
+
 std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options) {
   if (format.read != nullptr) return std::make_unique<MatchReader>(read_whole(path, format, options));
   if (format.open == nullptr) throw Error("{}: is {}, which is no recording", path, format.title);
   auto reader = format.open(path, options);
   require_short_labels(reader->info(), path);
   if (!options.as_recorded) reader = edited(std::move(reader), path);
-  if (options.up == UpAxis::z || format.z_up) return reader;
-  return std::make_unique<TurningReader>(std::move(reader));
+  if (format.z_up || up_axis(reader->info(), options.up) == UpAxis::z) return reader;
+  std::string told;
+  if (!options.up)
+    told = fmt::format("{}: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)",
+                       path);
+  return std::make_unique<TurningReader>(std::move(reader), std::move(told));
 }
 
 std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options) {

@@ -12,7 +12,11 @@
 
 namespace marey::format {
 
-/// Opens a recording instant by instant, whatever its format. Throws Error for what cannot be read.
+/// The axis of a file of points that is taken for up: what the user says, else what the file says, else z.
+UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& said);
+
+/// Opens a recording instant by instant, whatever its format. Where its y is up, it is turned so that z is; a warning says so where
+/// the file alone said it. Throws Error for what cannot be read.
 std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options = {});
 /// The same, known by its content.
 std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options = {});

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/core/rig_sources.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/picture_file.h"
@@ -134,6 +135,7 @@ void draw(const PitchRun& run, const PitchRunOptions& options) {
     }
     WholeFile map(files.accuracy);
     map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
+                                  is_reflection(run.calibration.ground_from_world),
                                   [&](const Vector<2>& pitch) -> std::optional<double> {
                                     const auto pixel = ground.pixel(to_world(pitch));
                                     if (!pixel || !found.camera.in_picture(*pixel)) return std::nullopt;

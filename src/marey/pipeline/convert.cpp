@@ -6,13 +6,14 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/ground_orientation.h"
+#include "marey/pipeline/part_of_recording.h"
 
 namespace marey::pipeline {
 namespace {
@@ -22,25 +23,20 @@ using format::Format;
 using format::UpAxis;
 using format::match::GroundMatch;
 
-format::match::GroundFrame user_frame(const ConvertOptions& options) {
-  format::match::GroundFrame frame = options.frame;
-  if (options.rig.empty()) return frame;
-  const Rig rig = format::rig::read_rig(options.rig);
-  if (!rig.ground_from_world)
-    throw Error("{}: says nothing of the ground; `marey calibrate pitch` makes a rig that does", options.rig);
-  // A reflection: seen from above, y grows to the right of x, downwards.
-  frame.y_down = rig.ground_from_world->topLeftCorner<2, 2>().determinant() < 0;
-  return frame;
+/// Whether y grows downwards in the user's frame; nothing where the user does not say.
+std::optional<bool> stated_y_down(const ConvertOptions& options) {
+  if (!options.rig.empty()) return rig_has_y_down(options.rig);
+  return options.frame.y_down ? std::optional(true) : std::nullopt;
 }
 
-/// The axes that are up in the two files.
-std::pair<UpAxis, UpAxis> axes(const ConvertOptions& options, const Format& from, const Format& to) {
-  const UpAxis up = options.up.value_or(UpAxis::z);
+/// The axes that are up in the two files; nothing for the first: as it says itself.
+std::pair<std::optional<UpAxis>, UpAxis> axes(const ConvertOptions& options, const Format& from, const Format& to) {
   if (options.from_up) {
     if (from.z_up) throw format::WrongFormat("{}", "a take's z is up always; --from-up is for other files");
-    return {*options.from_up, up};
+    return {options.from_up, options.up.value_or(UpAxis::z)};
   }
-  return to.z_up ? std::pair(up, UpAxis::z) : std::pair(UpAxis::z, up);
+  if (to.z_up) return {options.up, UpAxis::z};
+  return {std::nullopt, options.up.value_or(UpAxis::z)};
 }
 
 void refuse_axes(const std::string& from, const ConvertOptions& options, const char* what) {
@@ -65,16 +61,39 @@ void count(const RecordingHeader& header, std::int64_t frames, std::int64_t samp
   summary.count = ground ? samples : frames;
 }
 
+/// Halves end with the frames that are left.
+void cut_to(GroundMatch& match, const edit::FrameRange& frames) {
+  match.recording = part_of(match.recording, frames, match.recording.header.name);
+  std::erase_if(match.order, [&](TrackId track) { return match.recording.find(track) == nullptr; });
+  for (format::match::GroundPeriod& period : match.periods) {
+    period.first_frame = static_cast<std::int32_t>(std::max<std::int64_t>(period.first_frame, frames.first));
+    period.last_frame = static_cast<std::int32_t>(std::min<std::int64_t>(period.last_frame, frames.last));
+  }
+  std::erase_if(match.periods, [](const format::match::GroundPeriod& period) { return period.last_frame < period.first_frame; });
+}
+
+std::unique_ptr<format::FileReader> opened(const std::string& from, const Format& in, const format::ReadOptions& how,
+                                           const std::optional<edit::FrameRange>& frames) {
+  auto reader = format::open_recording(from, in, how);
+  return frames ? part_of(std::move(reader), *frames) : std::move(reader);
+}
+
 /// A recording that is written whole, or was read whole.
 ConvertSummary convert_match(GroundMatch match, const std::string& to, const Format& from, const Format& format,
                              const ConvertOptions& options) {
   if (!options.home.empty()) match.home = options.home;
   if (!options.away.empty()) match.away = options.away;
   if (!options.periods.empty()) match.periods = options.periods;
+  if (options.frames) cut_to(match, *options.frames);
   if (options.labelled) match.recording.erase_tracks_if([](const TrackColumns& track) { return track.name.label.empty(); });
+  const std::optional<bool> y_down = stated_y_down(options);
   if (from.from_corner != format.from_corner) {
     const auto turned = format.from_corner ? format::match::to_corner : format::match::from_corner;
-    match.recording = turned(std::move(match.recording), match.pitch, user_frame(options));
+    const format::match::GroundFrame frame{.y_down = y_down.value_or(format.from_corner && y_grows_down(match.recording.header)),
+                                           .centred = options.frame.centred};
+    match.recording = turned(std::move(match.recording), match.pitch, frame);
+  } else if (y_down && match.recording.header.frame.kind == FrameOfReference::Kind::user_ground) {
+    set_y_down(match.recording.header, *y_down);
   }
   ConvertSummary summary{.format = std::string(format.name), .counted = {}, .warnings = match.warnings};
   const std::vector<std::string> lost = format::write_whole(to, format, match);
@@ -144,16 +163,12 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
   how.up = from_up;
   format::WritePlan plan;
   {
-    const auto first = format::open_recording(from, in, how);
+    const auto first = opened(from, in, how, options.frames);
     plan = format::plan_of(*first, from);
     summary.warnings = first->warnings();
+    if (options.frames) require_frames(plan.last_frame - plan.first_frame + 1, *options.frames, from);
   }
   plan.up = to_up;
-  // A file that says so itself is still believed only where the user says it too: many say it by mistake.
-  if (plan.info.up == UpAxis::y && from_up == UpAxis::z) {
-    summary.warnings.push_back(
-        fmt::format("{}: says that y is up; {} turns it so that z is", from, out.z_up ? "--up y" : "--from-up y"));
-  }
   if (options.labelled) {
     std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
     if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);
@@ -161,7 +176,7 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
   if (auto sentence = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*sentence));
   if (!options.analog.empty()) plan.info.beside = analog_of(options.analog, from, to, out, plan, summary.warnings);
   if (auto sentence = format::beside_lost(plan.info.beside, to, out)) summary.warnings.push_back(std::move(*sentence));
-  const auto reader = format::open_recording(from, in, how);
+  const auto reader = opened(from, in, how, options.frames);
   const auto sink = format::create_recording(to, out, plan);
   sink->begin(plan.info.header);
   while (auto instant = reader->next()) {
@@ -183,7 +198,10 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
 
 ConvertSummary convert(const std::string& from, const std::string& to, const ConvertOptions& options, const Hooks& hooks) {
   const Format& in = format::format_to_read(from, format::kRecordings | Content::rig);
-  if (in.read_rig != nullptr) return convert_rig(from, to, in, options);
+  if (in.read_rig != nullptr) {
+    if (options.frames) throw format::WrongFormat("{}: is a calibration; --frames is for recordings", from);
+    return convert_rig(from, to, in, options);
+  }
   if (in.read != nullptr) {
     refuse_axes(from, options, "holds no points in space");
     GroundMatch match = format::read_whole(from, in, options.read);
@@ -197,7 +215,7 @@ ConvertSummary convert(const std::string& from, const std::string& to, const Con
   if (content != Content::space) refuse_axes(from, options, "holds no points in space");
   const Format& out = format::format_to_write(to, options.format, content);
   // A copy of a take keeps what was recorded and its edits; what the edits make of it is for the others.
-  how.read.as_recorded = options.read.as_recorded || (in.name == out.name && !options.labelled);
+  how.read.as_recorded = options.read.as_recorded || (in.name == out.name && !options.labelled && !options.frames);
   if (out.create != nullptr) return convert_stream(from, to, in, out, how, hooks);
   return convert_match(format::read_whole(from, in, how.read), to, in, out, how);
 }

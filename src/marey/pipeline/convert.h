@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/edit/operation.h"
 #include "marey/format/format.h"
 #include "marey/format/match/ground_match.h"
 #include "marey/pipeline/run.h"
@@ -18,8 +19,9 @@ struct ConvertOptions {
   format::ReadOptions read;               ///< but for `up`
   std::optional<format::UpAxis> up;       ///< in the file to be written; in the one that is read, where z is up in the other always
   std::optional<format::UpAxis> from_up;  ///< in the one that is read
-  bool labelled = false;                  ///< tracks without a label are left out
-  std::string analog;                     ///< a C3D file whose analog channels and events go along into a C3D file
+  std::optional<edit::FrameRange> frames = {};  ///< these alone, with their numbers and times; nothing: all
+  bool labelled = false;                        ///< tracks without a label are left out
+  std::string analog;                           ///< a C3D file whose analog channels and events go along into a C3D file
   // Of people on the ground.
   std::string home, away;  ///< teams; empty: as the file says, or by the order of their people
   std::vector<format::match::GroundPeriod> periods;

@@ -237,6 +237,12 @@ double Feed::rate_hz() const {
   return info().rate_hz.value_or(kUsualRate);
 }
 
+std::string Feed::sound_source() const {
+  const bool own_rate = !camera_.rate_hz && !options_.rate_hz;
+  std::error_code error;
+  return own_rate && std::filesystem::is_regular_file(camera_.source, error) ? camera_.source : std::string();
+}
+
 bool Feed::has_pictures() const {
   return is_live() || (!camera_.source.empty() && dynamic_cast<const Pictures*>(input_.get()) != nullptr);
 }

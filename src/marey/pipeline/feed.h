@@ -46,6 +46,8 @@ class Feed {
   const SourceInfo& info() const;
   double rate_hz() const;
   bool has_pictures() const;
+  /// The file whose sound goes with its pictures: none where they come from no film, or at another rate than its own.
+  std::string sound_source() const;
 
   /// A camera that gives nothing.
   static Feed absent(const RigCamera& camera, CameraId id);

@@ -82,9 +82,9 @@ void write_gait_c3d(const std::string& path, const std::string& recording, const
                     const GaitMeasure& measure) {
   const format::Format& format = format::format_to_write(path, "c3d", format::Content::space);
   format::ReadOptions how;
-  how.up = up.value_or(format::UpAxis::z);
+  how.up = up;
   format::WritePlan plan = format::plan_of(*format::open_recording(recording, how), recording);
-  plan.up = how.up;
+  plan.up = format::up_axis(plan.info, up);
   plan.found = findings_of(measure);
   replay(*format::open_recording(recording, how), *format::create_recording(path, format, plan));
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -91,9 +92,10 @@ const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::str
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
                               const gait::BodyMarkerSet& set, const std::optional<std::int64_t>& most) {
   format::ReadOptions how;
-  how.up = up.value_or(format::UpAxis::z);
+  how.up = up;
   const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
   GaitMarkers markers;
+  markers.up = format::up_axis(reader->info(), up);
   markers.rate_hz = reader->header().rate_hz;
   markers.set = &set;
   std::map<TrackId, std::string> labels;
@@ -146,6 +148,64 @@ gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string
     }
   }
   return means;
+}
+
+namespace {
+
+/// Mean speed of the markers of a row, m/s, between the rows `step` before and after it; nothing where it has too few on both
+/// sides.
+std::optional<double> speed_at(const GaitMarkers& markers, std::size_t row, std::size_t step) {
+  if (row < step || row + step >= markers.rows.size()) return std::nullopt;
+  const gait::MarkerPlaces &before = markers.rows[row - step], &after = markers.rows[row + step];
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& [label, place] : markers.rows[row]) {
+    const auto from = before.find(label), to = after.find(label);
+    if (from == before.end() || to == after.end()) continue;
+    sum += (to->second - from->second).norm();
+    ++count;
+  }
+  if (2 * count < markers.rows[row].size()) return std::nullopt;
+  return sum / static_cast<double>(count) * markers.rate_hz / static_cast<double>(2 * step);
+}
+
+/// The means over a second about a row, where nothing moves in it; else nothing.
+std::optional<gait::MarkerPlaces> standing_about(const GaitMarkers& markers, std::size_t row, const std::string& name) {
+  const auto half = static_cast<std::size_t>(std::lround(0.5 * markers.rate_hz));
+  if (row < half || row + half >= markers.rows.size()) return std::nullopt;
+  GaitMarkers second;
+  second.set = markers.set;
+  second.rows.assign(markers.rows.begin() + static_cast<std::ptrdiff_t>(row - half),
+                     markers.rows.begin() + static_cast<std::ptrdiff_t>(row + half + 1));
+  try {
+    return standing_places(second, name);
+  } catch (const Error&) {
+    return std::nullopt;  // it moves
+  }
+}
+
+}  // namespace
+
+QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name) {
+  std::size_t most = 0;
+  for (const gait::MarkerPlaces& row : markers.rows) most = std::max(most, row.size());
+  if (most == 0) throw Error("{}: none of the markers is seen", name);
+  const auto step = static_cast<std::size_t>(std::max(1L, std::lround(0.05 * markers.rate_hz)));
+  QuietMoment moment;
+  std::optional<std::size_t> quietest;
+  for (std::size_t row = 0; row < markers.rows.size(); ++row) {
+    if (markers.rows[row].size() < most) continue;
+    const auto speed = speed_at(markers, row, step);
+    if (quietest && (!speed || *speed >= moment.speed_m_s)) continue;
+    quietest = row;
+    moment.speed_m_s = speed.value_or(std::numeric_limits<double>::infinity());
+  }
+  moment.time_s = static_cast<double>(*quietest) / markers.rate_hz;
+  const auto standing = standing_about(markers, *quietest, name);
+  moment.stands = standing.has_value();
+  moment.places = standing.value_or(markers.rows[*quietest]);
+  if (!std::isfinite(moment.speed_m_s)) moment.speed_m_s = 0;
+  return moment;
 }
 
 std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk) {

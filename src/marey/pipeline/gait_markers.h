@@ -19,6 +19,7 @@ namespace gait = analyse::gait;
 struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;
   std::int64_t first_index = 0;
+  format::UpAxis up = format::UpAxis::z;                   ///< the axis of the file that was taken for up
   const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
   std::vector<gait::MarkerPlaces> rows;
   std::vector<std::string> warnings;
@@ -42,6 +43,16 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
 
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
 gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
+
+/// Where the markers are at the quietest moment of a motion in which most of them are seen.
+struct QuietMoment {
+  gait::MarkerPlaces places;
+  double time_s = 0;     ///< since the first row
+  double speed_m_s = 0;  ///< of the markers there, on the mean
+  bool stands = false;   ///< for a second about it, of which the places are the means
+};
+/// Throws Error, with `name` for the file, where there is no marker at all.
+QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name);
 
 /// Where the static trial is of another person, or the markers were put on anew: the pair of one segment's markers that lies most
 /// differently far apart in the walk. Nothing where all pairs agree.

@@ -7,7 +7,6 @@
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
 #include "marey/detect/people/person_size_map.h"
-#include "marey/pipeline/steady_camera.h"
 #include "marey/pipeline/turned_views.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
@@ -174,10 +173,11 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
   if (!sizes_known) learned_.emplace();
   if (options.ball && whole != nullptr && !turning_ && feed.has_pictures()) ball_.emplace(ball_sizes(view, area), *options.ball);
+  if (detector_ != nullptr && !turning_) view_.emplace(camera_, options.steadied);
   if (detector_ != nullptr && !turning_) standing_ = std::make_shared<StandingPeople>(Picture());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  if (!turning_) shaking_ = shaking(samples);
+  if (view_) view_->look_at_beginning(samples);
   if (ball_) ball_->prime(samples);
   for (Frame& frame : samples) {
     frame.picture = looked_at(frame.picture);
@@ -203,6 +203,7 @@ std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time)
 
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
+  if (view_) view_->add(given.frame);
   Frame frame = given.frame;
   if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
   detect::Detections found;
@@ -272,13 +273,19 @@ void GroundCamera::look_for_ball(const Frame& frame, const std::vector<Detection
     view.seen.push_back({candidate.centre, candidate.sigma, candidate.score, candidate.company, {}, false});
 }
 
+std::vector<std::string> GroundCamera::news() {
+  return view_ ? view_->news() : std::vector<std::string>{};
+}
+
 void GroundCamera::report(Summary& summary) const {
   Summary::Camera& counts = summary.cameras.emplace_back();
   counts.name = camera_.name;
   counts.frames = frames_;
   counts.missed = summary.frames - frames_;
   counts.detections = detections_;
-  if (shaking_) summary.warnings.push_back(said_of(camera_, *shaking_));
+  if (view_) {
+    for (std::string& warning : view_->warnings()) summary.warnings.push_back(std::move(warning));
+  }
   counts.outside = outside_;
   summary.detections += detections_;
   if (!detector_) return;

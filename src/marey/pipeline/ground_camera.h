@@ -15,6 +15,7 @@
 #include "marey/pipeline/feed.h"
 #include "marey/pipeline/run.h"
 #include "marey/pipeline/standing_people.h"
+#include "marey/pipeline/view_doubts.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ball/ball_moment.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -23,7 +24,8 @@ namespace marey::pipeline {
 
 struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
-  bool prime = true;  ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
+  bool prime = true;      ///< look at pictures of the beginning first, to learn the empty scene; a live camera cannot
+  bool steadied = false;  ///< its pictures were brought to its rest
   std::shared_ptr<const TurningCamera> turning = {};           ///< how it turns; nothing where it stands
   std::shared_ptr<const StandingPeople> without = {};          ///< who is not to be taken for a part of the scene
   std::optional<detect::ball::BallDetectorOptions> ball = {};  ///< the ball is looked for, where the camera has pictures and stands
@@ -56,6 +58,8 @@ class GroundCamera {
   /// Who was taken for a part of the scene and has left it; nothing where there is no model of it.
   const std::shared_ptr<StandingPeople>& standing() const { return standing_; }
 
+  /// What the frames since the last call showed of a camera that ought to stand, one sentence each.
+  std::vector<std::string> news();
   /// Puts in what was looked at, found and left out.
   void report(Summary& summary) const;
   std::int64_t frames() const { return frames_; }
@@ -83,7 +87,7 @@ class GroundCamera {
   std::vector<Expected> expected_;
   std::vector<Observation<2>> seen_;
   std::int64_t frames_ = 0, detections_ = 0, outside_ = 0;
-  std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
+  std::optional<ViewDoubts> view_;  // of a camera with pictures that ought to stand
 };
 
 }  // namespace marey::pipeline

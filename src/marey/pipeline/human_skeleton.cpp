@@ -207,13 +207,9 @@ std::optional<std::string> widths_assumed(const gait::GaitSubject& subject, cons
       path);
 }
 
-}  // namespace
-
-HumanSkeleton human_from_static(const std::string& path, const HumanOptions& options, const Hooks& hooks) {
-  const gait::BodyMarkerSet& set = marker_set_of(path, options.marker_set);
-  gait::GaitSubject subject;
-  take_measures(path, subject);
-  const gait::MarkerPlaces standing = standing_places(read_gait_markers(path, options.up, hooks, set), path);
+/// Of markers in one posture; `path` is the file that they are of.
+HumanSkeleton human_of(const gait::MarkerPlaces& standing, const std::string& path, const gait::BodyMarkerSet& set,
+                       gait::GaitSubject& subject, const HumanOptions& options, const Hooks& hooks) {
   const gait::MarkerPlaces model = for_the_model(standing, subject);
   subject.learn_from(model);
   HumanSkeleton human;
@@ -243,6 +239,31 @@ HumanSkeleton human_from_static(const std::string& path, const HumanOptions& opt
   for (const auto& [key, place] : standing)
     markers.push_back({set.label_of(key), std::string(gait::name_of(*set.segment_of(key))), place});
   human.skeleton = solve::skeleton::human_skeleton(std::filesystem::path(path).stem().string(), segments, markers);
+  return human;
+}
+}  // namespace
+
+HumanSkeleton human_from_static(const std::string& path, const HumanOptions& options, const Hooks& hooks) {
+  const gait::BodyMarkerSet& set = marker_set_of(path, options.marker_set);
+  gait::GaitSubject subject;
+  take_measures(path, subject);
+  const gait::MarkerPlaces standing = standing_places(read_gait_markers(path, options.up, hooks, set), path);
+  return human_of(standing, path, set, subject, options, hooks);
+}
+
+HumanSkeleton human_from_motion(const std::string& path, const HumanOptions& options, const Hooks& hooks) {
+  const gait::BodyMarkerSet& set = marker_set_of(path, options.marker_set);
+  gait::GaitSubject subject;
+  take_measures(path, subject);
+  const QuietMoment quiet = quietest_moment(read_gait_markers(path, options.up, hooks, set), path);
+  HumanSkeleton human = human_of(quiet.places, path, set, subject, options, hooks);
+  const std::string how = quiet.stands ? "stands still" : fmt::format("is quietest (markers move at {:.1f} m/s)", quiet.speed_m_s);
+  human.warnings.insert(
+      human.warnings.begin(),
+      fmt::format(
+          "{}: without --static the skeleton is calibrated from this motion alone, by the posture at {:.2f} s, where the person "
+          "{}, then by all of it, left and right alike; one of a static trial is surer",
+          path, quiet.time_s, how));
   return human;
 }
 

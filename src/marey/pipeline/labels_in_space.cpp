@@ -13,6 +13,7 @@
 #include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/solve/labels/accept_suggestions.h"
 
 namespace marey::pipeline {
 namespace {
@@ -31,24 +32,6 @@ Recording points_in(const std::string& path, std::vector<std::string>* warnings,
 constexpr std::size_t kFewFrames = 10;  // that a set is hardly learned from
 constexpr double kMisfit = 2;           // times as far off as distances of the subject that taught are
 constexpr double kFewFound = 0.7;       // of the set's markers
-
-/// That a set is of somebody else, where it is so.
-std::optional<std::string> misfit_of(const solve::labels::Labelled& labelled, const LabelSummary& summary, const std::string& set,
-                                     const std::string& recording) {
-  const auto found =
-      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.seen > 0; });
-  const bool off = labelled.misfit > kMisfit,
-             few = static_cast<double>(found) < kFewFound * static_cast<double>(summary.health.size());
-  if (!off && !few) return std::nullopt;
-  return fmt::format(
-      "{}: the set {} does not fit: {}{} of its {} markers have names, and of those some may be wrong; is it of another person, or "
-      "were markers moved? Learn one of this person, or one with --scaled from several",
-      recording, set,
-      off ? fmt::format("distances that it knows as rigid are off by {:.0f} mm (median), {:.1f} times what is expected; ",
-                        1e3 * labelled.misfit_m, labelled.misfit)
-          : "",
-      found, summary.health.size());
-}
 
 /// Whether a label is of a pattern, in which * stands for any letters.
 bool is_like(std::string_view label, std::string_view pattern) {
@@ -81,6 +64,17 @@ std::vector<TrackColumns> take_out(Recording& recording, const std::vector<std::
   return out;
 }
 
+bool is_all(const std::vector<std::string>& accept) {
+  return accept == std::vector<std::string>{"all"};
+}
+
+void require_of_set(const std::vector<std::string>& accept, const LearnedMarkers& learned, const std::string& set) {
+  for (const std::string& name : accept) {
+    if (!is_all(accept) && std::find(learned.labels.begin(), learned.labels.end(), name) == learned.labels.end())
+      throw Error("{}: has no marker {}, whose name could be accepted; `all` accepts what fits best", set, name);
+  }
+}
+
 void require_fitted(const std::vector<std::string>& patterns, const std::set<std::string>& fitted, const std::string& where) {
   for (const std::string& pattern : patterns) {
     if (!fitted.contains(pattern)) throw Error("{}: no point is called {}, so that it cannot be left out", where, pattern);
@@ -88,6 +82,21 @@ void require_fitted(const std::vector<std::string>& patterns, const std::set<std
 }
 
 }  // namespace
+
+std::optional<std::string> set_misfit(const std::string& set, double misfit, double misfit_m, std::size_t found,
+                                      std::size_t markers) {
+  const bool off = misfit > kMisfit, few = static_cast<double>(found) < kFewFound * static_cast<double>(markers);
+  if (!off && !few) return std::nullopt;
+  return fmt::format(
+      "{} does not fit: {}{} of its {} markers have names, and of those some may be wrong; is it of another person, or were "
+      "markers "
+      "moved? Learn one of this person, or one with --scaled from several",
+      set,
+      off ? fmt::format("distances that it knows as rigid are off by {:.0f} mm (median), {:.1f} times what is expected; ",
+                        1e3 * misfit_m, misfit)
+          : "",
+      found, markers);
+}
 
 LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
                             const solve::labels::LearnOptions& options, const std::vector<std::string>& leave_out,
@@ -124,16 +133,19 @@ std::vector<std::string> warnings_of(const LearnedMarkers& learned) {
 
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks,
-                             const std::vector<std::string>& leave_out) {
+                             const std::vector<std::string>& leave_out, const std::vector<std::string>& accept) {
   LabelSummary summary;
   const format::Format& format = format::format_to_write(out, "", format::Content::space);
   const LearnedMarkers learned = format::bodies::read_label_set(set);
+  require_of_set(accept, learned, set);
   format::BesidePoints beside;
   Recording read = points_in(recording, &summary.warnings, &beside);
   std::set<std::string> fitted;
   std::vector<TrackColumns> left_out = take_out(read, leave_out, fitted);
   require_fitted(leave_out, fitted, recording);
   solve::labels::Labelled labelled = solve::labels::label_recording(read, learned, options, hooks);
+  if (!accept.empty())
+    summary.accepted = solve::labels::accept_suggestions(labelled, is_all(accept) ? std::vector<std::string>() : accept);
   Recording& named = labelled.recording;
   named.header.name = std::filesystem::path(recording).stem().string();
   named.header.made_by = {
@@ -156,7 +168,11 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   summary.renamed = labelled.renamed;
   summary.scale = labelled.scale;
   summary.misfit = labelled.misfit;
-  if (auto sentence = misfit_of(labelled, summary, set, recording)) summary.warnings.push_back(std::move(*sentence));
+  const auto found =
+      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.seen > 0; });
+  if (auto sentence = set_misfit(fmt::format("{}: the set {}", recording, set), labelled.misfit, labelled.misfit_m,
+                                 static_cast<std::size_t>(found), summary.health.size()))
+    summary.warnings.push_back(std::move(*sentence));
   for (const auto& marker : summary.health) {
     if (marker.seen == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
   }

@@ -175,8 +175,8 @@ void need_steps(const std::string& recording, const GaitMeasure& measure, const 
   throw Error("{}: no steps were found: HEE and TOE of a side are needed, and a person who walks{}", recording, hint);
 }
 
-/// Throws Error where the pelvis' up is the recording's y, which was not said. Where it lies across the up that was said, that is
-/// returned, to be told: the person may lie down.
+/// Throws Error where the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said,
+/// that is returned, to be told: the person may lie down.
 std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& said,
                                      const GaitMarkers& markers, const gait::GaitSubject& subject) {
   constexpr double kMostly = 0.8;  // cosine
@@ -186,12 +186,13 @@ std::optional<std::string> up_across(const std::string& recording, const std::op
   }
   if (!(up.norm() > 0)) return std::nullopt;
   // A file's y is z here where its y was taken for up, and its z is then −y.
-  const bool y = said == format::UpAxis::y;
+  const bool y = markers.up == format::UpAxis::y;
+  const char *taken = y ? "y" : "z", *there = y ? "z" : "y";
   if (!((y ? -1 : 1) * up.normalized().y() > kMostly)) return std::nullopt;
   if (!said)
-    throw Error("{}: z was taken for up, and the person's up is along y: give --up y (or --up z, if it lies down)", recording);
-  return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, y ? "y" : "z",
-                     y ? "z" : "y");
+    throw Error("{}: {} was taken for up, and the person's up is along {}: give --up {} (or --up {}, if it lies down)", recording,
+                taken, there, there, taken);
+  return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, taken, there);
 }
 
 void need_a_cycle(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {

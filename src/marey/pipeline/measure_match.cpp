@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/core/whole_file.h"
 #include "marey/draw/match_report.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/pipeline/ground_orientation.h"
 
 namespace marey::pipeline {
 namespace {
@@ -112,8 +115,15 @@ std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMat
 }
 
 void add_ball_tables(const analyse::BallMeasure& ball, draw::MatchReport& report) {
+  if (ball.seconds <= 0) return;
+  report.tables.push_back({.title = "The ball",
+                           .head = {"known for, s", "of them off the pitch, s", "distance, m", "top, m/s"},
+                           .rows = {{fmt::format("{:.1f}", ball.seconds), fmt::format("{:.1f}", ball.dead_s),
+                                     fmt::format("{:.0f}", ball.distance_m), fmt::format("{:.1f}", ball.top_mps)}}});
+  const auto plays = [](const analyse::TeamBall& team) { return team.possession_s > 0 || team.passes > 0; };
+  if (std::none_of(ball.teams.begin(), ball.teams.end(), plays)) return;
   draw::PageTable& teams = report.tables.emplace_back();
-  teams.title = "The ball";
+  teams.title = "Possession";
   teams.head = {"team", "possession, s", "passes", "to the own team"};
   teams.bars_from = 1;
   for (const analyse::TeamBall& team : ball.teams)
@@ -123,39 +133,70 @@ void add_ball_tables(const analyse::BallMeasure& ball, draw::MatchReport& report
   draw::PageTable& passes = report.tables.emplace_back();
   passes.title = "Passes";
   passes.head = {"at, s", "team", "from", "to", "length, m", "took, s"};
-  passes.bars_from = 4;
+  passes.bars_from = 4, passes.folded = true;
   for (const analyse::BallPass& pass : ball.passes)
     passes.rows.push_back({fmt::format("{:.1f}", pass.begin_s), pass.team, std::to_string(pass.from), std::to_string(pass.to),
                            fmt::format("{:.1f}", pass.length_m), fmt::format("{:.1f}", pass.end_s - pass.begin_s)});
 }
 
-void write_report(const analyse::Measurement& measured, const analyse::MeasureOptions& options,
-                  const format::match::GroundMatch& match, const std::string& title, const std::string& folder) {
+void add_team_table(const std::vector<analyse::TeamMeasure>& teams, draw::MatchReport& report) {
+  draw::PageTable& table = report.tables.emplace_back();
+  table.title = "Teams";
+  table.bars_from = 2, table.bars_end = 6;
+  table.head = {"team", "people", "distance, m", "length", "width", "hull, m²", "x", "y"};
+  table.groups = {"", "", "", "how it stands, m", "how it stands, m", "how it stands, m", "middle, m", "middle, m"};
+  for (const analyse::TeamMeasure& team : teams) {
+    table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
+                          fmt::format("{:.1f}", team.length_m), fmt::format("{:.1f}", team.width_m),
+                          fmt::format("{:.0f}", team.hull_m2), fmt::format("{:.1f}", team.average_place.x()),
+                          fmt::format("{:.1f}", team.average_place.y())});
+  }
+}
+
+/// By team and number; soft hyphens where a narrow table may break a head.
+void add_people(const analyse::Measurement& measured, const analyse::MeasureOptions& options, draw::MatchReport& report) {
+  constexpr const char *speed = "speed, m/s", *efforts = "efforts", *zones = "metres at m/s";
+  report.columns = {"distance, m", "mean", "top", "± top", "sprints", "acceler\u00ADations", "deceler\u00ADations", "seen, s"};
+  report.groups = {"", speed, speed, speed, efforts, efforts, efforts, ""};
+  for (std::size_t zone = 0; zone <= options.zones.size(); ++zone) {
+    report.columns.push_back(zone_name(options.zones, zone));
+    report.groups.emplace_back(zones);
+  }
+  for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
+  std::stable_sort(report.people.begin(), report.people.end(), [](const auto& a, const auto& b) { return a.team < b.team; });
+}
+
+/// "22 people of blue and white over 90.0 min, on a pitch of 105 × 68 m."
+std::string lead_of(const analyse::Measurement& measured, const analyse::MeasureOptions& options, const Recording& recording) {
+  const auto& instants = recording.instants();
+  const double length_s = instants.empty() ? 0 : seconds(instants.back().time - instants.front().time);
+  std::string teams;
+  for (std::size_t i = 0; i < measured.teams.size(); ++i)
+    teams += (i == 0 ? " of " : i + 1 < measured.teams.size() ? ", " : " and ") + measured.teams[i].team;
+  return fmt::format("{} people{} over {}, on a pitch of {:g} × {:g} m.", measured.people.size(), teams,
+                     length_s < 120 ? fmt::format("{:.1f} s", length_s) : fmt::format("{:.1f} min", length_s / 60),
+                     options.pitch.length, options.pitch.width);
+}
+
+draw::MatchReport report_of(const analyse::Measurement& measured, const MeasureMatchOptions& options,
+                            const format::match::GroundMatch& match, const std::string& title) {
+  draw::MatchReport report;
+  report.title = title;
+  report.lead = lead_of(measured, options.how, match.recording);
+  report.pitch.size = options.how.pitch;
+  report.pitch.y_down = options.y_down.value_or(y_grows_down(match.recording.header));
+  report.periods = periods_of(match);
+  add_people(measured, options.how, report);
+  if (!measured.teams.empty()) add_team_table(measured.teams, report);
+  if (measured.ball) add_ball_tables(*measured.ball, report);
+  add_impossible(measured, report);
+  return report;
+}
+
+void write_report(const draw::MatchReport& report, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error("{}: this folder cannot be made ({})", folder, error.message());
-  draw::MatchReport report;
-  report.title = title;
-  report.pitch = options.pitch;
-  report.periods = periods_of(match);
-  report.columns = {"distance, m", "mean, m/s", "top, m/s", "± m/s", "sprints", "accelerations", "decelerations", "seen, s"};
-  for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
-    report.columns.push_back(fmt::format("m at {} m/s", zone_name(options.zones, zone)));
-  for (const analyse::PersonMeasure& person : measured.people) report.people.push_back(page_of(person));
-  if (!measured.teams.empty()) {
-    draw::PageTable& table = report.tables.emplace_back();
-    table.title = "Teams";
-    table.bars_from = 2, table.bars_end = 6;
-    table.head = {"team", "people", "distance, m", "length, m", "width, m", "hull, m²", "middle x, m", "middle y, m"};
-    for (const analyse::TeamMeasure& team : measured.teams) {
-      table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
-                            fmt::format("{:.1f}", team.length_m), fmt::format("{:.1f}", team.width_m),
-                            fmt::format("{:.0f}", team.hull_m2), fmt::format("{:.1f}", team.average_place.x()),
-                            fmt::format("{:.1f}", team.average_place.y())});
-    }
-  }
-  if (measured.ball) add_ball_tables(*measured.ball, report);
-  add_impossible(measured, report);
   WholeFile file((std::filesystem::path(folder) / "report.html").string());
   file.write(draw::to_html(report));
   file.finish();
@@ -163,19 +204,25 @@ void write_report(const analyse::Measurement& measured, const analyse::MeasureOp
 
 }  // namespace
 
-analyse::Measurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
-                                   const Hooks& hooks) {
+MatchMeasurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
+                               const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const format::ReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
   const format::match::GroundMatch match = format::read_match(tracks, reading);
-  analyse::Measurement measured = analyse::measure(match.recording, options.how);
-  if (measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
+  MatchMeasurement result{.measured = analyse::measure(match.recording, options.how), .warnings = {}};
+  if (result.measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
   WholeFile file(output.figures);
-  file.write(measurement_csv(measured, options.how));
-  if (!output.report.empty())
-    write_report(measured, options.how, match, std::filesystem::path(tracks).stem().string(), output.report);
+  file.write(measurement_csv(result.measured, options.how));
+  if (!output.report.empty()) {
+    if (!options.y_down) {
+      if (auto sentence = orientation_unknown(tracks, match.recording.header)) result.warnings.push_back(std::move(*sentence));
+    }
+    draw::MatchReport report = report_of(result.measured, options, match, std::filesystem::path(tracks).stem().string());
+    report.notes = result.warnings;
+    write_report(report, output.report);
+  }
   file.finish();
-  return measured;
+  return result;
 }
 
 }  // namespace marey::pipeline

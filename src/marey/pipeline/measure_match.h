@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "marey/analyse/measure.h"
 #include "marey/core/hooks.h"
@@ -9,8 +11,9 @@ namespace marey::pipeline {
 
 struct MeasureMatchOptions {
   analyse::MeasureOptions how;
-  std::string metadata;  ///< of formats that keep it in a file of its own; empty: it is found under a like name
-  double rate_hz = 25;   ///< where the tracks do not say
+  std::string metadata;             ///< of formats that keep it in a file of its own; empty: it is found under a like name
+  double rate_hz = 25;              ///< where the tracks do not say
+  std::optional<bool> y_down = {};  ///< of the page; nothing: as the tracks have it
 };
 
 /// Where the results go; what is empty is not made.
@@ -19,9 +22,14 @@ struct MeasureOutput {
   std::string report;   ///< a folder, which is made, for report.html: one page with plots, tables, heat maps and paths
 };
 
+struct MatchMeasurement {
+  analyse::Measurement measured;
+  std::vector<std::string> warnings;  ///< one sentence each: what is doubtful in the page
+};
+
 /// How far and how fast everybody of `tracks` ran, a file of places on the ground that format/match reads. Throws Error where it
 /// cannot be read, nobody is in it for long enough, or an output cannot be written; Stopped.
-analyse::Measurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
-                                   const Hooks& hooks = {});
+MatchMeasurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
+                               const Hooks& hooks = {});
 
 }  // namespace marey::pipeline

@@ -14,7 +14,6 @@
 #include "marey/pipeline/nobody_found.h"
 #include "marey/pipeline/picture_doubts.h"
 #include "marey/pipeline/standing_people.h"
-#include "marey/pipeline/steady_camera.h"
 #include "marey/track/fill_gaps.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
@@ -179,7 +178,13 @@ class PeopleInPicture final : public Stage {
     return {};
   }
 
-  std::vector<std::string> news() override { return standing_ ? standing_->news() : std::vector<std::string>{}; }
+  std::vector<std::string> news() override {
+    std::vector<std::string> all;
+    if (detector_) all = doubts_.news();
+    if (!standing_ || !options_.live) return all;
+    for (std::string& sentence : standing_->news()) all.push_back(std::move(sentence));
+    return all;
+  }
 
   std::unique_ptr<InstantSource> finish(const Hooks& hooks) override {
     if (looked_at_again_ > 0 && !hooks.stop.stop_requested()) look_again(hooks);
@@ -219,7 +224,7 @@ class PeopleInPicture final : public Stage {
 
   void report_counts(Summary& summary) const {
     if (detector_ == nullptr) return;
-    for (std::string& doubt : doubts_.warnings(camera_, shaking_, options_.steady)) summary.warnings.push_back(std::move(doubt));
+    for (std::string& doubt : doubts_.warnings()) summary.warnings.push_back(std::move(doubt));
     const detect::DetectionCounts counts = detector_->detection_counts();
     if (counts.noise) summary.left_out["noise"] = *counts.noise;
     if (counts.misfits) summary.left_out["misfits"] = *counts.misfits;
@@ -299,7 +304,7 @@ class PeopleInPicture final : public Stage {
     const std::vector<Frame> samples = feed.sample_beginning();
     detector_->prime(samples);
     if (!samples.empty()) open_again_ = feed.opener();
-    if (!options_.steady) shaking_ = shaking(samples);
+    doubts_.look_at_beginning(samples);
   }
 
   detect::Detections detect(const CameraFrame& given) {
@@ -357,8 +362,7 @@ class PeopleInPicture final : public Stage {
   int added_ = 0;                           // people who are in the results because of that
   std::set<TrackId> begun_, believed_;
   std::int64_t detections_ = 0;
-  PictureDoubts doubts_;
-  std::optional<std::string> shaking_;  // what to say of a camera that was not steadied
+  PictureDoubts doubts_{camera_, options_.steady};
 };
 
 }  // namespace

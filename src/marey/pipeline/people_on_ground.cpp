@@ -102,8 +102,9 @@ class GroundStage final : public PeopleOnGround {
 
   std::vector<std::string> news() override {
     std::vector<std::string> all;
-    for (std::size_t i = 0; i < cameras_.size() && options_.live; ++i) {
-      if (cameras_[i].standing() == nullptr) continue;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      for (std::string& sentence : cameras_[i].news()) all.push_back(std::move(sentence));
+      if (!options_.live || cameras_[i].standing() == nullptr) continue;
       for (const std::string& sentence : cameras_[i].standing()->news()) all.push_back(said_of(rig_.cameras[i], sentence));
     }
     return all;
@@ -214,6 +215,7 @@ class GroundStage final : public PeopleOnGround {
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) {
       const GroundCameraOptions how{.detector = options_.detector,
                                     .prime = !options_.live,
+                                    .steadied = options_.steady,
                                     .turning = turning_of(options_.turning, feeds[i].id()),
                                     .without = i < options_.without.size() ? options_.without[i] : nullptr,
                                     .ball = options_.ball ? std::optional(options_.ball->detector) : std::nullopt};

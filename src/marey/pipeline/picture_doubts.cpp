@@ -7,13 +7,10 @@
 #include <fmt/format.h>
 
 #include "marey/pipeline/feed.h"
-#include "marey/pipeline/steady_camera.h"
 
 namespace marey::pipeline {
 namespace {
 
-constexpr std::size_t kCutsNamed = 5;
-constexpr double kScrolls = 0.04;            // of the pictures looked at
 constexpr int kManyInOne = 6;                // boxes in one region
 constexpr double kOften = 0.05;              // of the frames
 constexpr double kMostOfIt = 0.5;            // of the picture, at once
@@ -21,58 +18,7 @@ constexpr double kLeastForeground = 0.0005;  // of the picture, in which nothing
 constexpr std::size_t kFewestKept = 10;      // frames
 constexpr double kHardlyKept = 0.1;          // share of the foreground: a walker keeps half of it at 5 pictures a second
 
-std::string moments(const std::vector<double>& cuts) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(cuts.size(), kCutsNamed); ++i) text += fmt::format("{}{:.1f}", i == 0 ? "" : ", ", cuts[i]);
-  text += " s";
-  if (cuts.size() > kCutsNamed) text += fmt::format(" and {} times more", cuts.size() - kCutsNamed);
-  return text;
-}
-
-std::string said_of_turn(const source::steady::ViewReport::Turn& turn, bool steadied) {
-  std::string what;
-  if (turn.share >= 0.05)
-    what = fmt::format("{} by {:.0f} % of the picture's width", turn.stays ? "was turned" : "pans or tilts,", 100 * turn.share);
-  if (std::abs(std::log(turn.zoom)) >= 0.05)
-    what += fmt::format("{}{} {:.2f} times", what.empty() ? "" : ", and ", turn.stays ? "zoomed" : "zooms", turn.zoom);
-  if (turn.stays)
-    return fmt::format("the camera {} at about {:.1f} s: until the new view was learned, what stands was taken for people; {}",
-                       what, turn.from_s,
-                       steadied ? "track what comes before and after it separately"
-                                : "--steady brings its pictures to where it stood most of the time");
-  return fmt::format(
-      "the camera {} between {:.1f} and {:.1f} s: people cannot be told from a scene that moves; of a pitch, marey calibrate "
-      "turning "
-      "finds out where it looked, and a detection network finds the people (docs/turning.md)",
-      what, turn.from_s, turn.to_s);
-}
-
 }  // namespace
-
-std::vector<std::string> said_of_view(const source::steady::ViewReport& report, const std::optional<std::string>& shaking,
-                                      bool steadied) {
-  std::vector<std::string> all;
-  if (!report.cuts.empty())
-    all.push_back(fmt::format(
-        "the video is cut at {}: each time the scene is another, and people before it are not found again after it; track "
-        "each piece by itself",
-        moments(report.cuts)));
-  if (report.scrolling > kScrolls) {
-    all.push_back(fmt::format(
-        "a part of the picture moves up or down as one while the rest stands (in {:.0f} % of the pictures), as on a screen that "
-        "is scrolled: marey track wants pictures of a camera that stands",
-        100 * report.scrolling));
-  } else if (report.turn) {
-    all.push_back(said_of_turn(*report.turn, steadied));
-  }
-  if (!all.empty() || steadied) return all;
-  if (shaking) {
-    all.push_back(*shaking);
-  } else if (report.shake_px >= kShakes) {
-    all.push_back(said_of_shaking(report.shake_px));
-  }
-  return all;
-}
 
 void PictureDoubts::add(const Frame& frame, const detect::Detections& seen) {
   view_.add(frame);
@@ -101,9 +47,9 @@ void PictureDoubts::look_at_foreground(const detect::Detections& seen) {
   mask.copyTo(before_);
 }
 
-std::vector<std::string> PictureDoubts::warnings(const RigCamera& camera, const std::optional<std::string>& shaking,
-                                                 bool steadied) const {
-  std::vector<std::string> all = said_of_view(view_.report(), shaking, steadied);
+std::vector<std::string> PictureDoubts::warnings() const {
+  std::vector<std::string> all = view_.warnings();
+  const auto of_view = std::ssize(all);
   const auto often = [&](std::int64_t count) { return static_cast<double>(count) > kOften * static_cast<double>(frames_); };
   const auto percent = [&](std::int64_t count) { return 100 * static_cast<double>(count) / static_cast<double>(frames_); };
   if (often(covered_))
@@ -127,7 +73,7 @@ std::vector<std::string> PictureDoubts::warnings(const RigCamera& camera, const 
                       "too far apart in time to track anyone (a time lapse), or what moves is rain, snow or noise",
                       100.0 * *middle));
   }
-  for (std::string& one : all) one = said_of(camera, one);
+  for (auto one = all.begin() + of_view; one != all.end(); ++one) *one = said_of(camera_, *one);
   return all;
 }
 

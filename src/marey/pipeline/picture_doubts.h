@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,31 +13,34 @@
 #include "marey/core/frame.h"
 #include "marey/core/rig.h"
 #include "marey/detect/detector.h"
-#include "marey/source/steady/view_watch.h"
+#include "marey/pipeline/view_doubts.h"
 
 namespace marey::pipeline {
 
 class PictureDoubts {
  public:
+  /// `steadied`: the pictures were brought to the camera's rest.
+  PictureDoubts(const RigCamera& camera, bool steadied) : camera_(camera), view_(camera, steadied) {}
+
+  /// Pictures of the beginning, before the first frame, where they can be had.
+  void look_at_beginning(std::span<const Frame> samples) { view_.look_at_beginning(samples); }
   /// Each frame in order, with what was seen in it.
   void add(const Frame& frame, const detect::Detections& seen);
 
-  /// One sentence each, with the camera's name where it has one. `shaking` is what was said of the beginning beforehand: it holds
-  /// where nothing worse is known. `steadied`: the pictures were brought to the camera's rest.
-  std::vector<std::string> warnings(const RigCamera& camera, const std::optional<std::string>& shaking, bool steadied) const;
+  /// What the frames since the last call showed of the camera, one sentence each.
+  std::vector<std::string> news() { return view_.news(); }
+  /// One sentence each, with the camera's name where it has one.
+  std::vector<std::string> warnings() const;
 
  private:
   void look_at_foreground(const detect::Detections& seen);
 
-  source::steady::ViewWatch view_;
+  RigCamera camera_;
+  ViewDoubts view_;
   cv::Mat before_;           // the foreground of the frame before
   std::vector<float> kept_;  // share of each frame's foreground that was foreground in the frame before
   std::int64_t frames_ = 0, crowded_ = 0, covered_ = 0;
   int most_in_one_ = 0;  // boxes that shared one region
 };
-
-/// What to say of what the camera did.
-std::vector<std::string> said_of_view(const source::steady::ViewReport& report, const std::optional<std::string>& shaking,
-                                      bool steadied);
 
 }  // namespace marey::pipeline

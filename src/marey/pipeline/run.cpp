@@ -145,6 +145,9 @@ void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, cons
       counter.add(instant);
       if (!sinks.write(std::move(instant))) summary.stopped = true;
     }
+    for (const std::string& sentence : stage.news()) {
+      if (hooks.news) hooks.news(sentence);
+    }
     if (!first) first = frames->time;
     ++summary.frames;
     summary.seconds = seconds(frames->time - *first);

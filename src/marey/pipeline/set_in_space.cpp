@@ -11,6 +11,7 @@
 
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
+#include "marey/pipeline/labels_in_space.h"
 #include "marey/pipeline/stopwatch.h"
 
 namespace marey::pipeline {
@@ -28,6 +29,13 @@ constexpr double kMostAgainS = 5;      // after a search that found nothing, at 
 constexpr double kManyHeld = 0.7;      // of the names that could be
 constexpr double kFewNamed = 0.6;      // of the set, on average: a doubtful set
 constexpr std::size_t kFewestMarkers = 4;
+constexpr std::size_t kSearchesToReport = 2;  // that found names, before a misfit is reported while cameras see
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 class NamedReader final : public RecordingReader {
  public:
@@ -65,7 +73,13 @@ solve::labels::LabelOptions live_label_options() {
 }
 
 SetInSpace::SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options)
-    : set_(std::move(set)), options_(options), rate_hz_(rate_hz), id_of_name_(set_->size()), seen_(set_->size(), 0) {
+    : set_(std::move(set)),
+      options_(options),
+      rate_hz_(rate_hz),
+      undecided_(set_->size(), 0),
+      decided_(set_->size(), 0),
+      id_of_name_(set_->size()),
+      seen_(set_->size(), 0) {
   if (set_->size() < kFewestMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
   for (std::size_t name = 0; name < set_->size(); ++name) name_of_label_[set_->labels[name]] = static_cast<int>(name);
   if (!set_->moves) options_.first_after_s = std::max(options_.first_after_s, kStillFirstS);
@@ -94,6 +108,7 @@ void SetInSpace::add_to(Instant& instant) {
     const auto names = follower_->step(instant.time, points_now_);
     for (std::size_t p = 0; p < names.size(); ++p) {
       if (names[p] == kNoIndex) continue;
+      if (points_now_[p].fixed == kNoIndex && undecided_[static_cast<std::size_t>(names[p])]) continue;
       given_[points_now_[p].track] = names[p];
       ++seen_[static_cast<std::size_t>(names[p])];
       ++named_;
@@ -198,6 +213,17 @@ void SetInSpace::take_answer(Timestamp now) {
     follower_ = std::move(searched.found.follower);
   }
   follower_->take(searched.found.name_of);
+  take_check(searched.found);
+}
+
+/// What the search's final check says of each name that it could tell something of, and of the set.
+void SetInSpace::take_check(const solve::labels::FoundNames& found) {
+  for (std::size_t name = 0; name < set_->size(); ++name) {
+    decided_[name] = decided_[name] || (found.decided[name] && !found.undecided[name]);
+    undecided_[name] = !decided_[name] && (undecided_[name] || found.undecided[name]);
+  }
+  misfits_.push_back(found.misfit);
+  misfits_m_.push_back(found.misfit_m);
 }
 
 TrackId SetInSpace::fresh_id() {
@@ -260,6 +286,20 @@ void SetInSpace::tell(Instant& instant) {
   }
 }
 
+/// By the median over all searches: a short one alone may be off.
+std::optional<std::string> SetInSpace::misfit() const {
+  const auto found = std::count_if(seen_.begin(), seen_.end(), [](std::int64_t points) { return points > 0; });
+  return set_misfit("the set", median_of(misfits_), median_of(misfits_m_), static_cast<std::size_t>(found), seen_.size());
+}
+
+std::vector<std::string> SetInSpace::news() {
+  if (misfit_reported_ || misfits_.size() < kSearchesToReport) return {};
+  auto sentence = misfit();
+  if (!sentence) return {};
+  misfit_reported_ = true;
+  return {std::move(*sentence)};
+}
+
 std::vector<std::string> SetInSpace::warnings() const {
   const double size = static_cast<double>(set_->size());
   if (!found_at_s_) {
@@ -273,6 +313,10 @@ std::vector<std::string> SetInSpace::warnings() const {
     if (seen_[name] == 0) missing.push_back(set_->labels[name]);
   }
   if (!missing.empty()) said.push_back(fmt::format("the set's markers {} were not found", fmt::join(missing, ", ")));
+  if (auto sentence = misfit()) {
+    said.push_back(std::move(*sentence));
+    return said;
+  }
   const double frames = static_cast<double>(*std::max_element(seen_.begin(), seen_.end()));
   if (static_cast<double>(named_) < kFewNamed * size * frames)
     said.push_back(fmt::format("of the set's {} markers only {:.0f} had names at a time; is it this subject's?", set_->size(),

@@ -5,6 +5,11 @@
 // from half a second after it began; from then on a LabelFollower names every frame. Now and then the task looks anew at the last
 // seconds, and what it then finds otherwise is put right.
 //
+// Each search ends with the check that a whole recording gets (solve/labels/check_names.h), over the last seconds. A name that
+// could as well be exchanged with another is tracked, but not reported, until a search decides it; a later
+// doubt, in a posture that tells less, takes no name away. How far the rigid
+// distances are off the learned ones tells whether the set is of another person.
+//
 // A name is one track, whatever tracks its marker had: of the first track that gets a name the number becomes the name's, and all
 // later ones that bear it are told under that. So what is recorded has each marker once, and who listens needs no list.
 #pragma once
@@ -61,6 +66,8 @@ class SetInSpace {
   std::int64_t named() const { return named_; }                     ///< of these with one of the set's names
   /// What its user should know at the end, one sentence each.
   std::vector<std::string> warnings() const;
+  /// What its user should know now, since the last call: that the set does not fit, once.
+  std::vector<std::string> news();
 
  private:
   struct Moment {
@@ -76,6 +83,8 @@ class SetInSpace {
 
   void remember(const Instant& instant);
   void search(Timestamp now);
+  void take_check(const solve::labels::FoundNames& found);
+  std::optional<std::string> misfit() const;
   void take_answer(Timestamp now);
   static Searched search_in(const std::deque<std::shared_ptr<const Moment>>& recent, double rate_hz, const LearnedMarkers& set,
                             const SetInSpaceOptions& options, const std::stop_token& stop);
@@ -100,6 +109,9 @@ class SetInSpace {
   Timestamp searched_at_{};
   std::optional<Timestamp> first_point_, enough_since_;
   int searches_ = 0, failures_ = 0;
+  std::vector<char> undecided_, decided_;    // by name: in doubt, and no search has decided it; by a search, once
+  std::vector<double> misfits_, misfits_m_;  // of each search that found names
+  bool misfit_reported_ = false;
   std::string trouble_;
   std::size_t most_points_ = 0;
 

@@ -1,5 +1,6 @@
 #include "marey/pipeline/set_stage.h"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,11 @@ class SetStage final : public Stage {
     instants_.assign(known.begin(), known.end());
     for (Instant& instant : instants_) named_.add_to(instant);
     return instants_;
+  }
+  std::vector<std::string> news() override {
+    std::vector<std::string> all = stage_->news();
+    for (std::string& sentence : named_.news()) all.push_back(std::move(sentence));
+    return all;
   }
   std::unique_ptr<InstantSource> finish(const Hooks& hooks) override {
     auto waited = stage_->finish(hooks);

@@ -1,5 +1,6 @@
 #include "marey/pipeline/skeleton_stage.h"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ class SkeletonStage final : public Stage {
     for (Instant& instant : instants_) solved_.add_to(instant);
     return instants_;
   }
+  std::vector<std::string> news() override { return stage_->news(); }
   std::unique_ptr<InstantSource> finish(const Hooks& hooks) override {
     auto waited = stage_->finish(hooks);
     if (waited == nullptr) return nullptr;

@@ -135,15 +135,16 @@ void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::See
   }
 }
 
-UpAxis up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
-  if (options.up) return *options.up;
-  return format.name == "trc" && skeleton.ends_with(".osim") ? UpAxis::y : UpAxis::z;
+/// What is said of the recording's up; nothing: as it says itself.
+std::optional<UpAxis> up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
+  if (!options.up && format.name == "trc" && skeleton.ends_with(".osim")) return UpAxis::y;
+  return options.up;
 }
 
 std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options) {
   const format::Format& format = format::format_to_read(path, Content::space);
   format::ReadOptions how;
-  how.up = options.up.value_or(UpAxis::z);
+  how.up = options.up;
   auto reader = format::open_recording(path, format, how);
   if (reader->header().frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: holds no points in space; a skeleton is solved from markers in space", path);
@@ -290,6 +291,16 @@ std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::s
   return file;
 }
 
+/// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are no set.
+HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
+  try {
+    return human_from_motion(recording, how, hooks);
+  } catch (const Error& error) {
+    throw Error("{}; so a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field",
+                error.what());
+  }
+}
+
 format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, SolveOptions& options,
                                            SolveSummary& found, const Hooks& hooks) {
   if (!skeleton.empty()) {
@@ -299,19 +310,19 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
   }
   if (options.static_trial.empty()) {
     if (auto by_keypoints = skeleton_by_keypoints(recording, options)) return std::move(*by_keypoints);
-    throw Error(
-        "a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field; without either "
-        "the recording must have body keypoints (left_hip, left_knee, left_shoulder, ...)");
   }
   format::skeleton::SkeletonFile file;
-  HumanSkeleton human = human_from_static(options.static_trial,
-                                          {.motion = options.motion, .marker_set = options.marker_set, .up = options.up}, hooks);
+  const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
+  HumanSkeleton human =
+      options.static_trial.empty() ? human_of_motion(recording, how, hooks) : human_from_static(options.static_trial, how, hooks);
   file.skeleton = std::move(human.skeleton);
   file.warnings = std::move(human.warnings);
-  const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kLooksAtPerson);
-  if (const auto other = other_person(human.standing, moving))
-    file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
-                                        options.static_trial, *other, recording));
+  if (!options.static_trial.empty()) {
+    const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kLooksAtPerson);
+    if (const auto other = other_person(human.standing, moving))
+      file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
+                                          options.static_trial, *other, recording));
+  }
   found.joints = std::move(human.joints);
   found.marker_set = std::move(human.marker_set);
   return file;
@@ -353,12 +364,14 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
   format::skeleton::SkeletonFile file = skeleton_of(recording, skeleton, options, found, hooks);
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
-  if (options.calibrate) {
+  const bool of_motion = skeleton.empty() && options.static_trial.empty() && !found.marker_set.empty();
+  if (options.calibrate || of_motion) {
     calibration = solve::skeleton::calibrate(file.skeleton, all_seen(recording, file.skeleton, options));
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
-  if (auto sentence = lies_on_its_side(solved, *options.up, given.up.has_value(), recording))
+  const UpAxis taken = format::up_axis(open_markers(recording, options)->info(), options.up);
+  if (auto sentence = lies_on_its_side(solved, taken, given.up.has_value(), recording))
     solved.summary.warnings.push_back(std::move(*sentence));
   solved.summary.joints = std::move(found.joints);
   solved.summary.marker_set = std::move(found.marker_set);

@@ -19,12 +19,14 @@ namespace marey::pipeline {
 
 struct SolveOptions {
   format::skeleton::SkeletonOptions read_skeleton;
-  std::optional<format::UpAxis> up;    ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else z
+  std::optional<format::UpAxis>
+      up;  ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
   std::vector<std::string> leave_out;  ///< labels of markers that are not used
   format::skeleton::BvhDialect bvh;
   solve::skeleton::PoseOptions pose;
-  bool smooth = false;         ///< a second pass over the whole motion
-  std::string static_trial;    ///< of the same person standing: makes the human skeleton, where none is given
+  bool smooth = false;  ///< a second pass over the whole motion
+  std::string
+      static_trial;  ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
   std::string marker_set;      ///< its name; empty: known by the labels
   std::string motion;          ///< and of its range of motion: where its joints are; empty: none
   std::string person;          ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
@@ -80,12 +82,12 @@ struct SolvedRecording {
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& skeleton,
                                 const SolveOptions& options, const Hooks& hooks = {});
 
-/// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, or else of the recording's own body
-/// keypoints; calibrated where the options say so.
+/// With a skeleton from a file, or where `skeleton` is empty the human one of the static trial, else of the recording itself: of
+/// its body keypoints, or of its markers; calibrated where the options say so, and of the recording's markers always.
 SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& options,
                                     const Hooks& hooks = {});
 
-/// The same, and writes `outputs`, each in the format of its ending. `skeleton` is a file, or empty where a static trial is given.
+/// The same, and writes `outputs`, each in the format of its ending. `skeleton` is a file, or empty for the human one.
 /// Throws WrongFormat, before anything is read, for an ending that holds no skeleton.
 SolveSummary solve_skeleton(const std::string& recording, const std::string& skeleton, const std::vector<std::string>& outputs,
                             const SolveOptions& options, const Hooks& hooks = {});

@@ -14,6 +14,8 @@
 namespace marey::pipeline {
 namespace {
 
+constexpr double kWorthIt = 0.5;  // of the pictures of the beginning: with fewer, what is left out costs more than shaking does
+
 /// The calibrated lens, without its distortion, in pixels of the whole picture.
 std::optional<source::steady::PinholeView> pinhole_of(const RigCamera& camera, cv::Size picture) {
   if (!camera.lens || !camera.size || camera.size->empty()) return std::nullopt;
@@ -48,6 +50,7 @@ struct SteadyCamera::Shared {
   std::shared_ptr<source::steady::SteadyLog> log = std::make_shared<source::steady::SteadyLog>();
   std::mutex opening;
   bool opened = false;
+  std::size_t found = 0, looked_at = 0;  // pictures of the beginning: steadied, and all
 };
 
 SteadyCamera::SteadyCamera(const RigCamera& camera, const FeedOptions& options, bool live)
@@ -66,9 +69,18 @@ SteadyCamera::SteadyCamera(const RigCamera& camera, const FeedOptions& options, 
                 said_of(camera, fmt::format("{}: its pictures show nothing that stands, by which they could be steadied; leave "
                                             "out --steady",
                                             camera.source)));
+  source::steady::StandingScene trial = *shared_->scene;
+  shared_->looked_at = pictures.size();
+  shared_->found = static_cast<std::size_t>(
+      std::count_if(pictures.begin(), pictures.end(), [&](const Picture& picture) { return trial.find(picture).has_value(); }));
+}
+
+bool SteadyCamera::steadies() const {
+  return static_cast<double>(shared_->found) >= kWorthIt * static_cast<double>(shared_->looked_at);
 }
 
 FeedOptions SteadyCamera::feed_options() const {
+  if (!steadies()) return options_;
   FeedOptions options = options_;
   options.opens_again = opens_again_;
   options.open = [shared = shared_, camera = camera_, rate = camera_.rate_hz ? camera_.rate_hz : options_.rate_hz] {
@@ -84,6 +96,13 @@ FeedOptions SteadyCamera::feed_options() const {
 }
 
 void SteadyCamera::report(Summary& summary) const {
+  if (!steadies()) {
+    summary.warnings.push_back(said_of(
+        camera_, fmt::format("--steady would leave out too many pictures ({} of {} of the beginning could not be steadied): "
+                             "they were tracked as they are",
+                             shared_->looked_at - shared_->found, shared_->looked_at)));
+    return;
+  }
   const auto counts = shared_->log->report();
   summary.notes.push_back(said_of(camera_, source::steady::said(counts)));
   for (const std::string& warning : source::steady::warned(counts)) summary.warnings.push_back(said_of(camera_, warning));

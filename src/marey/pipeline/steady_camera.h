@@ -17,10 +17,12 @@ namespace marey::pipeline {
 /// (source/steady/standing_scene.h). Those that cannot be steadied are left out, and their time passes.
 class SteadyCamera {
  public:
-  /// The scene is learned from the beginning first, unless `live` or the pictures cannot be read twice. Throws Error where they
-  /// show nothing that could be held on to, or cannot be read.
+  /// The scene is learned from the beginning first, unless `live` or the pictures cannot be read twice: where few of those pictures
+  /// can be steadied, none are. Throws Error where they show nothing that could be held on to, or cannot be read.
   SteadyCamera(const RigCamera& camera, const FeedOptions& options, bool live);
 
+  /// Whether the pictures are steadied.
+  bool steadies() const;
   /// What the camera's feed is opened with.
   FeedOptions feed_options() const;
   /// How far the camera moved goes among the notes; what was lost, and whether it was turned for good, among the warnings.

@@ -47,6 +47,7 @@ void add_films(Sinks& sinks, const GroundOutput& output, const std::vector<Feed>
     const draw::OverlayFilm::View view{.camera = feed.id(),
                                        .size = feed.info().size,
                                        .rate_hz = feed.info().rate_hz,
+                                       .sound_of = feed.sound_source(),
                                        .offset = duration_from_seconds(camera.offset_s.value_or(0))};
     sinks.add(std::make_unique<draw::OverlayFilm>((fs::path(output.overlays) / (camera.name + ".mp4")).string(), view,
                                                   draw::OverlayOptions{.trail_of_centres = true}));
@@ -101,7 +102,9 @@ GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOn
   std::vector<Feed> feeds = options.steady ? open_steadied(rig, options, steady) : open_feeds(rig, {.rate_hz = options.rate_hz});
   Sinks& sinks = sinks_for(rig, feeds);
   const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const Feed& feed) { return feed.has_pictures(); });
-  const auto stage = people_on_ground_again(feeds, rig, options);
+  PeopleOnGroundOptions own = options;
+  own.steady = options.steady && std::all_of(steady.begin(), steady.end(), [](const SteadyCamera& one) { return one.steadies(); });
+  const auto stage = people_on_ground_again(feeds, rig, own);
   Clock clock(std::move(feeds));
   GroundSummary summary{run(*stage, clock, sinks, hooks), stage->teams()};
   for (const SteadyCamera& camera : steady) camera.report(summary);

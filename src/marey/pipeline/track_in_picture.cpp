@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/draw/mask_folder.h"
 #include "marey/draw/overlay_film.h"
 #include "marey/draw/plot_file.h"
 #include "marey/format/recording_file.h"
@@ -29,7 +30,8 @@ Sinks sinks_of(const TrackOutput& output, const Feed& feed, const draw::OverlayO
   if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
-  const draw::OverlayFilm::View view{.camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz};
+  const draw::OverlayFilm::View view{
+      .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
   sinks.add(std::make_unique<draw::OverlayFilm>(output.overlay, view, drawn));
   return sinks;
 }
@@ -46,12 +48,14 @@ Summary run_alone(Feed feed, Stage& stage, Sinks& sinks, const Hooks& hooks) {
 Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
                      const Hooks& hooks) {
   const StopScope scope(hooks.stop);
+  if (!options.masks.empty()) draw::MaskFolder::require_free(options.masks);  // before anything that takes long
   std::optional<SteadyCamera> steady;
   if (options.steady) steady.emplace(camera, FeedOptions{}, options.live);
   Feed feed = open(camera, steady ? steady->feed_options() : FeedOptions{});
   Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
   own.beside = output.tracks;
+  own.steady = steady && steady->steadies();
   own.with_lines = !output.overlay.empty();
   const auto stage = people_in_picture(feed, own);
   Summary summary = run_alone(std::move(feed), *stage, sinks, hooks);

@@ -36,7 +36,7 @@ class GroundArea {
   bool holds(const Vector<2>& world, double slack = 0) const;
 
   /// Whether the user's frame is seen as in a mirror from above: y to the right of x.
-  bool mirrored() const { return ground_from_world_.topLeftCorner<2, 2>().determinant() < 0; }
+  bool mirrored() const { return is_reflection(ground_from_world_); }
   const std::optional<geometry::PitchSize>& pitch() const { return pitch_; }
   /// Whether people count on a part of the ground only.
   bool bounded() const { return pitch_ || !corners_.empty(); }

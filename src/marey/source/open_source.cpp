@@ -1,6 +1,9 @@
 #include "marey/source/open_source.h"
 
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "marey/source/picture_files.h"
 #include "marey/source/video_source.h"
@@ -10,9 +13,12 @@ namespace marey::source {
 std::unique_ptr<Source> open_source(const std::string& path, std::optional<double> rate_hz) {
   std::error_code error;
   const bool exists = std::filesystem::exists(path, error);
-  if (std::filesystem::is_directory(path, error) || (!exists && is_picture_pattern(path))) {
-    return open_pictures(path, find_pictures(path), rate_hz);
+  if (std::filesystem::is_directory(path, error)) {
+    std::vector<std::string> files = find_pictures(path);
+    require_sequence(path, files);
+    return open_pictures(path, std::move(files), rate_hz);
   }
+  if (!exists && is_picture_pattern(path)) return open_pictures(path, find_pictures(path), rate_hz);
   if (exists && is_picture_name(path)) return open_pictures(path, {path}, rate_hz);
   return open_video(path, rate_hz);
 }

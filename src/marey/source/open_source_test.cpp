@@ -50,6 +50,22 @@ TEST(OpenSource, FoldersAndPatternsNameTheSamePictures) {
   EXPECT_EQ(count(*open_source(folder / "shot_10.png")), 1u);
 }
 
+TEST(OpenSource, PicturesThatLieInAFolderByChanceAreNoSequence) {
+  const test::TemporaryFolder folder;
+  shoot(folder);
+  test::ffmpeg("-f lavfi -i color=gray:size=16x12 -frames:v 1 " + (folder / "thumbnail.png"));
+  std::string said;
+  try {
+    open_source(folder.path());
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  EXPECT_NE(said.find("its 6 pictures are no sequence"), std::string::npos) << said;
+  EXPECT_NE(said.find("there are shot_8.png and thumbnail.png"), std::string::npos) << said;
+  EXPECT_EQ(open_source(folder / "shot_%d.png", 5.0)->info().frame_count, 5);
+  EXPECT_EQ(open_source(folder / "*.png", 5.0)->info().frame_count, 6) << "who names them all gets them all";
+}
+
 TEST(OpenSource, FoldersOfTargaAndOfDeepTiffAreRead) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a/1.tga", "a/2.TGA"}) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,6 +44,21 @@ bool matches(const std::string& pattern, std::size_t p, const std::string& name,
     return false;
   }
   return n < name.size() && (pattern[p] == '?' || pattern[p] == name[n]) && matches(pattern, p + 1, name, n + 1);
+}
+
+/// "shot_0012.PNG" as "shot_#.png".
+std::string without_numbers(const std::string& file) {
+  const fs::path path(file);
+  std::string name;
+  for (const char c : path.stem().string()) {
+    if (!is_digit(c)) {
+      name += c;
+    } else if (name.empty() || name.back() != '#') {
+      name += '#';
+    }
+  }
+  for (const char c : path.extension().string()) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
 }
 
 class PictureFiles final : public Source {
@@ -146,6 +163,18 @@ std::vector<std::string> find_pictures(const std::string& path) {
   }
   std::sort(found.begin(), found.end(), NaturalOrder());
   return found;
+}
+
+void require_sequence(const std::string& folder, const std::vector<std::string>& files) {
+  std::map<std::string, std::string> kinds;  // the name without its numbers → the first such picture
+  for (const std::string& file : files) kinds.try_emplace(without_numbers(file), fs::path(file).filename().string());
+  if (kinds.size() < 2) return;
+  const auto second = std::next(kinds.begin());
+  throw Error(
+      "{}: its {} pictures are no sequence, which has one name with a number that counts: there are {} and {}; name those to be "
+      "read, as '{}' or '{}'",
+      folder, files.size(), kinds.begin()->second, second->second, (fs::path(folder) / "shot_%04d.png").string(),
+      (fs::path(folder) / "*.png").string());
 }
 
 std::unique_ptr<Source> open_pictures(const std::string& name, std::vector<std::string> files, std::optional<double> rate_hz) {

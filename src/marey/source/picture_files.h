@@ -14,6 +14,9 @@ namespace marey::source {
 /// stand in the last part of the path. Empty where nothing matches.
 std::vector<std::string> find_pictures(const std::string& path);
 
+/// Throws Error where the pictures of a folder are no sequence: their names are not one name with a number that counts.
+void require_sequence(const std::string& folder, const std::vector<std::string>& files);
+
 /// Whether the name ends as pictures do: .png, .jpg, .tif …
 bool is_picture_name(const std::string& path);
 

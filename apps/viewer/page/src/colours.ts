@@ -1,5 +1,6 @@
 // Which colour a track has: its own where the recording says one, its team's on a pitch, its side's on a body, else one of its number.
 import type { Scene, Track } from "./scene";
+import { sides_of, type Side } from "./sides";
 
 export type Rgb = [number, number, number]; // 0 to 1
 
@@ -33,12 +34,10 @@ function of_number(id: number): Rgb {
   return from_hsl(((id * 137.50776 + 205) % 360) / 360, 0.62, 0.6 + 0.07 * ((id % 3) - 1));
 }
 
-const is_left = (label: string) => /^(left|l_)|^L[A-Z]/.test(label);
-const is_right = (label: string) => /^(right|r_)|^R[A-Z]/.test(label);
-
 export class Colours {
   private of = new Map<number, Rgb>();
   private sides = false;
+  private side: Map<string, Side> = new Map();
   private teams: string[] = [];
   private frame: Scene["frame"] = "space";
   /** On white, colours are darker. */
@@ -48,8 +47,9 @@ export class Colours {
     this.of.clear();
     this.frame = scene.frame;
     const labelled = scene.tracks.filter((track) => track.label !== "");
-    const left = labelled.filter((track) => is_left(track.label)).length;
-    const right = labelled.filter((track) => is_right(track.label)).length;
+    this.side = sides_of(labelled.map((track) => track.label));
+    const on = (side: Side) => labelled.filter((track) => this.side.get(track.label) === side).length;
+    const [left, right] = [on("left"), on("right")];
     this.sides = scene.frame === "space" && Math.min(left, right) >= 0.15 * labelled.length && labelled.length > 3;
     const counts = new Map<string, number>();
     for (const track of scene.tracks) if (track.team !== "") counts.set(track.team, (counts.get(track.team) ?? 0) + 1);
@@ -89,7 +89,7 @@ export class Colours {
     if (track.colour) return track.colour.map((v) => v / 255) as Rgb;
     const team = this.teams.indexOf(track.team);
     if (track.team !== "" && team >= 0 && team < TEAMS.length) return SHIRTS[track.team.toLowerCase()] ?? TEAMS[team];
-    if (this.sides) return is_left(track.label) ? LEFT : is_right(track.label) ? RIGHT : MIDDLE;
+    if (this.sides) return { left: LEFT, right: RIGHT, middle: MIDDLE }[this.side.get(track.label) ?? "middle"];
     return of_number(track.id);
   }
 }

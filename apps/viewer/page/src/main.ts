@@ -13,12 +13,13 @@ import { wire_picking } from "./picking";
 import { PlaneView } from "./plane_view";
 import { Plots } from "./plots";
 import { Recorded } from "./recorded";
-import type { Scene } from "./scene";
-import { SpaceView } from "./space_view";
+import { is_computed, type Scene } from "./scene";
+import { Socket } from "./socket";
 import { put, State } from "./state";
 import { Table } from "./table";
 import { Timeline } from "./timeline";
 import type { View } from "./view";
+import { view_of } from "./views";
 import { Wand } from "./wand";
 import { kind_of, picture_of, Stretch, type Picture } from "./wire";
 import { Words, type Status } from "./words";
@@ -32,7 +33,7 @@ class Page {
   private motion: Motion;
   private view: View;
   private moment: Moment | null = null;
-  private socket: WebSocket | null = null;
+  private socket: Socket;
   private timeline: Timeline;
   private table: Table;
   private plots: Plots;
@@ -55,7 +56,11 @@ class Page {
     const redraw = () => this.draw_soon();
     this.motion = scene.kind === "live" ? new Live(scene) : new Recorded(scene);
     this.motion.on_change = redraw;
-    this.view = scene.frame === "space" ? new SpaceView(state, this.colours, redraw) : new PlaneView(state, this.colours, redraw);
+    this.view = view_of(scene, state, this.colours, redraw);
+    this.socket = new Socket(
+      { opened: () => this.opened(), text: (line) => this.text(line), bytes: (data) => this.bytes(data), lost: () => this.editor.lost(), said: (sentence) => this.said(sentence) },
+      scene.kind === "live",
+    );
     element("view").append(this.view.element);
     state.trail_s = scene.frame === "space" ? 1 : 2;
     this.timeline = new Timeline(state, () => this.motion, (by) => this.step(by));
@@ -88,37 +93,21 @@ class Page {
       show_tab: (tab) => this.show_tab(tab),
     });
     document.addEventListener("visibilitychange", () => this.visible());
-    this.connect();
+    this.socket.connect();
   }
 
   // -- what comes
 
-  private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/socket`);
-    socket.binaryType = "arraybuffer";
-    socket.onopen = () => {
-      this.socket = socket;
-      this.said("");
-      this.visible();
-      this.cameras.ask(true);
-      this.ping();
-      if (this.motion.scene.can_edit) this.fetch_scene();
-      this.editor.found();
-    };
-    socket.onmessage = (event) => (typeof event.data === "string" ? this.text(event.data) : this.bytes(event.data as ArrayBuffer));
-    socket.onclose = () => {
-      if (this.socket === socket) this.said("The program that showed this has ended.");
-      this.socket = null;
-      this.editor.lost();
-      setTimeout(() => this.connect(), 2000);
-    };
+  private opened(): void {
+    this.visible();
+    this.cameras.ask(true);
+    this.ping();
+    if (this.motion.scene.can_edit) this.fetch_scene();
+    this.editor.found();
   }
 
-  /** False where nobody is there to hear it. */
   private say(line: string): boolean {
-    if (this.socket?.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(line);
-    return true;
+    return this.socket.say(line);
   }
 
   private text(line: string): void {
@@ -177,8 +166,11 @@ class Page {
     if (stands) this.view.reset();
     const live = this.motion instanceof Live ? this.motion : null;
     const whole = Math.max(1, scene.instants ?? 1);
+    const computed = is_computed(scene);
+    this.table.say_what_counts(computed);
     this.table.take(scene, this.motion, (track) => {
       if (live) return live.seen(track.id);
+      if (computed) return (track.rows ?? 0) / whole;
       if (scene.frame === "space") return (track.measured ?? 0) / whole;
       // Of somebody who comes and goes: while the track lasts.
       return (track.measured ?? 0) / Math.max(1, track.within ?? 1);
@@ -316,7 +308,7 @@ class Page {
   }
 
   private ping(): void {
-    if (this.motion.scene.kind !== "live" || !this.socket) return;
+    if (this.motion.scene.kind !== "live" || !this.socket.open) return;
     const [line, again_ms] = this.latency.ping();
     this.say(line);
     setTimeout(() => this.ping(), again_ms);

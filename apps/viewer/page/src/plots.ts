@@ -6,7 +6,7 @@ import { range_between, times_of } from "./frames";
 import type { Motion } from "./motion";
 import { name_of } from "./scene";
 import type { State } from "./state";
-import type { Course } from "./wire";
+import { FILLED, PREDICTED, type Course } from "./wire";
 
 const MOST = 6;
 const COORDINATES = ["x", "y", "z", "speed"] as const;
@@ -39,7 +39,7 @@ function with_gaps(course: Course, values: ArrayLike<number | null>, gap: number
 }
 
 /** What was not seen there: filled, predicted. */
-const unseen = (course: Course, i: number): boolean => (course.state[i] & 7) === 1 || (course.state[i] & 7) === 2;
+const unseen = (course: Course, i: number): boolean => (course.state[i] & 7) === FILLED || (course.state[i] & 7) === PREDICTED;
 
 /** The values that were seen, and where some were not those: up to the ones beside them, so that the line goes on. */
 function by_seen(course: Course, values: ArrayLike<number | null>): ArrayLike<number | null>[] {

@@ -75,6 +75,11 @@ export interface Scene {
   job?: string;
 }
 
+/** Of joints and other places that were computed: cameras saw none of them. */
+export function is_computed(scene: Scene): boolean {
+  return scene.kind === "recording" && scene.tracks.length > 0 && scene.tracks.every((track) => !track.measured);
+}
+
 export function name_of(track: Track | undefined, id: number): string {
   return track && track.label !== "" ? track.label : `${id}`;
 }

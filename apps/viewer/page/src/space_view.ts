@@ -9,12 +9,15 @@ import { time_of, type Moment, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
 import { TYPEFACE, type State } from "./state";
+import { Sticks } from "./sticks";
 import { moments_back, type View } from "./view";
-import { MEASURED } from "./wire";
+import { FILLED, MEASURED, PREDICTED } from "./wire";
 
 const TRAIL_STEPS = 90;
 const MOST_TRAIL_SEGMENTS = 60000;
 const MARKER_M = 0.017; // radius where the scene is a few metres wide
+const BONE_M = 0.009;
+const AXIS_M = 0.1; // length of a body's axes
 
 /** Lines whose ends and colours change with every picture. */
 class Lines {
@@ -61,7 +64,7 @@ export class SpaceView implements View {
   private controls: OrbitControls;
   private markers: InstancedMesh;
   private trails = new Lines(MOST_TRAIL_SEGMENTS);
-  private bones = new Lines(4000);
+  private bones: Sticks;
   private rays = new Lines(8000);
   private floor = new Group();
   private rig = new Group();
@@ -89,7 +92,8 @@ export class SpaceView implements View {
     this.markers = this.make_markers(128);
     const sun = new DirectionalLight(0xffffff, 1.5);
     sun.position.set(2, -3, 5);
-    this.world.add(new HemisphereLight(0xffffff, 0x8a94a0, 2), sun, this.floor, this.rig, this.trails.object, this.bones.object, this.rays.object);
+    this.world.add(new HemisphereLight(0xffffff, 0x8a94a0, 2), sun, this.floor, this.rig, this.trails.object, this.rays.object);
+    this.bones = new Sticks(this.world);
   }
 
   take(scene: Scene): void {
@@ -148,6 +152,11 @@ export class SpaceView implements View {
     this.overlay.labels(marks, this.state.labels);
   }
 
+  /** How large things are drawn, by how wide the scene is. */
+  private room(): number {
+    return Math.max(0.5, Math.min(12, new Vector3().subVectors(this.high, this.low).length() / 4));
+  }
+
   private place_markers(moment: Moment): Mark[] {
     const { stretch, k } = moment;
     const end = stretch.row_end[k];
@@ -155,7 +164,7 @@ export class SpaceView implements View {
     if (end - begin > this.capacity) this.markers = this.make_markers(2 * (end - begin));
     const { matrix, colour, v } = this.scratch;
     const marks: Mark[] = [];
-    const scale = Math.max(0.5, Math.min(12, new Vector3().subVectors(this.high, this.low).length() / 4)) * MARKER_M;
+    const scale = this.room() * MARKER_M;
     const focal = this.overlay.height / 2 / Math.tan((this.camera.fov * Math.PI) / 360);
     let count = 0;
     for (let row = begin; row < end; ++row) {
@@ -167,7 +176,8 @@ export class SpaceView implements View {
       matrix.makeScale(radius, radius, radius).setPosition(stretch.x[row], stretch.y[row], z);
       this.markers.setMatrixAt(count, matrix);
       colour.setRGB(...this.colours.rgb(id), "srgb");
-      if (stretch.provenance(row) !== 0) colour.lerp(this.background, 0.6); // not seen at this moment
+      const how = stretch.provenance(row);
+      if (how === FILLED || how === PREDICTED) colour.lerp(this.background, 0.6); // not seen at this moment
       if (this.state.selected.size > 0 && !selected) colour.lerp(this.background, 0.35);
       this.markers.setColorAt(count++, colour);
       v.set(stretch.x[row], stretch.y[row], z);
@@ -213,9 +223,9 @@ export class SpaceView implements View {
     return [this.scratch.colour.r, this.scratch.colour.g, this.scratch.colour.b];
   }
 
-  /** A segment of a skeleton is a line from its parent's origin to its own, and to its end; a body by itself is its axes. */
+  /** A segment of a skeleton is a rod from its parent's origin to its own, and to its end; a body by itself is its axes. */
   private place_bones(moment: Moment | null): void {
-    this.bones.begin();
+    this.bones.begin(this.camera, this.overlay.height);
     if (moment && this.scene && this.scene.bodies.length > 0) {
       const { stretch, k } = moment;
       const at = new Map<number, number>();
@@ -223,19 +233,21 @@ export class SpaceView implements View {
       const origin = (p: number) => new Vector3(stretch.pose[0][p], stretch.pose[1][p], stretch.pose[2][p]);
       const turned = (p: number, v: Vector3) =>
         v.applyQuaternion(this.scratch.q.set(stretch.pose[3][p], stretch.pose[4][p], stretch.pose[5][p], stretch.pose[6][p])).add(origin(p));
-      const bone = this.state.dark ? [0.75, 0.8, 0.86] : [0.2, 0.25, 0.3];
-      const line = (a: Vector3, b: Vector3, rgb: number[], alpha: number) => this.bones.add(a.x, a.y, a.z, b.x, b.y, b.z, rgb, alpha, alpha);
+      const bone = new Color(this.state.dark ? 0xb4bcc8 : 0x4a5563);
+      const faint = bone.clone().lerp(this.background, 0.6);
+      const axes = [0xff0000, 0x00aa22, 0x2255ff].map((colour) => new Color(colour));
+      const radius = this.room() * BONE_M;
       for (const body of this.scene.bodies) {
         const p = at.get(body.id);
         if (p === undefined) continue;
-        const alpha = stretch.tracked[p] ? 0.95 : 0.4;
+        const colour = stretch.tracked[p] ? bone : faint;
         const parent = body.parent === undefined ? undefined : at.get(body.parent);
-        if (parent !== undefined) line(origin(parent), origin(p), bone, alpha);
-        if (body.end) line(origin(p), turned(p, new Vector3(...body.end)), bone, alpha);
+        if (parent !== undefined) this.bones.add(origin(parent), origin(p), radius, colour);
+        if (body.end) this.bones.add(origin(p), turned(p, new Vector3(...body.end)), radius, colour);
         if (body.skeleton !== "") continue;
-        for (const marker of body.markers) line(origin(p), turned(p, new Vector3(...marker)), bone, 0.5 * alpha);
+        for (const marker of body.markers) this.bones.add(origin(p), turned(p, new Vector3(...marker)), 0.3 * radius, colour);
         for (let axis = 0; axis < 3; ++axis)
-          line(origin(p), turned(p, new Vector3().setComponent(axis, 0.1)), [Number(axis === 0), 0.6 * Number(axis === 1), Number(axis === 2)], alpha);
+          this.bones.add(origin(p), turned(p, new Vector3().setComponent(axis, AXIS_M)), 0.6 * radius, stretch.tracked[p] ? axes[axis] : axes[axis].clone().lerp(this.background, 0.6));
       }
     }
     this.bones.end();

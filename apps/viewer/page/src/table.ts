@@ -3,7 +3,7 @@ import type { Colours } from "./colours";
 import { Live } from "./live";
 import type { Motion } from "./motion";
 import { name_of, type Scene, type Track } from "./scene";
-import type { State } from "./state";
+import { put, type State } from "./state";
 
 const ROW = 30; // px
 
@@ -51,6 +51,13 @@ export class Table {
     }
     state.on_change(() => this.draw());
     new ResizeObserver(() => this.draw()).observe(this.list);
+  }
+
+  /** Of what was computed, not seen, the share of instants that have it counts. */
+  say_what_counts(computed: boolean): void {
+    const head = document.querySelector<HTMLElement>("#by_seen")!;
+    put(head, computed ? "Present %" : "Seen %");
+    head.title = computed ? "Share of the instants that have it: these places were computed, not seen by cameras" : "Share of the instants at which cameras saw it";
   }
 
   /** Of a live run those who are gone are left out after a while, but for who is selected or has a name. */

@@ -1,6 +1,9 @@
 // The server's bytes as arrays, nothing copied. The layout is apps/viewer/wire.h's.
 
+// Where a row comes from.
 export const MEASURED = 0;
+export const FILLED = 1;
+export const PREDICTED = 2;
 const HEADER = 40;
 const HAS_Z = 1;
 const HAS_BOXES = 2;

@@ -4,6 +4,7 @@ import type { Colours } from "./colours";
 import type { Latency } from "./latency";
 import { Live } from "./live";
 import type { Motion } from "./motion";
+import { is_computed } from "./scene";
 import { put } from "./state";
 import { clock } from "./timeline";
 
@@ -85,9 +86,11 @@ export class Words {
     const ms = (s: number) => `${(1000 * s).toFixed(1)} ms`;
     const rows: [string, string][] = [["Name", scene.name]];
     rows.push(["Holds", { space: "markers in space, m, z up", ground: "places on the ground, m", image: "tracks in a picture, px" }[scene.frame]]);
+    if (is_computed(scene)) rows.push(["Seen", "these places were computed (joints, say), not seen by cameras"]);
     if (scene.made_by) rows.push(["Made by", scene.made_by]);
     if (scene.kind === "recording") rows.push(["Length", `${clock(motion.last - motion.first)}, ${scene.instants} instants at ${+scene.rate.toFixed(3)} Hz`]);
     if (scene.cameras.length) rows.push(["Cameras", scene.cameras.map((camera) => camera.name).join(", ")]);
+    else if (scene.frame === "space" && scene.kind === "recording") rows.push(["Cameras", "this file holds no calibration, so that neither they nor rays can be shown; a take does"]);
     if (scene.bodies.length) rows.push(["Bodies", scene.bodies.map((body) => body.label).join(", ")]);
     for (const step of this.status.steps ?? []) rows.push([step.name, `${ms(step.median)}, 99 % within ${ms(step.p99)}`]);
     if (this.status.overtaken !== undefined) rows.push(["Overtaken", many(this.status.overtaken, "moment")]);

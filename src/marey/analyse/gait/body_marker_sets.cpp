@@ -79,6 +79,11 @@ constexpr std::size_t kTriads = 20;  // the table's first markers are Helen Haye
 
 constexpr std::array<std::string_view, 8> kPlugInGaitNeeds = {"LASI", "RASI", "?THI", "?KNE", "?TIB", "?ANK", "?HEE", "?TOE"};
 
+bool is_below_waist(SegmentId segment) {
+  constexpr std::array kBelow{pelvis, left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot};
+  return std::find(kBelow.begin(), kBelow.end(), segment) != kBelow.end();
+}
+
 std::string on_side(std::string_view text, char side) {
   std::string sided(text);
   std::replace(sided.begin(), sided.end(), '?', side);
@@ -125,6 +130,12 @@ BodyMarkerSet::BodyMarkerSet(std::string_view name, std::string_view title, std:
   }
 }
 
+std::vector<std::string> BodyMarkerSet::labels() const {
+  std::vector<std::string> labels;
+  for (const Marker& marker : markers_) labels.push_back(marker.label);
+  return labels;
+}
+
 const BodyMarkerSet::Marker* BodyMarkerSet::find(std::string_view label) const {
   const auto found = std::find_if(markers_.begin(), markers_.end(), [&](const Marker& marker) { return marker.label == label; });
   return found == markers_.end() ? nullptr : &*found;
@@ -138,6 +149,11 @@ std::optional<std::string> BodyMarkerSet::key_of(std::string_view label) const {
 std::string BodyMarkerSet::label_of(std::string_view key) const {
   const auto found = std::find_if(markers_.begin(), markers_.end(), [&](const Marker& marker) { return marker.key == key; });
   return found == markers_.end() ? std::string(key) : found->label;
+}
+
+std::optional<SegmentId> BodyMarkerSet::segment_of_label(std::string_view label) const {
+  const Marker* const marker = find(label);
+  return marker == nullptr ? std::nullopt : std::optional(marker->segment);
 }
 
 std::optional<SegmentId> BodyMarkerSet::segment_of(std::string_view key) const {
@@ -166,6 +182,21 @@ const BodyMarkerSet& body_marker_set(std::string_view name) {
   for (const BodyMarkerSet& set : all_sets()) {
     if (set.name() == name) return set;
     names.push_back(set.name());
+  }
+  throw Error("{}: no marker set that Marey knows; there are {}", name, fmt::join(names, ", "));
+}
+
+std::vector<std::string> marker_set_labels(std::string_view name) {
+  constexpr std::string_view kLower = "-lower";
+  std::vector<std::string> names;
+  for (const BodyMarkerSet& set : all_sets()) {
+    std::vector<std::string> labels = set.labels();
+    if (set.name() == name) return labels;
+    names.emplace_back(set.name());
+    names.push_back(fmt::format("{}{}", set.name(), kLower));
+    if (names.back() != name) continue;
+    std::erase_if(labels, [&](const std::string& label) { return !is_below_waist(*set.segment_of_label(label)); });
+    return labels;
   }
   throw Error("{}: no marker set that Marey knows; there are {}", name, fmt::join(names, ", "));
 }

@@ -1,5 +1,7 @@
 #include "marey/analyse/gait/body_marker_sets.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
@@ -29,6 +31,26 @@ TEST(BodyMarkerSets, EachIsKnownByItsLabels) {
     EXPECT_TRUE(set.missing(labels).empty()) << set.name();
     EXPECT_EQ(recognised_marker_set(labels).name(), set.name());
     EXPECT_EQ(body_marker_set(set.name()).title(), set.title());
+  }
+}
+
+TEST(BodyMarkerSets, LabelsAreListedByName) {
+  const auto has = [](const std::vector<std::string>& labels, const std::string& label) {
+    return std::find(labels.begin(), labels.end(), label) != labels.end();
+  };
+  for (const BodyMarkerSet& set : body_marker_sets()) EXPECT_EQ(marker_set_labels(set.name()).size(), set.size());
+  const auto whole = marker_set_labels("plug-in-gait"), lower = marker_set_labels("plug-in-gait-lower");
+  EXPECT_TRUE(has(whole, "LFHD") && has(whole, "C7") && has(whole, "LKNE"));
+  for (const char* label : {"LASI", "RPSI", "SACR", "LTHI", "RKNE", "LTIB", "RANK", "LHEE", "RTOE"})
+    EXPECT_TRUE(has(lower, label)) << label;
+  EXPECT_FALSE(has(lower, "LFHD") || has(lower, "C7") || has(lower, "LSHO"));
+  EXPECT_TRUE(has(marker_set_labels("helen-hayes-lower"), "V.Sacral"));
+  try {
+    marker_set_labels("plugin");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("there are plug-in-gait, plug-in-gait-lower, cmu-41"), std::string::npos)
+        << error.what();
   }
 }
 

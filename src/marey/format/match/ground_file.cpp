@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
@@ -43,13 +44,14 @@ enum Column {
   kXx,
   kXy,
   kYy,
+  kYDown,
   kColumns
 };
 constexpr std::array<std::string_view, kColumns> kAllNames = {"frame",  "time", "id",    "label",   "team", "x",   "y",
                                                               "vx",     "vy",   "state", "cameras", "left", "top", "width",
-                                                              "height", "z",    "vz",    "xx",      "xy",   "yy"};
+                                                              "height", "z",    "vz",    "xx",      "xy",   "yy",  "y_down"};
 constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(
-    kLeft);  // the others are of tracks in a picture, of the ball, and of places whose covariance is known
+    kLeft);  // the others are of tracks in a picture, of the ball, of places whose covariance is known, and of a reflected ground
 constexpr std::array kNeeded = {kId, kX, kY};
 constexpr double kFarthest = 1e5;   // m
 constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz
@@ -118,6 +120,7 @@ class GroundFileReader {
     header.rate_hz = rate_of(match.recording.instants());
     if (!cameras_.empty()) header.rig.emplace();
     for (std::string& camera : cameras_) header.rig->cameras.emplace_back().name = std::move(camera);
+    if (y_down_) set_y_down(header, *y_down_);
   }
 
   /// The column's field; nothing where it is missing or empty.
@@ -163,7 +166,16 @@ class GroundFileReader {
       row.box = Box{number(kLeft, -kFarthest, kFarthest), number(kTop, -kFarthest, kFarthest), number(kWidth, 0, kFarthest),
                     number(kHeight, 0, kFarthest)};
     }
+    if (field(kYDown)) read_y_down();
     builder_.add(person, row);
+  }
+
+  void read_y_down() {
+    const double value = number(kYDown, 0, 1);
+    const bool down = value > 0.5;
+    if ((value != 0 && value != 1) || y_down_.value_or(down) != down)
+      throw Error("{}:{}: y_down is {}; it must be 0 or 1, in all rows the same", name_, line_, shown(*field(kYDown)));
+    y_down_ = down;
   }
 
   Matrix<2> covariance() const {
@@ -221,6 +233,7 @@ class GroundFileReader {
   std::size_t line_ = 1;
   GroundBuilder builder_;
   std::vector<std::string> cameras_;
+  std::optional<bool> y_down_;
   bool has_boxes_ = false;
   bool moves_ = false;               // a velocity that is not 0 was read
   double start_s_ = 0, step_s_ = 1;  // of frames that times alone tell
@@ -253,6 +266,10 @@ GroundMatch read_ground_match(const std::string& path, const ReadOptions& option
   return match;
 }
 
+bool is_own_ground_csv(const Beginning& file) {
+  return file.first_line().starts_with(fmt::format("{}", fmt::join(kNames, ",")));
+}
+
 bool is_ground_csv(const Beginning& file, bool with_boxes) {
   std::vector<std::string_view> head;
   split_fields(file.first_line(), ',', head);
@@ -266,6 +283,7 @@ Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
   if (header.rig) {
     for (const RigCamera& camera : header.rig->cameras) cameras_.push_back(camera.name);
   }
+  if (y_grows_down(header)) extras_.push_back(Extra::y_down);
   return {};
 }
 
@@ -295,7 +313,9 @@ void GroundWriter::write(const Instant& instant) {
 }
 
 void GroundWriter::write_extra(Extra extra, const Sample& sample, bool ball) {
-  if (extra == Extra::heights) {
+  if (extra == Extra::y_down) {
+    text_ += ",1";
+  } else if (extra == Extra::heights) {
     if (!ball) return void(text_ += ",,");
     fmt::format_to(std::back_inserter(text_), ",{:.3f},{:.3f}", sample.position.z(),
                    sample.velocity.value_or(Vector<3>::Zero()).z());
@@ -317,13 +337,25 @@ void GroundWriter::add_columns(Extra extra) {
 }
 
 const char* GroundWriter::empty_of(Extra extra) {
-  return extra == Extra::heights ? ",," : ",,,";
+  return extra == Extra::covariances ? ",,," : ",,";
+}
+
+const char* GroundWriter::columns_of(Extra extra) {
+  switch (extra) {
+    case Extra::y_down:
+      return ",y_down";
+    case Extra::heights:
+      return ",z,vz";
+    case Extra::covariances:
+      break;
+  }
+  return ",xx,xy,yy";
 }
 
 void GroundWriter::flush() {
   if (!std::exchange(head_written_, true)) {
     file_.write(fmt::format("{}", fmt::join(kNames, ",")));
-    for (const Extra extra : extras_) file_.write(extra == Extra::heights ? ",z,vz" : ",xx,xy,yy");
+    for (const Extra extra : extras_) file_.write(columns_of(extra));
     file_.write("\n");
   }
   file_.write(text_);
@@ -344,19 +376,20 @@ void write_ground(const Recording& recording, const std::string& path) {
 }
 
 Format ground_format() {
-  return {.name = "ground",
-          .title = "people on the ground, one row each",
-          .endings = ".csv",
-          .holds = Content::ground,
-          .detail =
-              "yours, m; everything: `frame,time,id,label,team,x,y,vx,vy,state,cameras`. Read with any columns beyond `id,x,y` "
-              "and `frame` or `time`, in any order",
-          .is = [](const Beginning& file) { return match::is_ground_csv(file, false); },
-          .read = match::read_ground_match,
-          .create = [](const std::string& path, const WritePlan&) -> std::unique_ptr<Sink> {
-            return std::make_unique<match::GroundWriter>(path);
-          },
-          .while_recording = true};
+  return {
+      .name = "ground",
+      .title = "people on the ground, one row each",
+      .endings = ".csv",
+      .holds = Content::ground,
+      .detail =
+          "yours, m; everything: `frame,time,id,label,team,x,y,vx,vy,state,cameras`, and `y_down` where y grows downwards. Read "
+          "with any columns beyond `id,x,y` and `frame` or `time`, in any order",
+      .is = [](const Beginning& file) { return match::is_ground_csv(file, false); },
+      .read = match::read_ground_match,
+      .create = [](const std::string& path, const WritePlan&) -> std::unique_ptr<Sink> {
+        return std::make_unique<match::GroundWriter>(path);
+      },
+      .while_recording = true};
 }
 
 }  // namespace marey::format::match

@@ -16,7 +16,8 @@ namespace marey::format::match {
 /// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
 /// between. Where no velocity is known all are written as 0. With a ball, whose label is "ball", two columns more, z,vz, have its
 /// height in m and how fast it rises; where it is known how well places are, three more, xx,xy,yy, have their covariance in m².
-/// A writer must be told of either within the first megabyte.
+/// A writer must be told of either within the first megabyte. Where y grows downwards (core/other_ground.h), a column y_down has 1
+/// in each row.
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are
@@ -33,6 +34,9 @@ GroundMatch read_ground_match(const std::string& path, const ReadOptions& option
 
 /// Whether a file begins as such a CSV does, or as one of tracks in a picture, which has boxes too.
 bool is_ground_csv(const Beginning& file, bool with_boxes);
+
+/// Whether it has the columns that GroundWriter writes, so that its y grows upwards where no y_down says otherwise.
+bool is_own_ground_csv(const Beginning& file);
 
 /// Writes such a file as it comes, so that memory does not grow with its length.
 class GroundWriter : public Sink {
@@ -53,9 +57,10 @@ class GroundWriter : public Sink {
   };
 
   /// Columns that not every file has, in the order in which they came to be known.
-  enum class Extra { heights, covariances };
+  enum class Extra { y_down, heights, covariances };
 
   static const char* empty_of(Extra extra);
+  static const char* columns_of(Extra extra);
   void add_columns(Extra extra);
   void write_extra(Extra extra, const Sample& sample, bool ball);
   void flush();

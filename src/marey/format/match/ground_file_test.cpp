@@ -8,6 +8,7 @@
 
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 
 #include "support/files.h"
 
@@ -94,6 +95,25 @@ TEST(GroundFile, HowWellPlacesAreKnownIsKept) {
   for (const std::size_t row : {1u, 2u})
     EXPECT_EQ(read.tracks()[0].sample(row).covariance, recording.tracks()[0].sample(row).covariance);
   EXPECT_THROW(parse_ground("frame,id,x,y,xx,xy,yy\n0,1,1,2,0.01,0.5,0.01\n", "wrong.csv"), Error);
+}
+
+TEST(GroundFile, AReflectedGroundIsStatedAndReadBack) {
+  RecordingHeader header = two_cameras();
+  header.rig->ground_from_world = Matrix<3>{{1, 0, 52.5}, {0, -1, 34}, {0, 0, 1}};
+  Recording recording(header);
+  Instant instant;
+  instant.samples = {sample_of(1, {1.5, 2.25}, {0.5, -1}, 1, true)};
+  recording.add(instant);
+  const test::TemporaryFolder folder;
+  write_ground(recording, folder / "match.csv");
+  const std::string text = test::read_file(folder / "match.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "frame,time,id,label,team,x,y,vx,vy,state,cameras,y_down");
+  EXPECT_EQ(text.substr(text.size() - 8), ",left,1\n");
+  EXPECT_TRUE(y_grows_down(read_ground(folder / "match.csv").header));
+  EXPECT_TRUE(y_grows_down(parse_ground("frame,id,x,y,y_down\n0,1,1,2,1\n1,1,1,2,1\n", "other.csv").header));
+  EXPECT_FALSE(y_grows_down(parse_ground("frame,id,x,y,y_down\n0,1,1,2,0\n", "other.csv").header));
+  EXPECT_THROW(parse_ground("frame,id,x,y,y_down\n0,1,1,2,1\n1,1,1,2,0\n", "both.csv"), Error);
+  EXPECT_THROW(parse_ground("frame,id,x,y,y_down\n0,1,1,2,0.5\n", "half.csv"), Error);
 }
 
 TEST(GroundFile, OtherToolsNeedFewColumnsInAnyOrder) {

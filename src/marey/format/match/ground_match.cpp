@@ -78,6 +78,18 @@ Pair pair_of(const std::string& path, const TwoFiles& format, const ReadOptions&
   return {path, metadata.value_or("")};
 }
 
+/// The header's rig follows: a frame that it leads to is another one now.
+void turn_rig(RecordingHeader& header, const GroundFrame& frame, bool to, const Vector<2>& moved) {
+  const bool leads = header.rig && header.rig->ground_from_world;
+  const Matrix<3> turned_over = Vector<3>(1, -1, 1).asDiagonal();
+  Matrix<3> change = frame.y_down ? turned_over : Matrix<3>(Matrix<3>::Identity());
+  change.topRightCorner<2, 1>() = moved;
+  const Matrix<3> unknown = to && frame.y_down ? turned_over : Matrix<3>(Matrix<3>::Identity());
+  const Matrix<3> now = change * (leads ? *header.rig->ground_from_world : unknown);
+  if (!header.rig) header.rig.emplace();
+  header.rig->ground_from_world = now;
+}
+
 Recording turned(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame, bool to) {
   require_ground(recording, "the pitch's corner");
   const Vector<2> middle(pitch.length / 2, pitch.width / 2);
@@ -88,6 +100,7 @@ Recording turned(Recording recording, const geometry::PitchSize& pitch, const Gr
     return at;
   };
   const Matrix<2> linear = Vector<2>(1, frame.y_down ? -1 : 1).asDiagonal();
+  turn_rig(recording.header, frame, to, place(Vector<2>::Zero()));
   return on_other_ground(std::move(recording), {FrameOfReference::Kind::user_ground, {}}, {place, linear});
 }
 

@@ -12,6 +12,7 @@
 
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
@@ -189,6 +190,9 @@ TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
   EXPECT_EQ(match.recording.tracks()[0].place(0).y(), 0) << "a change of frame makes a new recording";
   const Recording centred = from_corner(turned, match.pitch, {.y_down = true, .centred = true});
   EXPECT_EQ(centred.tracks()[0].place(0), Vector<2>(-52.5, -34));
+  EXPECT_TRUE(y_grows_down(centred.header)) << "the frame that it came into";
+  EXPECT_FALSE(y_grows_down(turned.header)) << "the corner is below";
+  EXPECT_FALSE(y_grows_down(to_corner(centred, match.pitch, {.y_down = true, .centred = true}).header));
 }
 
 TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {

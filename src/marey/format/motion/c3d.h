@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,9 +17,10 @@ enum class C3dPoints { places, all };
 /// stands beside them (`FileInfo::beside`) is told, not read. A point's camera mask becomes CameraId 0 to 6, its residual
 /// `residual_m`. A point whose fourth word is 0 is `filled`, unless no point of the file has another one: then the file does not
 /// tell, and all are `measured`. Points at exactly (0, 0, 0) that cannot be positions (c3d_zeros.h) are missing. `up` is the axis
-/// that is up in the file, which is only noted for what stands beside. A file that is cut off is read as far as it goes, with a
-/// warning. Throws Error for what is no C3D file, and for one that ends before its first frame does.
-std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points = C3dPoints::places, UpAxis up = UpAxis::z);
+/// that is up in the file, nothing: as it says; it is only noted for what stands beside. A file that is cut off is read as far as
+/// it goes, with a warning. Throws Error for what is no C3D file, and for one that ends before its first frame does.
+std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points = C3dPoints::places,
+                                     const std::optional<UpAxis>& up = {});
 /// The same of bytes in memory, which must outlive the reader; `name` stands for the path in messages.
 std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name);
 

@@ -24,7 +24,7 @@ namespace {
 class C3dReader : public FileReader {
  public:
   C3dReader(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const std::string& name, C3dPoints points,
-            UpAxis up = UpAxis::z)
+            const std::optional<UpAxis>& up = {})
       : file_(std::move(file)),
         path_(name),
         head_(read_c3d_head(bytes, name)),
@@ -43,7 +43,7 @@ class C3dReader : public FileReader {
     if (zeros_) warn(zeros_->warnings());
     find_bodies();
     if (file_ != nullptr) info_.beside = beside_points(head_, layout_, name);
-    info_.beside.turned = up == UpAxis::y;
+    info_.beside.turned = up.value_or(info_.up.value_or(UpAxis::z)) == UpAxis::y;
   }
 
   const FileInfo& info() const override { return info_; }
@@ -205,7 +205,7 @@ class C3dReader : public FileReader {
 
 }  // namespace
 
-std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points, UpAxis up) {
+std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points, const std::optional<UpAxis>& up) {
   auto file = std::make_unique<MappedFile>(path);
   const std::span<const std::byte> bytes = file->bytes();
   return std::make_unique<C3dReader>(std::move(file), bytes, path, points, up);

@@ -304,6 +304,23 @@ TEST_F(Motion, TakesAreNeverTurned) {
   EXPECT_EQ(read_all(csv, UpAxis::y).frames.at(0).samples.at(0).position, Vector<3>(1, 2, 3));
 }
 
+TEST_F(Motion, TheAxisThatAC3dFileSaysIsUpIsTakenForUp) {
+  const std::string z_up = folder_ / "z.c3d", y_up = folder_ / "y.c3d";
+  write_motion(z_up, "c3d", walk(), UpAxis::z);
+  write_motion(y_up, "c3d", walk(), UpAxis::y);
+  const Read truth = read_all(*open_recording(z_up)), read = read_all(*open_recording(y_up));
+  EXPECT_TRUE(truth.warnings.empty());
+  expect_same(truth, read, 1e-9);
+  ASSERT_EQ(read.warnings.size(), 1U);
+  EXPECT_NE(read.warnings.front().find("its y is taken for up, as the file says; if z is up in it, say --up z"), std::string::npos);
+  // Who says otherwise is believed.
+  const Read as_it_stands = read_all(y_up, UpAxis::z), told = read_all(y_up, UpAxis::y);
+  EXPECT_TRUE(as_it_stands.warnings.empty() && told.warnings.empty());
+  expect_same(truth, told, 1e-9);
+  const auto up = truth.frames.front().samples.front().position.z();
+  EXPECT_NEAR(as_it_stands.frames.front().samples.front().position.y(), up, 1e-9);
+}
+
 TEST_F(Motion, GapsOfMillionsOfFramesAreAMistake) {
   const std::string path = folder_ / "slip.csv";
   test::write_file(path, "frame,time,id,label,x,y,z\n0,0,1,a,1,2,3\n400000000,1,1,a,1,2,3\n");

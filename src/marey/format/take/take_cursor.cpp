@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/other_ground.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/rig/rig_file.h"
 
@@ -56,6 +57,7 @@ RecordingHeader common_header(const Database& database, TakeValues& values) {
   header.rate_hz = values.real("rate_hz");
   const std::string rig = values.text("rig");
   if (!rig.empty()) header.rig = rig::parse_rig(rig, database.path() + " (its rig)");
+  if (values.has("y_down")) set_y_down(header, values.integer("y_down") != 0);
   if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) throw Error("{}: is damaged (its rate is missing)", database.path());
   return header;
 }

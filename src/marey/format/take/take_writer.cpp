@@ -15,6 +15,7 @@
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
+#include "marey/core/other_ground.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_joiner.h"
@@ -35,9 +36,8 @@ constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
 constexpr std::size_t kLargestTransaction = std::size_t{16} << 20;
 
 void require_valid(const RecordingHeader& header, const std::string& path) {
-  if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0)) {
+  if (!(std::isfinite(header.rate_hz) && header.rate_hz > 0))
     throw Error("{}: a rate of {} frames a second; it must be positive", path, header.rate_hz);
-  }
   for (const Body& body : header.bodies) {
     if (number(body.id) <= 0) throw Error("{}: body {} cannot be; ids are positive", path, number(body.id));
   }
@@ -65,7 +65,8 @@ class TakeWriter::Recorder {
     set("frame", name_of(header.frame.kind));
     if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
     set("smoothed", std::int64_t{header.smoothed});
-    if (header.rig) set("rig", rig::rig_text(*header.rig));
+    const bool cameras = header.rig && !header.rig->cameras.empty();  // a rig's text has one at least
+    if (header.rig) cameras ? set("rig", rig::rig_text(*header.rig)) : set("y_down", std::int64_t{y_grows_down(header)});
     set("complete", std::int64_t{0});
     set_made_by(header.made_by);
     set_bodies(header.bodies);

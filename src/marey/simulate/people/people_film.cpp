@@ -177,6 +177,12 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   renderer_ = std::make_unique<PeopleRenderer>(ground, seen, std::move(motion.posts), render);
 }
 
+int PeopleFilm::most_at_a_time() const {
+  std::size_t most = 0;
+  for (const auto& frame : people_) most = std::max(most, frame.size());
+  return static_cast<int>(most);
+}
+
 Vector<3> PeopleFilm::turn(int index) const {
   return shake_ ? shake_->turn(index / options_.rate_hz) : Vector<3>::Zero().eval();
 }

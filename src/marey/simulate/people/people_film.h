@@ -73,6 +73,9 @@ class PeopleFilm {
   /// All who are in the film at all, in the order of their ids 1, 2, …
   const std::vector<Figure>& figures() const { return figures_; }
 
+  /// How many are there at a time, at most: where they keep apart, fewer than asked for if there is no room.
+  int most_at_a_time() const;
+
   /// The turn of a camera that shakes from its rest, in frame 0 ≤ `index` < frames(): as CameraShake has it.
   Vector<3> turn(int index) const;
 

@@ -54,6 +54,16 @@ FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, co
   const std::vector<const TrackColumns*> named = named_tracks(labelled.recording, learned);
   FoundNames found;
   found.scale = labelled.scale;
+  found.undecided = labelled.undecided;
+  for (const TrackColumns* track : named) found.decided.push_back(track == nullptr ? 0 : 1);
+  for (const Unnamed& piece : labelled.unnamed) {
+    const auto best = std::find(learned.labels.begin(), learned.labels.end(), piece.best);
+    if (best == learned.labels.end()) continue;
+    const auto name = static_cast<std::size_t>(best - learned.labels.begin());
+    if (!found.decided[name]) found.undecided[name] = 1;
+  }
+  found.misfit = labelled.misfit;
+  found.misfit_m = labelled.misfit_m;
   for (const TrackColumns& track : recent.tracks()) {
     if (track.empty()) continue;
     const std::int32_t last = track.at().back();

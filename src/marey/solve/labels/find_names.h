@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "marey/core/hooks.h"
 #include "marey/core/recording.h"
@@ -15,6 +16,11 @@ struct FoundNames {
   std::map<TrackId, int> name_of;           ///< of the tracks that had a name when the recording ended, as it found them last
   std::unique_ptr<LabelFollower> follower;  ///< that goes on with the distances that were found
   double scale = 1;                         ///< of the subject against the learned set
+  /// By name: not 0 if it is undecided as `Labelled` has it, or no track has it and it is the best of one that stayed without a
+  /// name.
+  std::vector<char> undecided;
+  std::vector<char> decided;        ///< by name: not 0 if a track had it, whether it is still there or not
+  double misfit = 0, misfit_m = 0;  ///< as `Labelled` has them
 };
 
 /// `recent`: tracks in space over some seconds. Takes about as long as `label_recording`: for a task of its own. `learned` must

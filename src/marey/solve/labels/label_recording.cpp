@@ -52,6 +52,7 @@ class Labelling {
     judge();
     drop(undecided);
     Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, doubts_, scale_);
+    for (const int other : undecided) labelled.undecided.push_back(other == kNoIndex ? 0 : 1);
     const Misfit misfit_now = misfit();
     labelled.misfit = misfit_now.ratio;
     labelled.misfit_m = misfit_now.off_m;

@@ -59,8 +59,10 @@ struct Labelled {
   std::vector<Unnamed> unnamed;
   double scale = 1;          ///< of the subject against the learned set
   std::int64_t renamed = 0;  ///< stretches of tracks that had another name of the set before
-  double misfit = 0;         ///< how far rigid distances are off, against what is expected of the subject that taught: about 1
-  double misfit_m = 0;       ///< the same as a median, m
+  /// By name of the set: not 0 if the final check found an exchange with another name that fits as well. No track has such a name.
+  std::vector<char> undecided;
+  double misfit = 0;    ///< how far rigid distances are off, against what is expected of the subject that taught: about 1
+  double misfit_m = 0;  ///< the same as a median, m
 };
 
 /// Throws Error where the recording is not one of space, or too few of the set's markers can be told to begin with.

@@ -150,13 +150,17 @@ void learn_distances(const std::vector<DistanceSums>& sums, const Sizes& sizes, 
 }
 
 std::vector<std::string> labels_of(std::span<const Recording> recordings, const LearnOptions& options) {
-  if (!options.labels.empty()) return options.labels;
+  if (!options.labels.empty() && !options.as_far_as_there) return options.labels;
   std::vector<std::string> labels;
   for (const Recording& recording : recordings) {
     for (const auto& [label, track] : labelled_tracks(recording)) {
       if (std::find(labels.begin(), labels.end(), label) == labels.end()) labels.push_back(label);
     }
   }
+  if (!options.labels.empty())
+    std::erase_if(labels, [&](const std::string& label) {
+      return std::find(options.labels.begin(), options.labels.end(), label) == options.labels.end();
+    });
   return labels;
 }
 

@@ -12,6 +12,7 @@ namespace marey::solve::labels {
 
 struct LearnOptions {
   std::vector<std::string> labels;  ///< those that belong to the set; none: all that have names
+  bool as_far_as_there = false;     ///< those of `labels` that no recording has are left out; else they are an error
   bool scaled = false;              ///< the recordings are of subjects of several sizes: each is brought to their mean size first
 };
 

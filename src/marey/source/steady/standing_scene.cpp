@@ -16,28 +16,15 @@ constexpr int kGridAcross = 14, kGridDown = 9;         // corners are taken from
 constexpr int kBorder = 6;                             // px, in which no corner is followed
 constexpr double kUsualFocal = 1.5;                    // in widths of the picture
 constexpr std::array<double, 13> kFocals{0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.5, 5.0, 10.0, 30.0};  // in widths
-constexpr double kTellsFocal = 1.5;  // px of motion, from which on the focal length shows
 constexpr std::size_t kFirstFocalPictures = 10, kFocalPictures = 40;
 constexpr int kMeanEvery = 5, kMeanLeast = 10;  // pictures
 constexpr double kMeanShare = 0.08;
 constexpr std::size_t kMostKinds = 6;
 constexpr int kSearchAgain = 5;  // pictures: one that is lost for longer is looked for everywhere so often
 constexpr int kCoarse = 2;
-constexpr double kStillThere = 0.6;  // of a picture's corners: with fewer, the next ones are told against a newer picture
-constexpr int kBeforeLeast = 10;     // pictures that only the one before tells, after which new corners are taken
-constexpr int kInMedian = 15;
-
-std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients) {
-  std::vector<cv::Mat> pyramid;
-  cv::buildOpticalFlowPyramid(picture, pyramid, {kWindow, kWindow}, kLevels, gradients);
-  return pyramid;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+constexpr double kStillThere = 0.6;    // of a picture's corners: with fewer, the next ones are told against a newer picture
+constexpr int kBeforeLeast = 10;       // pictures that only the one before tells, after which new corners are taken
+constexpr int kAllPixelsAtFirst = 25;  // pictures lost in turn, after which all pixels are asked as seldom as everything else
 
 /// The best few corners of each cell of a grid.
 std::vector<cv::Point2f> corners_of(const cv::Mat& picture, int most, double least) {
@@ -78,21 +65,6 @@ std::vector<cv::Point2f> corners_of(const cv::Mat& picture, int most, double lea
   return corners;
 }
 
-/// Pixel by pixel.
-cv::Mat median_picture(const std::vector<cv::Mat>& pictures) {
-  cv::Mat median(pictures.front().size(), CV_8UC1);
-  std::vector<std::uint8_t> levels(pictures.size());
-  for (int y = 0; y < median.rows; ++y) {
-    for (int x = 0; x < median.cols; ++x) {
-      for (std::size_t i = 0; i < pictures.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
-      const auto middle = levels.begin() + std::ssize(levels) / 2;
-      std::nth_element(levels.begin(), middle, levels.end());
-      median.at<std::uint8_t>(y, x) = *middle;
-    }
-  }
-  return median;
-}
-
 }  // namespace
 
 StandingScene::StandingScene(cv::Size picture, const std::optional<PinholeView>& known, const StandingSceneOptions& options)
@@ -106,6 +78,12 @@ StandingScene::StandingScene(cv::Size picture, const std::optional<PinholeView>&
     view_.focal = kUsualFocal * size_.width;
     view_.principal = {(size_.width - 1) / 2.0, (size_.height - 1) / 2.0};
   }
+}
+
+std::vector<cv::Mat> StandingScene::pyramid_of(const cv::Mat& picture, bool gradients) {
+  std::vector<cv::Mat> pyramid;
+  cv::buildOpticalFlowPyramid(picture, pyramid, {kWindow, kWindow}, kLevels, gradients);
+  return pyramid;
 }
 
 PinholeView StandingScene::view() const {
@@ -227,7 +205,7 @@ void StandingScene::settle_focal(const std::vector<std::vector<FollowedPlace>>& 
 
 /// While pictures come one by one: as soon as there are enough that tell it. Whether it has changed.
 bool StandingScene::learn_focal(const std::vector<FollowedPlace>& places, const SceneMotion& motion) {
-  if (focal_known_ || motion.turn.head<2>().norm() * view_.focal < kTellsFocal) return false;
+  if (focal_known_ || motion.turn.head<2>().norm() * view_.focal < options_.tells_focal) return false;
   for_focal_.push_back(places);
   if (for_focal_.size() != kFirstFocalPictures && for_focal_.size() != kFocalPictures) return false;
   settle_focal(for_focal_);
@@ -244,70 +222,28 @@ cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) co
   return result;
 }
 
-/// Whether a third of the other samples show what one of them does: they then have places and motions against it.
-bool StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
-  corners_.clear();
-  if (!take_corners(samples[anchor].shrunk)) return false;
-  last_ = {};
-  std::size_t found = 0;
-  for (Sampled& sample : samples) {
-    const auto pyramid = pyramid_of(sample.shrunk, false);
-    auto fit = find_from(corners_.front(), pyramid, last_, &sample.places);
-    if (!fit) fit = find_anywhere(sample.shrunk, pyramid);
-    sample.motion = fit ? std::optional(fit->motion) : std::nullopt;
-    if (!fit) continue;
-    last_ = fit->motion;
-    ++found;
+/// Into the mean of recent pictures; whether it has changed.
+bool StandingScene::remember(const cv::Mat& now, const SceneMotion& motion) {
+  if (++since_mean_ < kMeanEvery) return false;
+  since_mean_ = 0;
+  if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
+  ++in_mean_;
+  cv::accumulateWeighted(at_rest(now, motion), mean_, std::max(kMeanShare, 1.0 / in_mean_));
+  if (!looks_learned_ && in_mean_ == kMeanLeast) {
+    cv::Mat levels;
+    mean_.convertTo(levels, CV_8U);
+    looks_ = SceneLooks(levels);  // in which those who walk are fainter than in the first picture
   }
-  return 3 * found >= samples.size() + 2;  // it shows itself
+  return true;
 }
 
-bool StandingScene::learn(std::span<const Picture> pictures) {
-  std::vector<Sampled> samples;
-  for (const Picture& picture : pictures) {
-    if (picture.size() == picture_) samples.push_back({shrunk(picture), {}, {}});
-  }
-  bool found = false;
-  for (std::size_t quarter = 0; quarter < 4 && !found && !samples.empty(); ++quarter)
-    found = begin_with(samples, quarter * (samples.size() - 1) / 3);
-  if (!found) {
-    corners_.clear();
-    return false;
-  }
-  std::erase_if(samples, [](const Sampled& sample) { return !sample.motion; });
-  std::vector<std::vector<FollowedPlace>> telling;
-  for (const Sampled& sample : samples) {
-    if (sample.motion->turn.head<2>().norm() * view_.focal >= kTellsFocal) telling.push_back(sample.places);
-  }
-  if (!focal_known_ && !telling.empty()) settle_focal(telling);
-  if (telling.size() >= 5) focal_known_ = true;
-  SceneMotion rest;
-  std::array<std::vector<double>, 3> turns;
-  for (Sampled& sample : samples) {
-    if (const auto again = fit_motion(sample.places, view_, options_.agree)) sample.motion = again->motion;
-    for (int axis = 0; axis < 3; ++axis) turns[static_cast<std::size_t>(axis)].push_back(sample.motion->turn[axis]);
-  }
-  for (int axis = 0; axis < 3; ++axis) rest.turn[axis] = median_of(turns[static_cast<std::size_t>(axis)]);
-  std::vector<cv::Mat> laid_over;
-  const std::size_t step = (samples.size() + kInMedian - 1) / kInMedian;
-  for (std::size_t i = 0; i < samples.size(); i += step)
-    laid_over.push_back(at_rest(samples[i].shrunk, against(*samples[i].motion, rest)));
-  corners_.clear();
-  last_ = {};
-  return take_corners(median_picture(laid_over));
-}
-
-/// The mean of recent pictures, and new corners out of it where too few of the old ones are found again.
+/// New corners out of the mean of recent pictures where too few of the old ones are found again.
 void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
   Corners& corners = corners_[used_];
   const double share = static_cast<double>(fit.agreeing) / static_cast<double>(corners.at.size());
   agreed_ = agreed_ == 0 ? share : agreed_ + 0.05 * (share - agreed_);
   corners.agreed = std::max(corners.agreed, agreed_);
-  if (++since_mean_ < kMeanEvery) return;
-  since_mean_ = 0;
-  if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
-  ++in_mean_;
-  cv::accumulateWeighted(at_rest(now, fit.motion), mean_, std::max(kMeanShare, 1.0 / in_mean_));
+  if (!remember(now, fit.motion)) return;
   if (in_mean_ < kMeanLeast || agreed_ > options_.renew * corners.agreed) return;
   cv::Mat levels;
   mean_.convertTo(levels, CV_8U);
@@ -317,7 +253,7 @@ void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
 
 /// By the last picture whose motion is known: where somebody hides what the scene was known by, or has uncovered it, one picture
 /// still shows what the next one does. From time to time the scene's corners are taken anew then.
-std::optional<SceneFit> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+std::optional<SceneMotion> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
   if (before_picture_.empty()) return std::nullopt;
   if (before_.pyramid.empty()) {
     before_.at = corners_of(before_picture_, options_.corners, options_.least_corner);
@@ -334,35 +270,53 @@ std::optional<SceneFit> StandingScene::find_from_before(const cv::Mat& now, cons
     before_picture_ = now;
     before_motion_ = found->motion;
   }
-  if (++by_before_ < kBeforeLeast) return found;
+  if (++by_before_ < kBeforeLeast) return found->motion;
   by_before_ = 0;
   take_corners(at_rest(now, found->motion));
-  return found;
+  return found->motion;
+}
+
+/// Against the scene with all pixels.
+std::optional<SceneMotion> StandingScene::find_by_all_pixels(const cv::Mat& now) {
+  if (lost_run_ >= kAllPixelsAtFirst && lost_run_ % kSearchAgain != 0) return std::nullopt;
+  const auto found = looks_.find(SceneLooks(now), view_, options_.farthest * size_.width);
+  if (!found) return std::nullopt;
+  remember(now, found->motion);
+  return found->motion;
+}
+
+/// By corners, from where the camera was last or from anywhere.
+std::optional<SceneFit> StandingScene::find_by_corners(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+  if (corners_.empty()) return std::nullopt;
+  std::vector<FollowedPlace> places;
+  auto found = find_from(corners_[used_], pyramid, last_, &places);
+  if (!found) return lost_run_ % kSearchAgain == 0 ? find_anywhere(now, pyramid) : std::nullopt;
+  return learn_focal(places, found->motion) ? fit_motion(places, view_, options_.agree) : found;
 }
 
 std::optional<SceneMotion> StandingScene::find(const Picture& picture) {
   if (picture.size() != picture_) return std::nullopt;
   const cv::Mat now = shrunk(picture);
-  if (corners_.empty()) return take_corners(now) ? std::optional(SceneMotion{}) : std::nullopt;
-  const auto pyramid = pyramid_of(now, false);
-  std::vector<FollowedPlace> places;
-  auto found = find_from(corners_[used_], pyramid, last_, &places);
-  if (found) {
-    if (learn_focal(places, found->motion)) found = fit_motion(places, view_, options_.agree);
-  } else if (lost_run_ % kSearchAgain == 0) {
-    found = find_anywhere(now, pyramid);
+  if (corners_.empty() && looks_.empty()) {
+    SceneLooks first(now);
+    if (!take_corners(now) && !first.can_be_found()) return std::nullopt;
+    looks_ = std::move(first);
+    return SceneMotion{};
   }
-  const bool by_corners = found.has_value();
-  if (!found) found = find_from_before(now, pyramid);
-  lost_run_ = found ? 0 : lost_run_ + 1;
-  if (!found) return std::nullopt;
-  last_ = found->motion;
-  if (!by_corners) return last_;
+  const auto pyramid = pyramid_of(now, false);
+  const auto found = find_by_corners(now, pyramid);
+  std::optional<SceneMotion> motion = found ? std::optional(found->motion) : find_by_all_pixels(now);
+  const bool by_scene = motion.has_value();
+  if (!motion) motion = find_from_before(now, pyramid);
+  lost_run_ = motion ? 0 : lost_run_ + 1;
+  if (!motion) return std::nullopt;
+  last_ = *motion;
+  if (!by_scene) return last_;
   by_before_ = 0;
   before_ = {};
   before_picture_ = now;
   before_motion_ = last_;
-  keep_up(now, *found);
+  if (found) keep_up(now, *found);
   return last_;
 }
 

@@ -18,6 +18,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/picture.h"
+#include "marey/source/steady/scene_looks.h"
 #include "marey/source/steady/scene_motion.h"
 
 namespace marey::source::steady {
@@ -34,6 +35,7 @@ struct StandingSceneOptions {
   double share = 0.3;          ///< of the corners within the picture that agree, or it is lost
   double least_spread = 0.05;  ///< of the picture's height that those cover, as a standard deviation
   double renew = 0.5;          ///< share of what agreed with the corners when they were new: fewer, and new ones are taken
+  double tells_focal = 1.5;    ///< px of motion, from which on the focal length shows
 };
 
 class StandingScene {
@@ -64,6 +66,7 @@ class StandingScene {
     std::optional<SceneMotion> motion;
   };
 
+  static std::vector<cv::Mat> pyramid_of(const cv::Mat& picture, bool gradients);
   cv::Mat shrunk(const Picture& picture) const;
   bool take_corners(const cv::Mat& from);
   std::vector<FollowedPlace> follow(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
@@ -72,10 +75,16 @@ class StandingScene {
   std::optional<SceneFit> find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
                                     std::vector<FollowedPlace>* places = nullptr) const;
   std::optional<SceneFit> find_anywhere(const cv::Mat& now, const std::vector<cv::Mat>& pyramid);
-  bool begin_with(std::vector<Sampled>& samples, std::size_t anchor);
+  std::size_t begin_with(std::vector<Sampled>& samples, std::size_t anchor);
+  std::size_t begin_with_all_pixels(std::vector<Sampled>& samples, std::size_t anchor);
+  bool begin(std::vector<Sampled>& samples);
+  cv::Mat laid_over(const std::vector<Sampled>& samples, const SceneMotion& rest) const;
   void settle_focal(const std::vector<std::vector<FollowedPlace>>& pictures);
   bool learn_focal(const std::vector<FollowedPlace>& places, const SceneMotion& motion);
-  std::optional<SceneFit> find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid);
+  std::optional<SceneFit> find_by_corners(const cv::Mat& now, const std::vector<cv::Mat>& pyramid);
+  std::optional<SceneMotion> find_by_all_pixels(const cv::Mat& now);
+  std::optional<SceneMotion> find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid);
+  bool remember(const cv::Mat& now, const SceneMotion& motion);
   void keep_up(const cv::Mat& now, const SceneFit& fit);
   cv::Mat at_rest(const cv::Mat& now, const SceneMotion& motion) const;
   cv::Mat coarse(const cv::Mat& picture) const;
@@ -89,6 +98,8 @@ class StandingScene {
   std::vector<std::vector<FollowedPlace>> for_focal_;
   std::vector<Corners> corners_;  // the last few kinds of light; the first are from the beginning
   std::size_t used_ = 0;
+  SceneLooks looks_;            // of the beginning
+  bool looks_learned_ = false;  // from several pictures
   SceneMotion last_;
   Corners before_;          // of a picture of late whose motion was known
   cv::Mat before_picture_;  // that picture, until its corners are wanted

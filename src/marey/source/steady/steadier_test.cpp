@@ -1,7 +1,9 @@
 #include "marey/source/steady/steadier.h"
 
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -122,6 +124,48 @@ TEST(StandingScene, RestsInTheMiddleOfWhatItLearned) {
   const auto motion = standing.find(seen(scene, Vector<2>(9, 3), 500, 99));
   ASSERT_TRUE(motion);
   EXPECT_LT(seen_motion(*motion, standing.view(), {0, 0}), 2);
+}
+
+/// A small, dull picture of a road, shaken by `by`, on three lanes of which cars drive that cover a quarter of it.
+Picture traffic(const cv::Mat& road, const Vector<2>& by, int index) {
+  cv::Mat scene = road.clone(), picture;
+  for (int lane = 0; lane < 3; ++lane) {
+    for (int car = 0; car < 3; ++car) {
+      const int x = (index * (5 + lane) + 220 * car + 37 * ((3 * lane + 5 * car) % 4)) % 660 - 60,
+                length = 80 + 12 * ((lane + 2 * car) % 4);
+      cv::rectangle(scene, {x, 100 + 58 * lane, length, 44}, cv::Scalar(60 + (75 * (lane + car)) % 190), cv::FILLED);
+      cv::rectangle(scene, {x + 15 + 4 * car, 104 + 58 * lane, 46, 15}, cv::Scalar(car == 1 ? 120 : 20), cv::FILLED);
+    }
+  }
+  const cv::Matx23d window(1, 0, 100 + by.x(), 0, 1, 80 + by.y());
+  cv::warpAffine(scene, picture, window, {320, 240}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
+  cv::RNG random(static_cast<unsigned>(index) + 1);
+  cv::Mat noise(picture.size(), CV_16SC1), noisy;
+  random.fill(noise, cv::RNG::NORMAL, 0, 2.5);
+  cv::add(picture, noise, noisy, cv::noArray(), CV_8U);
+  return Picture(noisy);
+}
+
+TEST(StandingScene, KeepsSmallPicturesThatCarsFill) {
+  for (const auto& [size, seed] : {std::pair(4.0, 21U), std::pair(10.0, 22U)}) {
+    SCOPED_TRACE(testing::Message() << size << " px, seed " << seed);
+    cv::Mat road;
+    scene_of(seed)(cv::Rect(0, 0, 520, 400)).convertTo(road, CV_8U, 0.4, 75);
+    std::vector<Picture> samples;
+    for (int i = 0; i < 30; ++i) samples.push_back(traffic(road, shake(4 * i, size), 4 * i));
+    StandingScene standing({320, 240}, std::nullopt);
+    ASSERT_TRUE(standing.learn(samples));
+    std::optional<Vector<2>> rest;
+    for (int i = 0; i < 60; ++i) {
+      const auto motion = standing.find(traffic(road, shake(i, size), i));
+      ASSERT_TRUE(motion) << i;
+      const Vector<2> middle(159.5, 119.5),
+          moved = (moved_from_rest(*motion, standing.view()) * middle.homogeneous()).hnormalized();
+      const Vector<2> by = moved - middle + shake(i, size);
+      if (!rest) rest = by;
+      EXPECT_LT((by - *rest).norm(), 1) << i;
+    }
+  }
 }
 
 TEST(StandingScene, LearnsNothingWhereNothingStands) {

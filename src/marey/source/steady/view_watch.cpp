@@ -17,15 +17,18 @@ constexpr int kCellsAcross = 14, kCellsDown = 10;  // one corner of each
 constexpr int kFewestCorners = 12;
 constexpr float kCornerQuality = 0.003F;  // of the best corner
 constexpr int kFlowWindow = 13, kFlowLevels = 3;
-constexpr double kAgree = 0.5;                // px
-constexpr double kShareFollowed = 0.4;        // of the corners that were followed, which agree where the motion is known
-constexpr double kMuchThere = 0.7;            // of all corners
-constexpr double kShareOfAll = 0.25;          // of all corners
-constexpr double kSpread = 0.06;              // of the picture's height, standard deviation
-constexpr double kCutChange = 0.12;           // 1 - correlation of two thumbnails
-constexpr double kCutStandsOut = 4;           // times the usual change
-constexpr int kCell = 16;                     // px
-constexpr double kSomething = 5, kAlike = 5;  // levels: standard deviation; mean difference
+constexpr double kAgree = 0.5;                   // px
+constexpr double kShareFollowed = 0.4;           // of the corners that were followed, which agree where the motion is known
+constexpr double kMuchThere = 0.7;               // of all corners
+constexpr double kShareOfAll = 0.25;             // of all corners
+constexpr double kSpread = 0.06;                 // of the picture's height, standard deviation
+constexpr double kCutChange = 0.12;              // 1 - correlation of two thumbnails
+constexpr double kCutStandsOut = 4;              // times the usual change
+constexpr double kCutMore = 1.2, kCutAlone = 2;  // times the change before; after
+constexpr double kBlack = 24, kWhite = 232;      // levels: what is empty and so dark, or so bright, is in any scene
+constexpr double kStillShownOfAll = 0.3;         // of the other cells
+constexpr int kCell = 16;                        // px
+constexpr double kSomething = 5, kAlike = 5;     // levels: standard deviation; mean difference
 constexpr double kStillShown = 0.15;  // of the cells: that much stays where somebody steps aside, and nothing of another scene
 constexpr double kLost_s = 2;         // s without a motion, after which the watch begins anew
 constexpr double kStood_s = 2;        // s over which the place of a camera that shakes is the mean
@@ -36,21 +39,28 @@ constexpr double kMostMoving = 0.25;  // of the time, in one piece: more is no s
 constexpr int kFewestScrolling = 12;  // corners that move, and as many that stand
 constexpr double kStands = 0.25, kScrolls = 1.0, kAside = 0.3;  // px
 
-/// Share of the cells with something in them in either picture that are alike in both.
-double unchanged(const cv::Mat& a, const cv::Mat& b) {
-  int with_something = 0, alike = 0;
+/// Whether much of one picture is in the other, at the same place: of the cells with something in them, or of all that are neither
+/// black nor white. Before a lawn most cells are empty, and large people are in all others.
+bool still_shown(const cv::Mat& a, const cv::Mat& b) {
+  int with_something = 0, alike = 0, any = 0, any_alike = 0;
   for (int y = 0; y + kCell <= a.rows; y += kCell) {
     for (int x = 0; x + kCell <= a.cols; x += kCell) {
       const cv::Rect cell(x, y, kCell, kCell);
-      cv::Scalar mean, in_a, in_b;
-      cv::meanStdDev(a(cell), mean, in_a);
-      cv::meanStdDev(b(cell), mean, in_b);
-      if (std::max(in_a[0], in_b[0]) < kSomething) continue;
-      ++with_something;
-      alike += cv::norm(a(cell), b(cell), cv::NORM_L1) < kAlike * kCell * kCell ? 1 : 0;
+      cv::Scalar mean_a, mean_b, in_a, in_b;
+      cv::meanStdDev(a(cell), mean_a, in_a);
+      cv::meanStdDev(b(cell), mean_b, in_b);
+      const bool something = std::max(in_a[0], in_b[0]) >= kSomething;
+      const int same = cv::norm(a(cell), b(cell), cv::NORM_L1) < kAlike * kCell * kCell ? 1 : 0;
+      if (something) {
+        ++with_something;
+        alike += same;
+      }
+      if (!something && (std::max(mean_a[0], mean_b[0]) < kBlack || std::min(mean_a[0], mean_b[0]) > kWhite)) continue;
+      ++any;
+      any_alike += same;
     }
   }
-  return with_something == 0 ? 0 : static_cast<double>(alike) / with_something;
+  return alike > kStillShown * with_something || any_alike > kStillShownOfAll * any;
 }
 
 cv::Mat shrunk_to(const cv::Mat& luma, int across) {
@@ -138,31 +148,43 @@ void ViewWatch::add(const Frame& frame) {
     shrink_ = static_cast<double>(size_.width) / small.cols;
     lens_ = {1.5 * small.cols, {(small.cols - 1) / 2.0, (small.rows - 1) / 2.0}};
     previous_ = {};
+    doubt_s_.reset();
   }
-  const bool cut = is_cut(frame.picture);
-  if (cut) cuts_.push_back(time);
+  const bool cut = was_cut(frame.picture, time);
   if (cut || other_size) {
     begin(shrunk_to(frame.picture.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
-  } else if (time >= next_s_) {
+  } else if (time >= next_s_ && !doubt_s_) {
     follow(shrunk_to(frame.picture.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
   }
   previous_ = frame.picture;
 }
 
-/// It differs from the one before it by far more than pictures did, and nothing of that one can be followed into it.
-bool ViewWatch::is_cut(const Picture& picture) {
+/// Whether the picture before this one was the first of another scene: it differs from the one before it by far more than pictures
+/// do, those next to it too, for people near the camera change picture after picture; and nothing can be followed into it.
+bool ViewWatch::was_cut(const Picture& picture, double time) {
   const cv::Mat thumb = thumb_of(picture.luma());
   const double change = previous_.empty() ? 0 : change_between(previous_thumb_, thumb);
   previous_thumb_ = thumb;
-  const bool stands_out = change > kCutChange && change > kCutStandsOut * usual_change_;
+  const double before = std::exchange(previous_change_, change);
+  const bool stands_out = change > kCutChange && change > kCutStandsOut * usual_change_ && change > kCutMore * before;
   usual_change_ += (std::min(change, kCutChange) - usual_change_) * 0.1;
-  if (!stands_out) return false;
+  const std::optional<double> doubt = std::exchange(doubt_s_, std::nullopt);
+  if (doubt && before > kCutAlone * change) {
+    cuts_.push_back(*doubt);
+    return true;
+  }
+  if (stands_out && shows_another_scene(picture)) doubt_s_ = time;
+  return false;
+}
+
+/// Than the picture before it.
+bool ViewWatch::shows_another_scene(const Picture& picture) {
   View before;
   before.small = shrunk_to(previous_.luma(), kAcross);
   const cv::Mat now = shrunk_to(picture.luma(), kAcross);
-  if (unchanged(before.small, now) > kStillShown) return false;
+  if (still_shown(before.small, now)) return false;
   const std::vector<cv::Mat> pyramid = pyramid_of_small(now, false);
   return !moved(before, pyramid) && !moved(anchor_, pyramid);
 }

@@ -1,10 +1,11 @@
 // Whether a camera that ought to stand does, found out from its pictures as they pass: that it shakes, is turned or zooms, that the
 // video is cut, that it shows a screen that is scrolled. Cheap enough to look at every recording, live ones too: pictures are
-// shrunk to a few hundred pixels across, corners are followed five times a second, and what a cut changes is asked of each picture
+// shrunk to a few hundred pixels across, corners are followed three times a second, and what a cut changes is asked of each picture
 // at 32 pixels across.
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -38,6 +39,9 @@ class ViewWatch {
   /// Frames come in the order of their time; of one camera.
   void add(const Frame& frame);
   ViewReport report() const;
+  /// The same as in the report, which takes longer.
+  const std::vector<double>& cuts() const { return cuts_; }
+  std::int64_t looked_at() const { return std::ssize(places_); }
 
  private:
   /// How far the scene has moved at the picture's middle, shrunk px, and how much larger it is seen, ln.
@@ -60,7 +64,8 @@ class ViewWatch {
   };
 
   void begin(const cv::Mat& small, double time);
-  bool is_cut(const Picture& picture);
+  bool was_cut(const Picture& picture, double time);
+  bool shows_another_scene(const Picture& picture);
   void follow(const cv::Mat& small, double time);
   struct Motion {
     Shift by;
@@ -77,7 +82,8 @@ class ViewWatch {
   View anchor_, last_;  // what pictures are compared with first; the last one whose motion was known
   Picture previous_;
   cv::Mat previous_thumb_;
-  double usual_change_ = 0;
+  double usual_change_ = 0, previous_change_ = 0;
+  std::optional<double> doubt_s_;  // when the last picture came, where it may be the first of another scene
   double next_s_ = 0, lost_since_s_ = -1;
   int segment_ = 0;
   std::vector<double> cuts_;

@@ -85,6 +85,26 @@ TEST(ViewWatch, SaysNothingOfSomebodyWhoLeavesAtOnceFromBeforeAnEmptyWall) {
   EXPECT_FALSE(report.turn);
 }
 
+TEST(ViewWatch, DoesNotTakeLargePeopleBeforeALawnForCuts) {
+  for (const double rate : {3.0, 5.0, 10.0, 25.0}) {
+    SCOPED_TRACE(rate);
+    const ViewReport report = watched(
+        80, rate, [](double) { return Seen{}; },
+        [](cv::Mat& picture, double time) {
+          picture.convertTo(picture, CV_8U, 0.03, 95);  // a lawn, with nothing to hold on to
+          for (int i = 0; i < 4; ++i) {
+            const int x = static_cast<int>(std::fmod(60 * (1 + 0.3 * i) * time + 140 * i, kWide + 160.0)) - 80;
+            const int swing = static_cast<int>(25 * std::sin(6 * time + i));
+            cv::rectangle(picture, {x - 32, 10, 64, 140}, cv::Scalar(i % 2 == 0 ? 235 : 60), cv::FILLED);
+            cv::rectangle(picture, {x - 32, 150, 64, 40}, cv::Scalar(i % 2 == 0 ? 40 : 220), cv::FILLED);
+            cv::line(picture, {x - 12, 190}, {x - 12 + swing, 290}, cv::Scalar(210), 16);
+            cv::line(picture, {x + 12, 190}, {x + 12 - swing, 290}, cv::Scalar(30), 16);
+          }
+        });
+    EXPECT_TRUE(report.cuts.empty());
+  }
+}
+
 TEST(ViewWatch, SaysNothingWhereALampIsSwitchedOn) {
   const ViewReport report = watched(
       100, 10, [](double) { return Seen{}; },

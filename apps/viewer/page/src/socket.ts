@@ -1,0 +1,56 @@
+// The page's socket to the program that shows it: opened again when it was lost, with a sentence where it cannot be had.
+const AGAIN_MS = 2000;
+
+export interface Heard {
+  opened(): void;
+  text(line: string): void;
+  bytes(data: ArrayBuffer): void;
+  lost(): void;
+  said(sentence: string): void;
+}
+
+export class Socket {
+  private socket: WebSocket | null = null;
+  private ever = false;
+
+  constructor(private heard: Heard, private live: boolean) {}
+
+  connect(): void {
+    if (typeof WebSocket === "undefined") {
+      this.heard.lost();
+      this.heard.said(`This browser has no WebSockets${this.without("take a current one")}`);
+      return;
+    }
+    const socket = new WebSocket(`ws://${location.host}/socket`);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.socket = socket;
+      this.ever = true;
+      this.heard.said("");
+      this.heard.opened();
+    };
+    socket.onmessage = ({ data }) => (typeof data === "string" ? this.heard.text(data) : this.heard.bytes(data as ArrayBuffer));
+    socket.onclose = () => {
+      if (this.socket === socket) this.heard.said("The program that showed this has ended.");
+      else if (!this.ever) this.heard.said(`The program cannot be heard: a proxy or an extension may let no WebSocket through${this.without("open the page without it")}`);
+      this.socket = null;
+      this.heard.lost();
+      setTimeout(() => this.connect(), AGAIN_MS);
+    };
+  }
+
+  get open(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  /** False where nobody is there to hear it. */
+  say(line: string): boolean {
+    if (!this.socket || !this.open) return false;
+    this.socket.send(line);
+    return true;
+  }
+
+  private without(remedy: string): string {
+    return this.live ? `, by which a live run comes: ${remedy}.` : `; the recording is shown, but neither its film nor edits: ${remedy} for those.`;
+  }
+}
