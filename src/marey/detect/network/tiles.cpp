@@ -98,10 +98,12 @@ std::vector<cv::Rect> tiles_over(cv::Size picture, const HeightAt& height_at, do
   std::vector<cv::Rect> tiles;
   const auto range = height_at ? heights_over(picture, height_at) : std::nullopt;
   if (!range) {
-    const double largest = options.share * std::max(picture.width, picture.height);
+    const double largest = options.share * std::min(picture.width, picture.height);
     for (double height = std::min(usual, largest); height < largest; height *= options.levels)
       add_tiles(picture, {}, height, options, tiles);
     add_tiles(picture, {}, largest, options, tiles);
+    if (picture.width != picture.height)  // one who fills the picture is too large for its shorter side
+      add_tiles(picture, {}, options.share * std::max(picture.width, picture.height), options, tiles);
     return tiles;
   }
   const double ratio = range->second / range->first;
