@@ -15,7 +15,7 @@ using track::ball::BallMoment;
 using track::ball::BallState;
 
 constexpr double kBeyondLines = 12;  // m beyond where people count; farther out nothing is the ball
-constexpr double kOnLines = 1;       // m beyond the lines that count as within them
+constexpr double kOnLines = 0.2;     // m beyond the lines that count as within them: farther out officials and spectators walk
 
 /// Who is where, at each moment.
 void add_people(const Recording& recording, const reconstruct::GroundArea& area, std::vector<BallMoment>& moments) {
