@@ -64,7 +64,8 @@ def main():
         words = line(random_, vocabulary)
         done = subprocess.run([marey, *(os.fsencode(word) for word in words)], capture_output=True, cwd=folder, timeout=60, stdin=subprocess.DEVNULL,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
-        said = done.stderr.decode(errors="replace")
+        # A page's address is told before its cameras are opened.
+        said = "".join(text for text in done.stderr.decode(errors="replace").splitlines(True) if not text.startswith("marey: open http"))
         left = sorted(path.name for path in folder.iterdir())
         wrong = []
         if done.returncode not in (0, 1, 2):

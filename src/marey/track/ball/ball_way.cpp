@@ -47,22 +47,26 @@ double top_speed(const Piece& piece, const std::vector<BallMoment>& moments, con
 }
 
 bool is_sure(const Piece& piece, const std::vector<BallMoment>& moments, const std::vector<BallStep>& steps,
-             const std::vector<BallState>& states, const BallWayOptions& options) {
+             const std::vector<BallState>& states, const GroundRegion& pitch, const BallWayOptions& options) {
   double evidence = 0, way = 0;
+  int seen = 0, beyond = 0;  // moments
   const double speed = top_speed(piece, moments, states);
   for (std::size_t i = piece.first; i < piece.end; ++i) {
     evidence += steps[i].evidence;
+    seen += steps[i].evidence > 0 ? 1 : 0;
+    beyond += steps[i].evidence > 0 && pitch && !pitch(states[i].belief.place().head<2>()) ? 1 : 0;
     way = std::max(way, (states[i].belief.place() - states[piece.first].belief.place()).norm());
   }
-  return way >= options.least_way && evidence >= (speed > options.as_people ? options.least_evidence : options.least_slow);
+  const bool plain = speed > options.as_people && 2 * beyond < seen;
+  return way >= options.least_way && evidence >= (plain ? options.least_evidence : options.least_slow);
 }
 
 /// Moments at which something was seen that is surely the ball.
 std::vector<bool> seen_surely(const std::vector<BallMoment>& moments, const std::vector<BallStep>& steps,
-                              const std::vector<BallState>& states, const BallWayOptions& options) {
+                              const std::vector<BallState>& states, const GroundRegion& pitch, const BallWayOptions& options) {
   std::vector<bool> sure(steps.size(), false);
   for (const Piece& piece : free_pieces(steps)) {
-    if (!is_sure(piece, moments, steps, states, options)) continue;
+    if (!is_sure(piece, moments, steps, states, pitch, options)) continue;
     for (std::size_t i = piece.first; i < piece.end; ++i) sure[i] = steps[i].evidence > 0;
   }
   return sure;
@@ -121,7 +125,7 @@ std::vector<std::optional<BallState>> ball_way(std::vector<BallMoment>& moments,
   take();
   moments.resize(steps.size());
   const std::vector<BallState> states = smooth_ball(moments, steps, *views, options.search.motion);
-  const std::vector<bool> known = told(moments, steps, seen_surely(moments, steps, states, options), options);
+  const std::vector<bool> known = told(moments, steps, seen_surely(moments, steps, states, area.pitch, options), options);
   std::vector<std::optional<BallState>> way(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool possible = !area.possible || area.possible(states[i].belief.place().head<2>());

@@ -19,7 +19,7 @@ struct BallWayOptions {
   BallRestOptions rest;
   double least_evidence = 30;  ///< logarithm: of how much likelier the ball than false things a roll or a flight must be,
   double least_way = 1.5;      ///< and m that it must get
-  double as_people = 4;        ///< m/s; what is no faster may be somebody far away whom nobody detected,
+  double as_people = 4;        ///< m/s; what is no faster, or mostly beyond the lines, may be somebody whom nobody detected,
   double least_slow = 120;     ///< and needs that much evidence
   double unseen = 1.5;         ///< s without anybody having seen it well, after which nobody knows where it is,
   double unseen_held = 4;      ///< but where the same person has it all the while
