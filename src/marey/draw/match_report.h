@@ -8,7 +8,7 @@
 #include "marey/core/appearance.h"
 #include "marey/core/geometry.h"
 #include "marey/draw/page.h"
-#include "marey/draw/pitch_svg.h"
+#include "marey/draw/pitch_frame.h"
 
 namespace marey::draw {
 
