@@ -5,6 +5,7 @@ Usage: football_film_test.py MAREY ROOT [unittest options]; the match is looked 
 
 import collections
 import csv
+import math
 import os
 import pathlib
 import re
@@ -38,9 +39,7 @@ class FootballFilm(unittest.TestCase):
         self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}\n{done.stderr}")
 
     def test_the_page_as_it_is_written(self):
-        pages = blocks(ROOT / "docs" / "football.md")
-        rig = next(block for block in pages if block.startswith("[[camera]]"))
-        (self.folder / "rig.toml").write_text(rig)
+        pages = self.rig_of_the_page()
         lines = [line for block in pages for line in block.splitlines()
                  if line.startswith("marey ") and "--elements" not in line]  # of another recording
         self.assertEqual([line.split()[1] for line in lines], ["calibrate", "track", "measure"])
@@ -51,6 +50,26 @@ class FootballFilm(unittest.TestCase):
         for name in ("overlays/left.mp4", "overlays/right.mp4", "above.mp4", "pictures/left.jpg", "report/report.html"):
             self.assertGreater((self.folder / name).stat().st_size, 10_000, name)
         self.marey("marey convert match.csv match.dat --rig pitch.toml")
+
+    def test_the_ball_is_found(self):
+        """In the left camera's frames in which it was looked at by eye: on the grass, before trees in the air twice, and coming down."""
+        self.rig_of_the_page()
+        self.marey("marey calibrate pitch rig.toml --points left=left_keypoints.xml --points right=right_keypoints.xml --size 105x68 -o pitch.toml")
+        self.marey("marey track pitch.toml --ground --ball --format mot --camera left -o left.txt")
+        boxes = collections.defaultdict(list)
+        for line in (self.folder / "left.txt").read_text().splitlines():
+            frame, _, left, top, width, height = map(float, line.split(",")[:6])
+            if max(width, height) < 30:  # px: nobody is as small here
+                boxes[int(frame) - 1].append((left + width / 2, top + height / 2))
+        self.assertGreaterEqual(len(boxes), 45)
+        for frame, ball in {27: (2696, 1309), 200: (2849, 640), 222: (2141, 679), 234: (1718, 879)}.items():
+            self.assertEqual(len(boxes[frame]), 1, frame)
+            self.assertLess(math.dist(boxes[frame][0], ball), 15, frame)
+
+    def rig_of_the_page(self):
+        pages = blocks(ROOT / "docs" / "football.md")
+        (self.folder / "rig.toml").write_text(next(block for block in pages if block.startswith("[[camera]]")))
+        return pages
 
     def the_cameras_are_out_of_step(self):
         """By the steps of a runner the right camera was started four frames after the left one."""
