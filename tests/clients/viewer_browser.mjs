@@ -15,7 +15,7 @@ export async function browse(page_folder, phone) {
   const text = (selector) => page.textContent(selector);
   /** Asked again and again, for a slow machine draws late. */
   async function eventually(what, holds) {
-    for (const end = Date.now() + 20000; Date.now() < end; await sleep(60)) if (await holds()) return;
+    for (const end = Date.now() + 60000; Date.now() < end; await sleep(60)) if (await holds()) return;
     assert.fail(what);
   }
   /** The same of something in the page, whose policy forbids what Playwright's own waiting does. */
