@@ -108,6 +108,16 @@ class Keypoints(unittest.TestCase):
         with open(self.folder / "alone.csv") as file:
             self.assertGreater(len(list(file)), 33 * 40)
 
+    def test_where_nobody_is_found_the_other_way_is_named(self):
+        self.need_models()
+        (self.folder / "still").mkdir()
+        for frame in range(20):
+            (self.folder / "still" / f"{frame:02}.pgm").write_bytes(b"P5 160 120 255\n" + bytes(range(160)) * 120)
+        done = marey(["track", "still", "--rate", "10", "--targets", "keypoints", "--model", "lite", "-o", "still.csv"], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("nobody was found", done.stderr)
+        self.assertIn("--without-background finds people who fill the picture", done.stderr)
+
     def test_what_holds_no_points_says_so(self):
         self.need_models()
         done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--every", "8", "-o", "boxes.txt"], self.folder)

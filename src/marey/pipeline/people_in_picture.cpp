@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -213,7 +214,11 @@ class PeopleInPicture final : public Stage {
     summary.left_out["too_brief"] = too_brief;
     report_standing(summary);
     report_counts(summary);
-    if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
+    if (auto why = why_nobody(summary)) {
+      if (options_.keypoints && std::holds_alternative<detect::people::PeopleDetectorOptions>(options_.detector))
+        *why += "; --without-background finds people who fill the picture or stand there from the beginning, by a network";
+      summary.warnings.push_back(std::move(*why));
+    }
   }
 
  private:

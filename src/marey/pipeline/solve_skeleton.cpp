@@ -274,18 +274,13 @@ HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& 
   }
 }
 
-/// The name of a person whose labels begin with this.
-std::string person_named(const std::string& prefix) {
-  return prefix.empty() ? prefix : prefix.substr(0, prefix.size() - 1);
-}
-
 /// The skeleton of a person whose body keypoints are recorded; nothing where none are.
 std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::string& recording, SolveOptions& options) {
   const auto reader = open_markers(recording, options);
   const std::vector<std::string> people = people_with_keypoints(reader->tracks());
   if (people.empty()) return std::nullopt;
   std::vector<std::string> names;
-  for (const std::string& prefix : people) names.push_back(person_named(prefix));
+  for (const std::string& prefix : people) names.push_back(prefix.substr(0, prefix.find(':')));
   const auto found = options.person.empty() ? names.begin() : std::find(names.begin(), names.end(), options.person);
   if (found == names.end())
     throw Error("{}: has no keypoints of a person {}; there are {}", recording, options.person, fmt::join(names, ", "));
