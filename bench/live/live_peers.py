@@ -35,7 +35,7 @@ def scenes(data, work, which):
             yield f"PETS, {100 * missed:.0f} % missed", weak, truth, 7.0
 
 
-def run_peer(peer, detections, rate, out):
+def run_peer(peer, detections, rate, out, peers=PEERS):
     import numpy
     import supervision
     import trackers
@@ -44,7 +44,7 @@ def run_peer(peer, detections, rate, out):
         frame, _, left, top, width, height, score = map(float, line.split(",")[:7])
         boxes[int(frame)].append((left, top, left + width, top + height, score))
     more = {"enable_cmc": False} if peer == "BoT-SORT" else {}  # there are no pictures
-    tracker = getattr(trackers, PEERS[peer])(frame_rate=rate, **more)
+    tracker = getattr(trackers, peers[peer])(frame_rate=rate, **more)
     with open(out, "w") as file:
         for frame in range(1, max(boxes) + 1):
             rows = numpy.array(boxes.get(frame, []), dtype=float).reshape(-1, 5)
