@@ -44,6 +44,11 @@ struct AnyFilter<D>::CallsOf {
     read(filter, estimate);
   }
 
+  static void scale_noise(void* model, double factor) {
+    F& filter = *static_cast<F*>(model);
+    if constexpr (requires { filter.scale_noise(factor); }) filter.scale_noise(factor);
+  }
+
   static void correct(void* model, const Vector<D>& z, const Matrix<D>& R, Estimate& estimate) {
     F& filter = *static_cast<F*>(model);
     filter.correct(z, R);
@@ -87,7 +92,8 @@ struct AnyFilter<D>::CallsOf {
                                   .gate_distance = gate_distance,
                                   .search_reach = search_reach,
                                   .log_likelihood = log_likelihood,
-                                  .predict_unseen = predict_unseen};
+                                  .predict_unseen = predict_unseen,
+                                  .scale_noise = scale_noise};
 };
 
 template <int D>

@@ -46,6 +46,9 @@ class AnyFilter {
   void predict_unseen(double dt) { calls_->predict_unseen(model_, dt, estimate_); }
   void correct(const Vector<D>& z, const Matrix<D>& R) { calls_->correct(model_, z, R, estimate_); }
 
+  /// What drives the target becomes `factor` times as strong as in the options; without effect where the method has no such noise.
+  void scale_noise(double factor) { calls_->scale_noise(model_, factor); }
+
   const Vector<D>& position() const { return estimate_.position; }
   const Vector<D>& velocity() const { return estimate_.velocity; }
   const Matrix<D>& covariance() const { return estimate_.covariance; }
@@ -77,6 +80,7 @@ class AnyFilter {
     double (*search_reach)(const void* model, double variance);
     double (*log_likelihood)(const void* model, const Vector<D>& z, const Matrix<D>& R);
     void (*predict_unseen)(void* model, double dt, Estimate& estimate);
+    void (*scale_noise)(void* model, double factor);
   };
 
   template <typename F>

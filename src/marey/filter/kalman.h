@@ -41,8 +41,12 @@ class Kalman {
       : position_(z),
         Ppp_(R),
         Pvv_(options.initial_speed * options.initial_speed * Matrix<D>::Identity()),
+        acceleration_noise_(options.acceleration_noise),
         noise_density_(options.acceleration_noise * options.acceleration_noise),
         gate_sigmas_(options.gate_sigmas) {}
+
+  /// The noise of the acceleration becomes `factor` times that of the options.
+  void scale_noise(double factor) { noise_density_ = std::pow(factor * acceleration_noise_, 2); }
 
   void predict(double dt) {
     position_ += dt * velocity_;  // eq. 4
@@ -89,6 +93,7 @@ class Kalman {
   Matrix<D> Ppp_;  // covariance of position; Ppv_ of position with velocity; Pvv_ of velocity
   Matrix<D> Ppv_ = Matrix<D>::Zero();
   Matrix<D> Pvv_;
+  double acceleration_noise_;
   double noise_density_;
   double gate_sigmas_;
 };

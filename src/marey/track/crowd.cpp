@@ -17,13 +17,12 @@ bool outgrows(const Box& region, const Target& target) {
 
 }  // namespace
 
-void Crowd::mark_crowded(std::span<Target> targets, const Vector<2>& camera_shift) {
-  camera_shift_ = camera_shift;
+void Crowd::mark_crowded(std::span<Target> targets) {
   centres_.clear();
   widest_ = 0;
   for (Target& target : targets) {
     target.crowded = false;
-    centres_.push_back(in_view(target));
+    centres_.push_back(target.filter.position());
     if (target.size) widest_ = std::max(widest_, target.unit);
   }
   if (widest_ <= 0) return;
@@ -31,7 +30,7 @@ void Crowd::mark_crowded(std::span<Target> targets, const Vector<2>& camera_shif
   for (Target& target : targets) {
     if (!target.size) continue;
     const Box box = box_of(target);
-    neighbours_.for_each_near(in_view(target), (target.unit + widest_) / 2, [&](int index) {
+    neighbours_.for_each_near(target.filter.position(), (target.unit + widest_) / 2, [&](int index) {
       const Target& other = targets[index];
       if (other.id == target.id || !other.size || target.crowded) return;
       target.crowded = geometry::intersection(box, box_of(other)).area() > kCrowdedShare * box.area();
@@ -61,7 +60,7 @@ void Crowd::mark_hidden(std::span<Target> targets, std::span<const Observation<2
     if (target.observation || !target.size) continue;
     const Box box = box_of(target);
     const auto covers = [&](const Box& other) { return geometry::intersection(box, other).area() > kCoveredShare * box.area(); };
-    neighbours_.for_each_near(in_view(target), target.unit / 2 + widest_, [&](int index) {
+    neighbours_.for_each_near(target.filter.position(), target.unit / 2 + widest_, [&](int index) {
       const Target& other = targets[index];
       if (target.hidden || !other.observation || !other.size) return;
       const std::optional<Box>& region = seen[*other.observation].box;

@@ -15,9 +15,9 @@ namespace marey::track {
 /// Which targets overlap in the image: which crowd each other, which hide behind others, and which have merged into one region.
 class Crowd {
  public:
-  /// A target whose box meets another's may be seen in part, or as one with it: its size then says less. `camera_shift`: by how far
-  /// the camera has moved the picture, px. Comes first in a frame; the other functions see the targets where they are now.
-  void mark_crowded(std::span<Target> targets, const Vector<2>& camera_shift);
+  /// A target whose box meets another's may be seen in part, or as one with it: its size then says less. Comes first in a frame;
+  /// the other functions see the targets where they are now.
+  void mark_crowded(std::span<Target> targets);
 
   /// What becomes of a target that is held in a region together with others: moved at once, so that the next region finds it there.
   using Hold = std::function<void(Target& target, const Observation<2>& region)>;
@@ -33,11 +33,9 @@ class Crowd {
   double widest() const { return widest_; }
 
  private:
-  Vector<2> in_view(const Target& target) const { return target.filter.position() + camera_shift_; }
-  Box box_of(const Target& target) const { return target.size->around(in_view(target)); }
+  static Box box_of(const Target& target) { return target.size->around(target.filter.position()); }
   void find_covered(std::span<const Target> targets, const Box& region);
 
-  Vector<2> camera_shift_ = Vector<2>::Zero();
   std::vector<Vector<2>> centres_;
   assign::PointGrid<2> neighbours_;
   double widest_ = 0;

@@ -36,27 +36,34 @@ bool has_extent(const Observation<2>& observation) {
   return observation.box && !observation.box->empty();
 }
 
+double acceleration_of(const TrackerOptions& options) {
+  const auto* kalman = std::get_if<filter::KalmanOptions>(&options.filter);
+  return kalman != nullptr ? kalman->acceleration_noise : 1;
+}
+
 }  // namespace
 
 FilterTracker::FilterTracker(const TrackerOptions& options)
     : options_(options),
       size_options_{.noise = options.size_noise, .drift = options.size_drift},
-      gate_(geometry::chi_square_quantile(2, options.gate_probability)) {}
+      gate_(geometry::chi_square_quantile(2, options.gate_probability)),
+      noise_({.place = options.place_noise, .acceleration = acceleration_of(options), .size = options.size_noise, .drift = options.size_drift}),
+      first_acceleration_(acceleration_of(options)) {}
 
 std::span<const Track<2>> FilterTracker::step(Timestamp now, std::span<const CameraObservations<2>> views) {
   assert(views.size() == 1 && "an image is one camera's");
-  const Seen seen = views.front().seen;
   check_time(now, now_);
-  check_finite(now, seen);
+  check_finite(now, views.front().seen);
   predict_to(now);
-  follow_camera(seen);
-  crowd_.mark_crowded(targets_, camera_shift_);
+  const Seen seen = in_scene(views.front().seen);
+  crowd_.mark_crowded(targets_);
   match_gated(seen, options_.evidence.confident, std::numeric_limits<double>::infinity());
   match_gated(seen, options_.evidence.least_score, options_.evidence.confident);
   match_overlapping(seen);
   match_reappeared(seen);
   keep_merged(seen);
   correct(seen);
+  learn_noise();
   count_misses();
   retire_lost();
   start_unmatched(seen);
@@ -88,29 +95,70 @@ void FilterTracker::predict_to(Timestamp now) {
   }
 }
 
-/// Filters run in coordinates that stand still while the camera turns and shakes: pixels less `camera_shift_`.
+/// What was seen, in coordinates that stand still while the camera pans, zooms and shakes: all that follows is in these.
+FilterTracker::Seen FilterTracker::in_scene(Seen seen) {
+  if (options_.steady_camera) return seen;
+  follow_camera(seen);
+  const geometry::Similarity2 scene_from_view = camera_.view_from_scene().inverse();
+  const double scale = scene_from_view.scale();
+  scene_seen_.assign(seen.begin(), seen.end());
+  for (Observation<2>& one : scene_seen_) {
+    one.value = scene_from_view * one.value;
+    one.covariance *= scale * scale;
+    if (one.box) one.box = scene_from_view * *one.box;
+  }
+  return scene_seen_;
+}
+
 void FilterTracker::follow_camera(Seen seen) {
-  if (options_.steady_camera) return;
+  camera_.predict(dt_);
   expected_.clear();
   sightings_.clear();
+  const geometry::Similarity2& view_from_scene = camera_.view_from_scene();
+  const double scale = view_from_scene.scale();
   for (const Target& target : targets_) {
-    if (target.confirmed() && target.size && was_seen_recently(target)) expected_.push_back({in_view(target), target.unit});
+    if (!target.confirmed() || !target.size || !was_seen_recently(target)) continue;
+    const double size = target.size->height();
+    const double noise = options_.place_noise * size;
+    const double variance = target.filter.covariance().trace() / 2 + noise * noise;
+    expected_.push_back({view_from_scene * target.filter.position(), scale * size, scale * scale * variance});
   }
   for (const Observation<2>& one : seen) {
     if (has_extent(one) && one.score >= options_.evidence.confident) sightings_.push_back({one.box->centre(), one.box->height});
   }
-  camera_shift_ += common_motion(expected_, sightings_);
+  camera_.correct(expected_, sightings_);
+}
+
+/// How boxes err and people move, from those seen in this frame.
+void FilterTracker::learn_noise() {
+  if (!options_.learn_noise) return;
+  for (Target& target : targets_) {
+    BoxTrail::Entry entry;
+    const Observation<2>* one = target.observation ? &scene_seen_[*target.observation] : nullptr;
+    if (one != nullptr && has_extent(*one)) {
+      entry = {true, one->box->centre(), static_cast<float>(std::log(one->box->width)),
+               static_cast<float>(std::log(one->box->height))};
+    }
+    target.trail.add(entry);
+    noise_.see(target.trail, dt_);
+  }
+  const BoxNoiseLevels levels = noise_.levels();
+  options_.place_noise = levels.place;
+  size_options_.noise = levels.size;
+  size_options_.drift = levels.drift;
+  noise_scale_ = levels.acceleration / first_acceleration_;
+  for (Target& target : targets_) target.filter.scale_noise(noise_scale_);
 }
 
 /// Where the observation puts the target: the centre of its box, if need be corrected for a size that is not believed.
 Vector<2> FilterTracker::place_of(const Observation<2>& observation, const Target& target) const {
-  if (has_extent(observation)) return place_in(*observation.box, target, size_options_, camera_shift_);
-  return observation.value - camera_shift_;
+  return has_extent(observation) ? place_in(*observation.box, target, size_options_) : observation.value;
 }
 
 Matrix<2> FilterTracker::noise_of(const Observation<2>& observation, const Target& target) const {
   Matrix<2> R = observation.covariance;
   if (!target.size || !observation.box) return R;
+  if (options_.learn_noise) R.setZero();
   const bool believed = !observation.shared && target.size->believes(*observation.box, size_options_);
   const double sigma = options_.place_noise * target.unit * (believed ? 1 : kUnbelieved);
   R.diagonal() = R.diagonal().cwiseMax(Vector<2>::Constant(sigma * sigma));
@@ -196,7 +244,7 @@ void FilterTracker::match_gated(Seen seen, double least_score, double below_scor
   pairs_.clear();
   for (int row = 0; row < std::ssize(free_targets_); ++row) {
     const Target& target = targets_[free_targets_[row]];
-    grid_.for_each_near(in_view(target), search_radius(target), [&](int column) {
+    grid_.for_each_near(target.filter.position(), search_radius(target), [&](int column) {
       const double worth = gain(target, seen[candidates_[column]]);
       if (worth > 0) pairs_.push_back({row, column, worth});
     });
@@ -233,8 +281,8 @@ void FilterTracker::list_overlaps(Seen seen) {
   for (int row = 0; row < std::ssize(targets_); ++row) {
     const Target& target = targets_[row];
     if (!target.confirmed() || target.observation || !target.size || !was_seen_recently(target)) continue;
-    const Box box = target.size->around(in_view(target));
-    grid_.for_each_near(in_view(target), target.unit, [&](int column) {
+    const Box box = target.size->around(target.filter.position());
+    grid_.for_each_near(target.filter.position(), target.unit, [&](int column) {
       const double overlap = geometry::iou(box, *seen[candidates_[column]].box);
       if (overlap > kOverlap) pairs_.push_back({row, column, overlap});
     });
@@ -243,7 +291,7 @@ void FilterTracker::list_overlaps(Seen seen) {
 
 void FilterTracker::match_reappeared(Seen seen) {
   if (!options_.reidentify) return;
-  reidentification_.match(targets_, seen, *now_, {options_.evidence.confident, size_options_, gate_}, camera_shift_);
+  reidentification_.match(targets_, seen, *now_, {options_.evidence.confident, size_options_, gate_});
 }
 
 void FilterTracker::mark_taken(Seen seen) {
@@ -263,7 +311,7 @@ void FilterTracker::keep_merged(Seen seen) {
 void FilterTracker::stay_within(Target& target, const Observation<2>& region) const {
   const double sigma = kUnbelieved * options_.place_noise * target.unit;
   const Matrix<2> R = region.covariance + sigma * sigma * Matrix<2>::Identity();
-  target.filter.correct(target.size->centre_within(*region.box, in_view(target)) - camera_shift_, R);
+  target.filter.correct(target.size->centre_within(*region.box, target.filter.position()), R);
   target.hidden = true;
 }
 
@@ -345,7 +393,7 @@ void FilterTracker::start(const Observation<2>& observation, int index) {
   if (has_box) R.diagonal() = R.diagonal().cwiseMax(Vector<2>::Constant(std::pow(options_.place_noise * unit, 2)));
   Target& target =
       targets_.emplace_back(Target{.id = TrackId{next_id_++},
-                                   .filter = {filter::scaled(options_.filter, unit), centre_of(observation) - camera_shift_, R},
+                                   .filter = {filter::scaled(options_.filter, unit), centre_of(observation), R},
                                    .size = {},
                                    .unit = unit,
                                    .born = *now_,
@@ -353,19 +401,22 @@ void FilterTracker::start(const Observation<2>& observation, int index) {
                                    .evidence = Evidence(observation.score, options_.evidence),
                                    .score = observation.score,
                                    .observation = index});
+  target.filter.scale_noise(noise_scale_);
   if (has_box) target.size.emplace(*observation.box, size_options_);
 }
 
 Track<2> FilterTracker::track_of(const Target& target) const {
+  const geometry::Similarity2& view_from_scene = camera_.view_from_scene();
+  const Matrix<2>& turn = view_from_scene.turn;
   Track<2> track;
   track.id = target.id;
-  track.position = in_view(target);
-  track.velocity = target.filter.velocity();
-  track.covariance = target.filter.covariance();
+  track.position = view_from_scene * target.filter.position();
+  track.velocity = turn * target.filter.velocity();
+  track.covariance = turn * target.filter.covariance() * turn.transpose();
   track.state = target.observation ? Track<2>::State::observed : Track<2>::State::predicted;
   track.observation = target.observation;
   track.confirmed = target.confirmed();
-  if (target.size) track.box = target.size->around(track.position);
+  if (target.size) track.box = view_from_scene * target.size->around(target.filter.position());
   track.score = target.score;
   return track;
 }

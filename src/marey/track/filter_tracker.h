@@ -13,7 +13,8 @@
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/point_grid.h"
-#include "marey/track/common_motion.h"
+#include "marey/track/box_noise.h"
+#include "marey/track/camera_motion.h"
 #include "marey/track/crowd.h"
 #include "marey/track/immediate_tracker.h"
 #include "marey/track/reidentification.h"
@@ -33,8 +34,9 @@ class FilterTracker final : public ImmediateTracker<2> {
   using Seen = std::span<const Observation<2>>;
 
   void predict_to(Timestamp now);
+  Seen in_scene(Seen seen);
   void follow_camera(Seen seen);
-  Vector<2> in_view(const Target& target) const { return target.filter.position() + camera_shift_; }
+  void learn_noise();
   Vector<2> place_of(const Observation<2>& observation, const Target& target) const;
   Matrix<2> noise_of(const Observation<2>& observation, const Target& target) const;
   double reach(const Target& target) const;
@@ -67,13 +69,17 @@ class FilterTracker final : public ImmediateTracker<2> {
   BoxSizeOptions size_options_;
   double gate_;
   double dt_ = 0;                               // s since the frame before
-  Vector<2> camera_shift_ = Vector<2>::Zero();  // by how far the camera has moved the picture since the beginning
+  CameraMotion camera_;
+  BoxNoise noise_;
+  double first_acceleration_;
+  double noise_scale_ = 1;
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> candidates_, free_targets_;
   std::vector<Vector<2>> points_;
   std::vector<Sighting> expected_, sightings_;
+  std::vector<Observation<2>> scene_seen_;
   std::vector<assign::GatedPair> pairs_;
   std::vector<char> taken_, merged_;  // of each observation
   assign::PointGrid<2> grid_;         // of observations

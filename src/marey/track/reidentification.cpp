@@ -18,13 +18,12 @@ double nearness(const Target& target, const Vector<2>& place, Timestamp now) {
 
 }  // namespace
 
-Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes, const Vector<2>& camera_shift) {
-  if (!target.size) return box.centre() - camera_shift;
-  return target.size->centre_in(box, target.filter.position() + camera_shift, sizes) - camera_shift;
+Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes) {
+  return target.size ? target.size->centre_in(box, target.filter.position(), sizes) : box.centre();
 }
 
-void Reidentification::match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits,
-                             const Vector<2>& camera_shift) {
+void Reidentification::match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now,
+                             const Limits& limits) {
   taken_.assign(seen.size(), 0);
   for (const Target& target : targets) {
     if (target.observation) taken_[*target.observation] = 1;
@@ -37,8 +36,7 @@ void Reidentification::match(std::span<Target> targets, std::span<const Observat
       const Observation<2>& one = seen[i];
       if (taken_[i] || !one.box || one.shared || one.score < limits.least_score) continue;
       if (target.size->distance(*one.box, limits.sizes) > limits.gate) continue;
-      const Vector<2> place =
-          one.box->empty() ? Vector<2>(one.value - camera_shift) : place_in(*one.box, target, limits.sizes, camera_shift);
+      const Vector<2> place = one.box->empty() ? one.value : place_in(*one.box, target, limits.sizes);
       const double worth = nearness(target, place, now);
       if (worth > 0) pairs_.push_back({row, i, worth});
     }

@@ -22,10 +22,8 @@ class Reidentification {
     double gate = 0;  ///< squared deviations by which sizes may differ, at most
   };
 
-  /// Matches such observations with confirmed targets that have none and are not hidden by another. Filters run in coordinates
-  /// that lie `camera_shift` px beside the picture's.
-  void match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits,
-             const Vector<2>& camera_shift);
+  /// Matches such observations with confirmed targets that have none and are not hidden by another.
+  void match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits);
 
  private:
   std::vector<char> taken_;
@@ -33,7 +31,7 @@ class Reidentification {
   assign::GatedAssigner assigner_;
 };
 
-/// Where a box puts the centre of a target, in its filter's coordinates: if need be corrected for a size that is not believed.
-Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes, const Vector<2>& camera_shift);
+/// Where a box puts the centre of a target: if need be corrected for a size that is not believed.
+Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes);
 
 }  // namespace marey::track

@@ -5,6 +5,7 @@
 #include "marey/core/ids.h"
 #include "marey/core/time.h"
 #include "marey/filter/any_filter.h"
+#include "marey/track/box_noise.h"
 #include "marey/track/box_size.h"
 #include "marey/track/evidence.h"
 #include "marey/track/unoccluded_motion.h"
@@ -25,6 +26,7 @@ struct Target {
   bool crowded = false;                 ///< its box meets another target's
   bool hidden = false;                  ///< not seen, and another target or a shared region explains why
   UnoccludedMotion unoccluded_motion = {};
+  BoxTrail trail = {};                  ///< where the boxes' noise is learned
 
   bool confirmed() const { return evidence.confirmed(); }
 };

@@ -34,6 +34,7 @@ TrackerOptions box_tracker_options(TrackerOptions options) {
   if (options.place_noise == usual.place_noise) options.place_noise = 0.05;
   if (options.size_noise == usual.size_noise) options.size_noise = 0.2;
   if (options.fading == usual.fading) options.fading = 2.5;
+  options.learn_noise = true;
   return options;
 }
 

@@ -85,7 +85,9 @@ struct TrackerOptions {
   double size_noise = 0.1;          ///< standard deviation of the logarithm of a box's width and height
   double size_drift = 0.15;         ///< what that logarithm may change by in a second
   double patience = 2.5;            ///< a target that should be seen and is not is given up after this, s
-  bool steady_camera = false;       ///< true where the camera is known to stand still; else its turning is read off the targets
+  bool steady_camera = false;       ///< true where the camera is known to stand still; else its motion is read off the targets
+  /// Noises of places, sizes and motion are learned from the boxes; those given here count until more is known.
+  bool learn_noise = false;
   /// A newcomer is taken for a target of its size that vanished near there. For a camera that stands still, where tracks are not
   /// joined afterwards with both sides known.
   bool reidentify = false;
