@@ -21,6 +21,7 @@
 #include "marey/track/outline_log.h"
 #include "marey/track/rows_by_frame.h"
 #include "marey/track/tracklet_log.h"
+#include "marey/track/view_border.h"
 
 namespace marey::pipeline {
 namespace {
@@ -70,6 +71,7 @@ track::TrackerOptions tracker_options(const Feed& feed, const PeopleInPictureOpt
   track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
   tracker.steady_camera = feed.has_pictures() && needs_still_camera(options.detector);
   tracker.reidentify = tracker.steady_camera && options.live;
+  tracker.learn_clutter = tracker.learn_noise && options.live;
   return tracker;
 }
 
@@ -202,6 +204,8 @@ class PeopleInPicture final : public Stage {
       if (live_->empty()) return nullptr;
       return std::make_unique<LiveRest>(*live_, options_.seen_only);
     }
+    if (const auto noise = tracker_->learned_noise()) options_.join = track::adapted(options_.join, *noise);
+    if (!options_.join.view) options_.join.view = border_.view();
     std::vector<track::TrackRow> rows = track::join(recording_, options_.join);
     if (searched_.size() < moments_.size()) rows = track::fill_between_searches(rows, searched_, times_of(moments_));
     return std::make_unique<JoinedRows>(std::move(rows), std::move(moments_), outlines_.get(), options_.seen_only);
@@ -263,7 +267,8 @@ class PeopleInPicture final : public Stage {
   /// What is known of one frame, for the second pass.
   void log(std::int64_t number, std::span<const Track<2>> tracks, std::span<const track::Clothes> clothes, std::size_t detections) {
     count(tracks, detections);
-    recording_.add(number, moments_[static_cast<std::size_t>(searched_[static_cast<std::size_t>(number)])].time, tracks, clothes);
+    recording_.add(number, moments_[static_cast<std::size_t>(searched_[static_cast<std::size_t>(number)])].time, tracks, clothes,
+                   tracker_->view_from_scene());
     if (outlines_) outlines_->add(number, tracks);
   }
 
@@ -321,7 +326,10 @@ class PeopleInPicture final : public Stage {
   }
 
   detect::Detections detect(const CameraFrame& given) {
-    if (given.detections) return {.detections = *given.detections, .foreground = {}};
+    if (given.detections) {
+      for (const Detection& one : *given.detections) border_.see(one.box);
+      return {.detections = *given.detections, .foreground = {}};
+    }
     if (!detector_) return {.detections = {}, .foreground = {}, .searched = false};
     detect::Detections seen = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
     if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
@@ -364,6 +372,7 @@ class PeopleInPicture final : public Stage {
   std::unique_ptr<track::OutlineLog> outlines_;
   std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
+  track::ViewBorder border_;  // of the image, as far as boxes tell
   std::vector<Recording::Moment> moments_;
   std::vector<std::int32_t> searched_;  // indices into `moments_`: the log counts these
   std::optional<track::LiveTracks> live_;

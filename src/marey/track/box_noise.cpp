@@ -2,81 +2,124 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace marey::track {
 namespace {
-static double env2(const char* n, double d) { const char* s = std::getenv(n); return s ? std::atof(s) : d; }
-const double kFarStep = env2("BN_FAR", 0.24);       // s
-const double kFirstCount = env2("BN_PRIOR", 60);      // of first levels, in differences
-const double kMostRemembered = env2("BN_MOST", 4000);     // differences that are remembered
-const double kOutlier = env2("BN_OUT", 9);     // times the mean
-const double kLeastPlace = env2("BN_LP", 0.006), kMostPlace = 0.15;
-const double kLeastAcceleration = env2("BN_LA", 0.1), kMostAcceleration = env2("BN_MA", 3);
-const double kLeastSize = env2("BN_LS", 0.02), kMostSize = env2("BN_MS", 0.3);
-const double kLeastDrift = env2("BN_LD", 0.05), kMostDrift = env2("BN_MD", 1);
+
+// docs/tuning.md has the sweep of those that follow.
+constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
+constexpr double kFirstCount = 300;                 // differences that the first levels count for
+constexpr double kMostCounted = 4000;               // differences that are remembered
+constexpr double kOutlier = 9;                      // times the mean
+// Levels beyond these are no people's.
+constexpr double kLeastPlace = 0.006, kMostPlace = 0.15;
+constexpr double kLeastAcceleration = 0.1, kMostAcceleration = 3;
+constexpr double kLeastSize = 0.02, kMostSize = 0.3;
+constexpr double kLeastDrift = 0.05, kMostDrift = 1;
+
+double cube(double h) {
+  return h * h * h;
+}
+
+double place_difference(const BoxNoiseLevels& levels, double span) {
+  return 6 * levels.place * levels.place + 2.0 / 3 * levels.acceleration * levels.acceleration * cube(span);
+}
+
+double size_difference(const BoxNoiseLevels& levels, double span) {
+  return 2 * levels.size * levels.size + levels.drift * levels.drift * span;
+}
+
+/// That many seconds in frames, of which a trail holds `most` at least twice over.
+std::size_t frames_in(double span, double dt, std::size_t least) {
+  const double frames = std::min(span / dt, static_cast<double>(BoxTrail::kLength));
+  return std::clamp(static_cast<std::size_t>(std::lround(frames)), least, (BoxTrail::kLength - 1) / 2);
+}
+
+std::size_t near_frames(double dt) {
+  return std::min(frames_in(kNearSpan, dt, 1), (BoxTrail::kLength - 1) / 4);
+}
+
+std::size_t far_frames(double dt) {
+  return frames_in(kFarSpan, dt, near_frames(dt) + 1);
+}
+
+double root_within(double variance, double least, double most) {
+  return std::clamp(std::sqrt(std::max(0.0, variance)), least, most);
+}
 
 }  // namespace
 
-void BoxNoise::MeanSquare::add(double square, double first) {
-  const double before = with_prior(first);
-  square = std::min(square, kOutlier * before);
-  count = std::min(count + 1, kMostRemembered);
+void BoxTrail::add(const Box& box) {
+  Entry& entry = entries_[next_++ % kLength];
+  entry.seen = !box.empty();
+  if (!entry.seen) return;
+  entry.centre = box.centre();
+  entry.log_size = {std::log(box.width), std::log(box.height)};
+}
+
+const BoxTrail::Entry* BoxTrail::back(std::size_t frames) const {
+  if (frames >= kLength || frames >= next_) return nullptr;
+  const Entry& entry = entries_[(next_ - 1 - frames) % kLength];
+  return entry.seen ? &entry : nullptr;
+}
+
+void BoxNoise::Differences::MeanSquare::add(double square, double first) {
+  square = std::min(square, kOutlier * with(first));
+  count = std::min(count + 1, kMostCounted);
   value += (square - value) / count;
 }
 
-double BoxNoise::MeanSquare::with_prior(double first) const {
+double BoxNoise::Differences::MeanSquare::with(double first) const {
   return (count * value + kFirstCount * first) / (count + kFirstCount);
 }
 
-std::size_t BoxNoise::far(double dt) const {
-  return std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kFarStep / dt)), 2, (BoxTrail::kLength - 1) / 2);
+void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first) {
+  const BoxTrail::Entry *now = trail.back(0), *middle = trail.back(frames), *before = trail.back(2 * frames);
+  if (now == nullptr || middle == nullptr) return;
+  const double span = static_cast<double>(frames) * dt;
+  size_.add((now->log_size - middle->log_size).squaredNorm() / 2, size_difference(first, span));
+  if (before == nullptr) return;
+  const Vector<2> bend = (now->centre - 2 * middle->centre + before->centre) / std::exp(now->log_size.y());
+  place_.add(bend.squaredNorm() / 2, place_difference(first, span));
+}
+
+double BoxNoise::Differences::place(const BoxNoiseLevels& first, double span) const {
+  return place_.with(place_difference(first, span));
+}
+
+double BoxNoise::Differences::size(const BoxNoiseLevels& first, double span) const {
+  return size_.with(size_difference(first, span));
 }
 
 void BoxNoise::see(const BoxTrail& trail, double dt) {
   if (dt <= 0) return;
   dt_ = dt;
-  const BoxTrail::Entry* now = trail.back(0);
-  if (now == nullptr) return;
-  const double height = std::exp(now->log_height);
-  const auto place = [&](std::size_t lag, MeanSquare& mean) {
-    const BoxTrail::Entry *middle = trail.back(lag), *before = trail.back(2 * lag);
-    if (middle == nullptr || before == nullptr) return;
-    const Vector<2> second = (now->centre - 2 * middle->centre + before->centre) / height;
-    const double h = static_cast<double>(lag) * dt;
-    mean.add(second.squaredNorm() / 2,
-             6 * first_.place * first_.place + 2.0 / 3 * first_.acceleration * first_.acceleration * h * h * h);
-  };
-  const auto size = [&](std::size_t lag, MeanSquare& mean) {
-    const BoxTrail::Entry* before = trail.back(lag);
-    if (before == nullptr) return;
-    const double wider = now->log_width - before->log_width, higher = now->log_height - before->log_height;
-    const double h = static_cast<double>(lag) * dt;
-    mean.add((wider * wider + higher * higher) / 2, 2 * first_.size * first_.size + first_.drift * first_.drift * h);
-  };
-  place(1, place_near_);
-  place(far(dt), place_far_);
-  size(1, size_near_);
-  size(far(dt), size_far_);
+  frame_.add(trail, 1, dt, first_);
+  near_.add(trail, near_frames(dt), dt, first_);
+  far_.add(trail, far_frames(dt), dt, first_);
+}
+
+/// Two distances, two unknowns, for places and for sizes.
+BoxNoiseLevels BoxNoise::solved(const Differences& shorter, double near, const Differences& longer, double far) const {
+  const double place_near = shorter.place(first_, near), place_far = longer.place(first_, far);
+  const double q = std::max(0.0, (place_far - place_near) * 1.5 / (cube(far) - cube(near)));
+  const double size_near = shorter.size(first_, near), size_far = longer.size(first_, far);
+  const double d = std::max(0.0, (size_far - size_near) / (far - near));
+  return {.place = root_within((place_near - 2.0 / 3 * q * cube(near)) / 6, kLeastPlace, kMostPlace),
+          .acceleration = root_within(q, kLeastAcceleration, kMostAcceleration),
+          .size = root_within((size_near - d * near) / 2, kLeastSize, kMostSize),
+          .drift = root_within(d, kLeastDrift, kMostDrift)};
 }
 
 BoxNoiseLevels BoxNoise::levels() const {
   if (dt_ <= 0) return first_;
-  const double k = static_cast<double>(far(dt_)), near = dt_, farther = k * dt_;
-  const auto cube = [](double h) { return h * h * h; };
-  const double q0 = first_.acceleration * first_.acceleration, R0 = first_.place * first_.place;
-  const double near2 = place_near_.with_prior(6 * R0 + 2.0 / 3 * q0 * cube(near));
-  const double far2 = place_far_.with_prior(6 * R0 + 2.0 / 3 * q0 * cube(farther));
-  const double q = std::max(0.0, (far2 - near2) * 1.5 / (cube(farther) - cube(near)));
-  const double R = std::max(0.0, (near2 - 2.0 / 3 * q * cube(near)) / 6);
-  const double s0 = first_.size * first_.size, d0 = first_.drift * first_.drift;
-  const double size_near = size_near_.with_prior(2 * s0 + d0 * near), size_far = size_far_.with_prior(2 * s0 + d0 * farther);
-  const double d = std::max(0.0, (size_far - size_near) / (farther - near));
-  const double s = std::max(0.0, (size_near - d * near) / 2);
-  return {.place = std::clamp(std::sqrt(R), kLeastPlace, kMostPlace),
-          .acceleration = std::clamp(std::sqrt(q), kLeastAcceleration, kMostAcceleration),
-          .size = std::clamp(std::sqrt(s), kLeastSize, kMostSize),
-          .drift = std::clamp(std::sqrt(d), kLeastDrift, kMostDrift)};
+  return solved(near_, static_cast<double>(near_frames(dt_)) * dt_, far_, static_cast<double>(far_frames(dt_)) * dt_);
+}
+
+/// At rates so low that a frame is as long as the shorter distance, nothing is known to last.
+BoxNoiseLevels BoxNoise::levels_of_a_frame() const {
+  if (dt_ <= 0 || near_frames(dt_) == 1) return levels();
+  return solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_);
 }
 
 }  // namespace marey::track

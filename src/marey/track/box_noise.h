@@ -1,16 +1,17 @@
 // What a recording's boxes are like: how far a box lies beside the person, how its sides err and drift, how hard people
 // accelerate. Learned while they are followed, from targets that were seen in frames at equal distances.
 //
-// The second difference of a place over h seconds is 6 R + 2/3 q h³ for a place that errs by R and a velocity that is a Wiener
-// process of density q; the first difference of a side's logarithm over h is 2 R + d h where that drifts as a random walk. Taken
-// over one frame and over several, both unknowns follow. Differences do not know which filter followed the target, and one that
-// went over to somebody else shows in few of them: each counts as much as an outlier does, at most.
-// Cost: a few operations a target and frame.
+// The second difference of a place over h seconds has a variance of 6 R + 2/3 q h³, where the place errs by R and the velocity is a
+// Wiener process of density q; the first difference of a side's logarithm has 2 R + d h, where that drifts as a random walk. Taken
+// over two distances, both unknowns follow. A detector's errors last for some frames, and so do poses: over 0.2 and 0.5 s both
+// count as errors of the box, which is what following needs; over one frame only what is new in each box does, which says how much
+// of a box is to be believed when it is written.
+// Differences do not know which filter followed the target; one that went over to somebody else shows in few of them, and each
+// counts at most as `kOutlier` usual ones. Cost: a few operations a target and frame.
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <vector>
+#include <cstddef>
 
 #include "marey/core/geometry.h"
 
@@ -18,32 +19,27 @@ namespace marey::track {
 
 /// Lengths in heights of the box.
 struct BoxNoiseLevels {
-  double place = 0.05;          ///< standard deviation of a box's centre, each axis
-  double acceleration = 0.15;   ///< square root of the density of white acceleration, heights/s^1.5
-  double size = 0.2;            ///< standard deviation of the logarithm of a box's width and height
-  double drift = 0.15;          ///< what that logarithm changes by in a second
+  double place = 0.05;         ///< standard deviation of a box's centre, each axis
+  double acceleration = 0.15;  ///< square root of the density of white acceleration, heights/s^1.5
+  double size = 0.2;           ///< standard deviation of the logarithm of a box's width and height
+  double drift = 0.15;         ///< what that logarithm changes by in a second
 };
 
 /// The last boxes of one target.
 class BoxTrail {
  public:
-  static constexpr std::size_t kLength = 33;  // frames
+  static constexpr std::size_t kLength = 33;  ///< frames
+
+  /// Takes in what was seen of it in the next frame: a box in px, or nothing (an empty one).
+  void add(const Box& box);
 
   struct Entry {
     bool seen = false;
-    Vector<2> centre = Vector<2>::Zero();  // px
-    float log_width = 0, log_height = 0;
+    Vector<2> centre = Vector<2>::Zero();  ///< px
+    Vector<2> log_size = Vector<2>::Zero();  ///< of width and height, px
   };
-
-  void add(const Entry& entry) {
-    entries_[next_++ % kLength] = entry;
-  }
-  /// The frame so many before the last one added, where the target was seen in it.
-  const Entry* back(std::size_t frames) const {
-    if (frames >= kLength || frames >= next_) return nullptr;
-    const Entry& entry = entries_[(next_ - 1 - frames) % kLength];
-    return entry.seen ? &entry : nullptr;
-  }
+  /// The frame so many before the last one added; null where the target was not seen in it or that is too long ago.
+  const Entry* back(std::size_t frames) const;
 
  private:
   std::array<Entry, kLength> entries_;
@@ -53,25 +49,39 @@ class BoxTrail {
 class BoxNoise {
  public:
   /// `first` counts until more is known.
-  explicit BoxNoise(const BoxNoiseLevels& first) : first_(first) {}
+  explicit BoxNoise(const BoxNoiseLevels& first = {}) : first_(first) {}
 
   /// Takes in a target that was seen in the last frame of its trail; frames are `dt` s apart.
   void see(const BoxTrail& trail, double dt);
 
+  /// What a box errs by beside the body, a detector's lasting errors and poses included.
   BoxNoiseLevels levels() const;
+  /// What of it is new in every frame.
+  BoxNoiseLevels levels_of_a_frame() const;
+  /// Time from frame to frame of what was taken in, s; 0 before.
+  double frame_time() const { return dt_; }
 
  private:
-  /// A mean of squares in which an outlier counts no more than `kOutlier` times the mean.
-  struct MeanSquare {
-    double value = 0, count = 0;
-    void add(double square, double first);
-    double with_prior(double first) const;
+  /// Squares of differences over a number of frames, of places and of sizes.
+  class Differences {
+   public:
+    void add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first);
+    double place(const BoxNoiseLevels& first, double span) const;
+    double size(const BoxNoiseLevels& first, double span) const;
+
+   private:
+    struct MeanSquare {
+      double value = 0, count = 0;
+      void add(double square, double first);
+      double with(double first) const;
+    };
+    MeanSquare place_, size_;
   };
-  std::size_t far(double dt) const;
+  BoxNoiseLevels solved(const Differences& shorter, double near, const Differences& longer, double far) const;
 
   BoxNoiseLevels first_;
   double dt_ = 0;
-  MeanSquare place_near_, place_far_, size_near_, size_far_;
+  Differences frame_, near_, far_;
 };
 
 }  // namespace marey::track

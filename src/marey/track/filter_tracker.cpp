@@ -36,9 +36,17 @@ bool has_extent(const Observation<2>& observation) {
   return observation.box && !observation.box->empty();
 }
 
-double acceleration_of(const TrackerOptions& options) {
+/// What counts until more is known of the boxes.
+BoxNoiseLevels first_levels(const TrackerOptions& options) {
+  BoxNoiseLevels levels{.place = options.place_noise, .size = options.size_noise, .drift = options.size_drift};
   const auto* kalman = std::get_if<filter::KalmanOptions>(&options.filter);
-  return kalman != nullptr ? kalman->acceleration_noise : 1;
+  if (kalman != nullptr) levels.acceleration = kalman->acceleration_noise;
+  return levels;
+}
+
+/// How much of an error is there in the next frame too: the pose of the person, or a habit of the detector.
+double share_that_lasts(double of_a_frame, double in_all) {
+  return std::max(0.0, 1 - of_a_frame * of_a_frame / (in_all * in_all));
 }
 
 }  // namespace
@@ -47,8 +55,8 @@ FilterTracker::FilterTracker(const TrackerOptions& options)
     : options_(options),
       size_options_{.noise = options.size_noise, .drift = options.size_drift},
       gate_(geometry::chi_square_quantile(2, options.gate_probability)),
-      noise_({.place = options.place_noise, .acceleration = acceleration_of(options), .size = options.size_noise, .drift = options.size_drift}),
-      first_acceleration_(acceleration_of(options)) {}
+      first_(first_levels(options)),
+      noise_(first_) {}
 
 std::span<const Track<2>> FilterTracker::step(Timestamp now, std::span<const CameraObservations<2>> views) {
   assert(views.size() == 1 && "an image is one camera's");
@@ -63,7 +71,7 @@ std::span<const Track<2>> FilterTracker::step(Timestamp now, std::span<const Cam
   match_reappeared(seen);
   keep_merged(seen);
   correct(seen);
-  learn_noise();
+  learn_noise(seen);
   count_misses();
   retire_lost();
   start_unmatched(seen);
@@ -77,11 +85,16 @@ std::span<const Track<2>> FilterTracker::expected(Timestamp now) {
     if (!target.confirmed()) continue;
     Target ahead = target;
     ahead.filter.predict(dt);
+    ahead.shown.reset();
     tracks_.push_back(track_of(ahead));
     tracks_.back().state = Track<2>::State::predicted;
     tracks_.back().observation.reset();
   }
   return tracks_;
+}
+
+std::optional<BoxNoise> FilterTracker::learned_noise() const {
+  return options_.learn_noise ? std::optional(noise_) : std::nullopt;
 }
 
 void FilterTracker::predict_to(Timestamp now) {
@@ -91,6 +104,7 @@ void FilterTracker::predict_to(Timestamp now) {
     target.filter.predict(dt_);
     if (target.size) target.size->predict(dt_, size_options_);
     target.observation.reset();
+    target.shown.reset();
     target.hidden = false;
   }
 }
@@ -127,26 +141,24 @@ void FilterTracker::follow_camera(Seen seen) {
     if (has_extent(one) && one.score >= options_.evidence.confident) sightings_.push_back({one.box->centre(), one.box->height});
   }
   camera_.correct(expected_, sightings_);
+  if (options_.learn_clutter) clutter_.see(sightings_);
 }
 
-/// How boxes err and people move, from those seen in this frame.
-void FilterTracker::learn_noise() {
+/// How boxes err and how people move, from those seen in this frame.
+void FilterTracker::learn_noise(Seen seen) {
   if (!options_.learn_noise) return;
   for (Target& target : targets_) {
-    BoxTrail::Entry entry;
-    const Observation<2>* one = target.observation ? &scene_seen_[*target.observation] : nullptr;
-    if (one != nullptr && has_extent(*one)) {
-      entry = {true, one->box->centre(), static_cast<float>(std::log(one->box->width)),
-               static_cast<float>(std::log(one->box->height))};
-    }
-    target.trail.add(entry);
+    const Observation<2>* one = target.observation ? &seen[*target.observation] : nullptr;
+    target.trail.add(one != nullptr && has_extent(*one) ? *one->box : Box{});
     noise_.see(target.trail, dt_);
   }
-  const BoxNoiseLevels levels = noise_.levels();
+  const BoxNoiseLevels levels = noise_.levels(), frame = noise_.levels_of_a_frame();
   options_.place_noise = levels.place;
   size_options_.noise = levels.size;
   size_options_.drift = levels.drift;
-  noise_scale_ = levels.acceleration / first_acceleration_;
+  noise_scale_ = levels.acceleration / first_.acceleration;
+  believed_place_ = share_that_lasts(frame.place, levels.place);
+  believed_size_ = share_that_lasts(frame.size, levels.size);
   for (Target& target : targets_) target.filter.scale_noise(noise_scale_);
 }
 
@@ -213,7 +225,7 @@ double FilterTracker::gain(const Target& target, const Observation<2>& observati
   // Frames far apart, or a filter that expects much, make the prediction wide; that alone makes nobody somebody else.
   if (seconds(*now_ - target.last_seen) <= dt_) spread = std::min(spread, kMostSpread);
   double cost = distance + spread;
-  double room = kClutterRoom - 2 * missed / options_.fading;
+  double room = kClutterRoom + clutter_.room() - 2 * missed / options_.fading;
   if (!observation.shared) {
     const double distance_of_size = target.size->distance(*observation.box, size_options_);
     cost += target.crowded ? std::min(distance_of_size, kCrowdedSizeLimit) : distance_of_size;
@@ -331,6 +343,7 @@ void FilterTracker::correct(Target& target, const Observation<2>& observation, b
   if (!merged && has_extent(observation) && !observation.shared && target.size) {
     target.size->correct(*observation.box, size_options_);
     target.unit = target.size->height();
+    if (options_.learn_noise) target.shown = shown_box(target, *observation.box);
   }
   if (options_.reidentify && observation.box) {
     const bool whole = !merged && !observation.shared && observation.score >= options_.evidence.confident;
@@ -339,6 +352,15 @@ void FilterTracker::correct(Target& target, const Observation<2>& observation, b
   target.last_seen = *now_;
   target.score = observation.score;
   target.evidence.see(observation.score, options_.evidence);
+}
+
+/// The box as it is written: nearer to what was seen than the filters are, by what of the difference is there in the next frame too.
+/// A side that is not believed stays as it is.
+std::optional<Box> FilterTracker::shown_box(const Target& target, const Box& seen) const {
+  if (!target.size->believes(seen, size_options_)) return std::nullopt;
+  const Vector<2> centre = target.filter.position() + believed_place_ * (seen.centre() - target.filter.position());
+  const auto side = [&](double filtered, double as_seen) { return filtered * std::pow(as_seen / filtered, believed_size_); };
+  return Box::from_centre(centre, side(target.size->width(), seen.width), side(target.size->height(), seen.height));
 }
 
 void FilterTracker::count_misses() {
@@ -416,7 +438,8 @@ Track<2> FilterTracker::track_of(const Target& target) const {
   track.state = target.observation ? Track<2>::State::observed : Track<2>::State::predicted;
   track.observation = target.observation;
   track.confirmed = target.confirmed();
-  if (target.size) track.box = view_from_scene * target.size->around(target.filter.position());
+  if (target.size) track.box = view_from_scene * target.shown.value_or(target.size->around(target.filter.position()));
+  if (target.shown) track.position = track.box->centre();
   track.score = target.score;
   return track;
 }

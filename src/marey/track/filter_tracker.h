@@ -8,6 +8,7 @@
 // Cost a frame: near linear in targets + observations while gates hold few observations (assign/gated_assignment.h).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "marey/assign/point_grid.h"
 #include "marey/track/box_noise.h"
 #include "marey/track/camera_motion.h"
+#include "marey/track/clutter.h"
 #include "marey/track/crowd.h"
 #include "marey/track/immediate_tracker.h"
 #include "marey/track/reidentification.h"
@@ -29,6 +31,8 @@ class FilterTracker final : public ImmediateTracker<2> {
   using ImmediateTracker<2>::step;
   std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations<2>> views) override;
   std::span<const Track<2>> expected(Timestamp now) override;
+  geometry::Similarity2 view_from_scene() const override { return camera_.view_from_scene(); }
+  std::optional<BoxNoise> learned_noise() const override;
 
  private:
   using Seen = std::span<const Observation<2>>;
@@ -36,7 +40,7 @@ class FilterTracker final : public ImmediateTracker<2> {
   void predict_to(Timestamp now);
   Seen in_scene(Seen seen);
   void follow_camera(Seen seen);
-  void learn_noise();
+  void learn_noise(Seen seen);
   Vector<2> place_of(const Observation<2>& observation, const Target& target) const;
   Matrix<2> noise_of(const Observation<2>& observation, const Target& target) const;
   double reach(const Target& target) const;
@@ -56,6 +60,7 @@ class FilterTracker final : public ImmediateTracker<2> {
 
   void correct(Seen seen);
   void correct(Target& target, const Observation<2>& observation, bool merged) const;
+  std::optional<Box> shown_box(const Target& target, const Box& seen) const;
   void count_misses();
   void retire_lost();
   void start_unmatched(Seen seen);
@@ -70,9 +75,11 @@ class FilterTracker final : public ImmediateTracker<2> {
   double gate_;
   double dt_ = 0;                               // s since the frame before
   CameraMotion camera_;
+  Clutter clutter_;
+  BoxNoiseLevels first_;
   BoxNoise noise_;
-  double first_acceleration_;
-  double noise_scale_ = 1;
+  double noise_scale_ = 1;                             // of the acceleration, beside the options
+  double believed_place_ = 0, believed_size_ = 0;      // shares of a box's difference from the filters that are written
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.

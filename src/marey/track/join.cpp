@@ -6,6 +6,8 @@
 #include "marey/track/join.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <span>
 #include <utility>
 
@@ -93,7 +95,23 @@ std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
   return rows;
 }
 
+static double envj(const char* n, double d) { const char* s = std::getenv(n); return s ? std::atof(s) : d; }
+const double kPlaceKernel = envj("J_PK", 0.5);  // beside the time over which an optimal smoother averages
+const double kSizeKernel = envj("J_SK", 0.7);
+const double kStraying = envj("J_SN", 0.6);
+
 }  // namespace
+
+JoinOptions adapted(JoinOptions options, const BoxNoise& noise) {
+  const BoxNoiseLevels frame = noise.levels_of_a_frame(), all = noise.levels();
+  const double dt = noise.frame_time();
+  const double place = std::pow(frame.place * frame.place * dt / (frame.acceleration * frame.acceleration), 0.25);
+  const double size = frame.size * std::sqrt(dt) / frame.drift;
+  options.smoothing.place = std::min(options.smoothing.place, kPlaceKernel * place);
+  options.smoothing.size = std::min(options.smoothing.size, kSizeKernel * size);
+  options.speed_noise = std::max(options.speed_noise, kStraying * all.acceleration);
+  return options;
+}
 
 std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
   std::vector<Tracklet> tracklets = log.take_tracklets();
@@ -108,6 +126,7 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
   for (Tracklet& tracklet : tracklets) {
     fill_gaps(tracklet, log, options.longest_filled, GapWay::straight);
     smooth(tracklet, log, options.smoothing);
+    for (TrackRow& row : tracklet) row = log.in_view(row);
   }
   return by_frame(tracklets);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
+#include "marey/track/box_noise.h"
 #include "marey/track/smooth.h"
 #include "marey/track/tracklet_log.h"
 
@@ -24,6 +25,10 @@ struct JoinOptions {
   std::optional<Box> view = {};
   Smoothing smoothing = {};
 };
+
+/// The same for boxes whose noise was learned: paths are smoothed as far as their boxes need it, and people who accelerate harder
+/// than walkers may have gone farther while they were not seen.
+JoinOptions adapted(JoinOptions options, const BoxNoise& noise);
 
 /// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with
 /// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given anew from 1 in the order of

@@ -70,12 +70,16 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
   for (const TrackRow& row : rows) times.push_back(seconds(log.time_of(row.frame)));
   const Tracklet before = rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    LocalLine x, y, centre_x, centre_y, width, height;
+    LocalLine x, y, fast_x, fast_y, centre_x, centre_y, width, height;
     around(before, times, k, smoothing.place, [&](const TrackRow& row, double t, double weight) {
       x.add(t, weight, row.x);
       y.add(t, weight, row.y);
       centre_x.add(t, weight, row.left + row.width / 2);
       centre_y.add(t, weight, row.top + row.height / 2);
+    });
+    around(before, times, k, smoothing.velocity, [&](const TrackRow& row, double t, double weight) {
+      fast_x.add(t, weight, row.x);
+      fast_y.add(t, weight, row.y);
     });
     around(before, times, k, smoothing.size, [&](const TrackRow& row, double t, double weight) {
       width.add(t, weight, row.width);
@@ -85,8 +89,8 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
     smooth_outline(before, times, k, smoothing.place, row);
     row.x = static_cast<float>(x.value());
     row.y = static_cast<float>(y.value());
-    row.vx = static_cast<float>(x.slope());
-    row.vy = static_cast<float>(y.slope());
+    row.vx = static_cast<float>(fast_x.slope());
+    row.vy = static_cast<float>(fast_y.slope());
     if (!row.has_box()) continue;
     row.width = static_cast<float>(width.mean());
     row.height = static_cast<float>(height.mean());

@@ -5,8 +5,9 @@
 namespace marey::track {
 
 struct Smoothing {
-  double place = 0.12;  ///< standard deviation of the kernel over time that smooths places, s
-  double size = 0.4;    ///< the same for sizes
+  double place = 0.12;     ///< standard deviation of the kernel over time that smooths places, s
+  double size = 0.4;       ///< the same for sizes
+  double velocity = 0.12;  ///< the same for velocities
 };
 
 /// Replaces places, sizes, velocities and the centres of outlines by local straight-line fits under a Gaussian kernel that looks

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "marey/core/blob_evidence.h"
@@ -9,6 +10,8 @@
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 #include "marey/filter/filters.h"
+#include "marey/geometry/similarity2.h"
+#include "marey/track/box_noise.h"
 #include "marey/track/evidence.h"
 
 namespace marey::track {
@@ -70,6 +73,13 @@ class Tracker {
   /// At the end of a recording: decides and returns all instants that are left. No step may follow.
   virtual std::span<const Decision<D>> decide_all() = 0;
 
+  /// Where the scene as it was seen first, continued to all sides, lies in the last frame: what the camera's pan, tilt, zoom and
+  /// roll did since. The identity where none of them is followed.
+  virtual geometry::Similarity2 view_from_scene() const { return {}; }
+
+  /// What has been learned of how boxes err; nothing where nothing is.
+  virtual std::optional<BoxNoise> learned_noise() const { return std::nullopt; }
+
   /// Where each confirmed target is expected at `now`, before it is observed. Valid until the next call of any kind.
   virtual std::span<const Track<D>> expected(Timestamp now) = 0;
 };
@@ -88,6 +98,9 @@ struct TrackerOptions {
   bool steady_camera = false;       ///< true where the camera is known to stand still; else its motion is read off the targets
   /// Noises of places, sizes and motion are learned from the boxes; those given here count until more is known.
   bool learn_noise = false;
+  /// Where people are few for the room they have, who appears near where one is expected is likelier to be that one: by how many
+  /// boxes the pictures hold. For a live run; a second pass does better with pieces that are surely one person's.
+  bool learn_clutter = false;
   /// A newcomer is taken for a target of its size that vanished near there. For a camera that stands still, where tracks are not
   /// joined afterwards with both sides known.
   bool reidentify = false;

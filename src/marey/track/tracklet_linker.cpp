@@ -160,7 +160,7 @@ TrackletLinker::End TrackletLinker::end_of(const TrackletPiece& piece, bool tail
   end.time = time.value_or(time_of(edge));
   line.fit(options_.place_noise, end);
   end.clothes = mean_clothes(clothes);
-  end.at_border = options_.view && touches_border(edge, *options_.view);
+  end.at_border = options_.view && touches_border(log_.in_view(edge), *options_.view);
   return end;
 }
 

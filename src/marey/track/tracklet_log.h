@@ -6,6 +6,7 @@
 
 #include "marey/core/time.h"
 #include "marey/core/track.h"
+#include "marey/geometry/similarity2.h"
 #include "marey/track/clothes.h"
 
 namespace marey::track {
@@ -36,13 +37,18 @@ class TrackletLog {
   using Tracklet = std::vector<TrackRow>;
 
   /// The tracks of one frame, as Tracker<2>::step gave them. Frames come in order, each once. `clothes` are those of the frame's
-  /// observations, by their index; empty where they are not known.
-  void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const Clothes> clothes = {});
+  /// observations, by their index; empty where they are not known. Rows are kept in coordinates that stand still where the camera
+  /// moves: `view_from_scene` is Tracker::view_from_scene after that step.
+  void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const Clothes> clothes = {},
+           const geometry::Similarity2& view_from_scene = {});
+
+  /// A row of this log, in px of its frame's picture.
+  TrackRow in_view(const TrackRow& row) const;
 
   /// Time of frames: the one at `frame`, which was added.
   Timestamp time_of(std::int32_t frame) const;
 
-  /// Every confirmed target, in the order of ids. The recording is empty afterwards, but for its times.
+  /// Every confirmed target, in the order of ids. The recording is empty afterwards, but for its times and the camera's motion.
   std::vector<Tracklet> take_tracklets();
 
  private:
@@ -54,6 +60,7 @@ class TrackletLog {
   void close(Open& open);
 
   std::vector<Timestamp> times_;
+  std::vector<geometry::Similarity2> views_from_scene_;  // of every frame; empty as long as the camera has stood still
   std::int32_t first_frame_ = 0;
   std::vector<Open> open_;  // by id
   std::vector<Tracklet> closed_;
