@@ -10,7 +10,7 @@ namespace marey::geometry {
 /// Turns, scales and shifts the image plane: what panning, tilting, zooming and rolling a distant camera does to a picture, px.
 /// Names of instances say what is mapped to what: `view_from_scene`.
 struct Similarity2 {
-  Matrix<2> turn = Matrix<2>::Identity();   ///< rotation times scale
+  Matrix<2> turn = Matrix<2>::Identity();  ///< rotation times scale
   Vector<2> shift = Vector<2>::Zero();
 
   /// Scales by `scale` and turns by `angle` (rad, from x to y) about `centre`, then moves by `shift`.

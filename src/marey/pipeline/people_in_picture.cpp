@@ -127,6 +127,27 @@ class LiveRest final : public InstantSource {
   bool seen_only_;
 };
 
+/// How far the camera moved the picture, beside how tall people are in it.
+class CameraSpan {
+ public:
+  void see(const geometry::Similarity2& view_from_scene, std::span<const Track<2>> tracks) {
+    for (const Track<2>& track : tracks) {
+      if (!track.box) continue;
+      farthest_ = std::max(farthest_, (track.position - view_from_scene.inverse() * track.position).norm());
+      heights_ += track.box->height;
+      ++people_;
+    }
+  }
+  bool moved() const { return people_ > 0 && farthest_ > kMoved * heights_ / people_; }
+  double farthest() const { return farthest_; }  // px
+
+ private:
+  static constexpr double kMoved = 1;  // heights of the people; what a camera that stands still is taken to drift by is less
+
+  double farthest_ = 0, heights_ = 0;
+  double people_ = 0;
+};
+
 class PeopleInPicture final : public Stage {
  public:
   PeopleInPicture(const Feed& feed, const PeopleInPictureOptions& options)
@@ -218,6 +239,7 @@ class PeopleInPicture final : public Stage {
     summary.left_out["too_brief"] = too_brief;
     report_standing(summary);
     report_counts(summary);
+    report_camera(summary);
     if (auto why = why_nobody(summary)) {
       if (options_.keypoints && std::holds_alternative<detect::people::PeopleDetectorOptions>(options_.detector))
         *why += "; --without-background finds people who fill the picture or stand there from the beginning, by a network";
@@ -259,7 +281,17 @@ class PeopleInPicture final : public Stage {
     }
   }
 
+  /// The camera's motion as boxes alone show it; of pictures other warnings tell.
+  void report_camera(Summary& summary) const {
+    if (detector_ || !camera_span_.moved()) return;
+    summary.warnings.push_back(
+        fmt::format("the camera moves (by up to {:.0f} px): people are followed all the same, but speeds and paths "
+                    "are in pixels of pictures that move",
+                    camera_span_.farthest()));
+  }
+
   void count(std::span<const Track<2>> tracks, std::size_t detections) {
+    camera_span_.see(tracker_->view_from_scene(), tracks);
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += static_cast<std::int64_t>(detections);
   }
@@ -372,6 +404,7 @@ class PeopleInPicture final : public Stage {
   std::unique_ptr<track::OutlineLog> outlines_;
   std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
+  CameraSpan camera_span_;
   track::ViewBorder border_;  // of the image, as far as boxes tell
   std::vector<Recording::Moment> moments_;
   std::vector<std::int32_t> searched_;  // indices into `moments_`: the log counts these

@@ -12,9 +12,9 @@ constexpr double kFirstCount = 300;                 // differences that the firs
 constexpr double kMostCounted = 4000;               // differences that are remembered
 constexpr double kOutlier = 9;                      // times the mean
 // Levels beyond these are no people's.
-constexpr double kLeastPlace = 0.006, kMostPlace = 0.15;
+constexpr double kLeastPlace = 0.003, kMostPlace = 0.15;
 constexpr double kLeastAcceleration = 0.1, kMostAcceleration = 3;
-constexpr double kLeastSize = 0.02, kMostSize = 0.3;
+constexpr double kLeastSize = 0.01, kMostSize = 0.3;
 constexpr double kLeastDrift = 0.05, kMostDrift = 1;
 
 double cube(double h) {
@@ -95,6 +95,7 @@ void BoxNoise::see(const BoxTrail& trail, double dt) {
   if (dt <= 0) return;
   dt_ = dt;
   frame_.add(trail, 1, dt, first_);
+  two_frames_.add(trail, 2, dt, first_);
   near_.add(trail, near_frames(dt), dt, first_);
   far_.add(trail, far_frames(dt), dt, first_);
 }
@@ -119,7 +120,11 @@ BoxNoiseLevels BoxNoise::levels() const {
 /// At rates so low that a frame is as long as the shorter distance, nothing is known to last.
 BoxNoiseLevels BoxNoise::levels_of_a_frame() const {
   if (dt_ <= 0 || near_frames(dt_) == 1) return levels();
-  return solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_);
+  BoxNoiseLevels levels = solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_);
+  const BoxNoiseLevels shortest = solved(frame_, dt_, two_frames_, 2 * dt_);  // over which poses change smoothly
+  levels.place = std::min(levels.place, shortest.place);
+  levels.size = std::min(levels.size, shortest.size);
+  return levels;
 }
 
 }  // namespace marey::track

@@ -35,7 +35,7 @@ class BoxTrail {
 
   struct Entry {
     bool seen = false;
-    Vector<2> centre = Vector<2>::Zero();  ///< px
+    Vector<2> centre = Vector<2>::Zero();    ///< px
     Vector<2> log_size = Vector<2>::Zero();  ///< of width and height, px
   };
   /// The frame so many before the last one added; null where the target was not seen in it or that is too long ago.
@@ -81,7 +81,7 @@ class BoxNoise {
 
   BoxNoiseLevels first_;
   double dt_ = 0;
-  Differences frame_, near_, far_;
+  Differences frame_, two_frames_, near_, far_;
 };
 
 }  // namespace marey::track

@@ -35,9 +35,6 @@ class CameraMotion {
   /// From the picture of the first frame, continued to all sides, to that of now.
   const geometry::Similarity2& view_from_scene() const { return view_from_scene_; }
 
-  /// How fast the picture moves, px/s.
-  Vector<2> speed() const { return rate_.shift; }
-
  private:
   /// In a step, or in a second.
   struct Increment {
@@ -46,18 +43,23 @@ class CameraMotion {
     double roll = 0;                      // rad
   };
   struct Pair;
+  struct Fit {
+    Increment increment;
+    double shift_variance = 0, turn_variance = 0;
+  };
 
   std::vector<Pair> pairs_under(const Vector<2>& shift, std::span<const Sighting> expected, std::span<const Sighting> seen) const;
   Vector<2> likeliest_shift(std::span<const Sighting> expected, std::span<const Sighting> seen) const;
-  void learn(const Increment& surprise, double shift_variance, double turn_variance);
+  Fit fitted(std::span<const Pair> pairs, const Vector<2>& middle, const Vector<2>& shift) const;
+  void learn(const Fit& fit);
 
   geometry::Similarity2 view_from_scene_;
   Vector<2> middle_ = Vector<2>::Zero();  // of the people, as they were last seen
   double dt_ = 0;
   Increment rate_;
-  double size_ = 1;               // of the people, px: the mean
-  double shift_unrest_ = 4e-4;       // variance of a step's shift about what is predicted, per axis, in squared sizes
-  double turn_unrest_ = 1e-6;        // the same for zoom and roll
+  double size_ = 1;             // of the people, px: the mean
+  double shift_unrest_ = 4e-4;  // variance of a step's shift about what is predicted, per axis, in squared sizes
+  double turn_unrest_ = 1e-6;   // the same for zoom and roll
 };
 
 }  // namespace marey::track

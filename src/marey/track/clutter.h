@@ -34,7 +34,7 @@ class Clutter {
   static constexpr double kShare = 0.3;     // of the log-likelihood ratio: who is near is seldom just anybody (docs/tuning.md)
 
   std::int64_t frames_ = 0;
-  double covered_ = 0;  // px²: heights squared, of all boxes
+  double covered_ = 0;                                                           // px²: heights squared, of all boxes
   Vector<2> low_ = Vector<2>::Constant(1e9), high_ = Vector<2>::Constant(-1e9);  // of the places of boxes
 };
 

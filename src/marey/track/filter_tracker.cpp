@@ -354,8 +354,8 @@ void FilterTracker::correct(Target& target, const Observation<2>& observation, b
   target.evidence.see(observation.score, options_.evidence);
 }
 
-/// The box as it is written: nearer to what was seen than the filters are, by what of the difference is there in the next frame too.
-/// A side that is not believed stays as it is.
+/// The box as it is written: nearer to what was seen than the filters are, by what of the difference is there in the next frame
+/// too. A side that is not believed stays as it is.
 std::optional<Box> FilterTracker::shown_box(const Target& target, const Box& seen) const {
   if (!target.size->believes(seen, size_options_)) return std::nullopt;
   const Vector<2> centre = target.filter.position() + believed_place_ * (seen.centre() - target.filter.position());
@@ -413,16 +413,15 @@ void FilterTracker::start(const Observation<2>& observation, int index) {
   const double unit = has_box ? observation.box->height : 1.0;
   Matrix<2> R = observation.covariance;
   if (has_box) R.diagonal() = R.diagonal().cwiseMax(Vector<2>::Constant(std::pow(options_.place_noise * unit, 2)));
-  Target& target =
-      targets_.emplace_back(Target{.id = TrackId{next_id_++},
-                                   .filter = {filter::scaled(options_.filter, unit), centre_of(observation), R},
-                                   .size = {},
-                                   .unit = unit,
-                                   .born = *now_,
-                                   .last_seen = *now_,
-                                   .evidence = Evidence(observation.score, options_.evidence),
-                                   .score = observation.score,
-                                   .observation = index});
+  Target& target = targets_.emplace_back(Target{.id = TrackId{next_id_++},
+                                                .filter = {filter::scaled(options_.filter, unit), centre_of(observation), R},
+                                                .size = {},
+                                                .unit = unit,
+                                                .born = *now_,
+                                                .last_seen = *now_,
+                                                .evidence = Evidence(observation.score, options_.evidence),
+                                                .score = observation.score,
+                                                .observation = index});
   target.filter.scale_noise(noise_scale_);
   if (has_box) target.size.emplace(*observation.box, size_options_);
 }

@@ -73,13 +73,13 @@ class FilterTracker final : public ImmediateTracker<2> {
   TrackerOptions options_;
   BoxSizeOptions size_options_;
   double gate_;
-  double dt_ = 0;                               // s since the frame before
+  double dt_ = 0;  // s since the frame before
   CameraMotion camera_;
   Clutter clutter_;
   BoxNoiseLevels first_;
   BoxNoise noise_;
-  double noise_scale_ = 1;                             // of the acceleration, beside the options
-  double believed_place_ = 0, believed_size_ = 0;      // shares of a box's difference from the filters that are written
+  double noise_scale_ = 1;                         // of the acceleration, beside the options
+  double believed_place_ = 0, believed_size_ = 0;  // shares of a box's difference from the filters that are written
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.

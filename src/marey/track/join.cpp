@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <span>
 #include <utility>
 
@@ -23,6 +22,11 @@ constexpr double weak_lasting = 1.5;  // s that weak observations must last to b
 constexpr double weak_share = 0.6;    // and of the frames, the share they must be in
 
 constexpr double kShortNotice = 1;  // s
+
+// Of recordings whose boxes' noise was learned; docs/tuning.md has the sweep.
+constexpr double kPlaceKernel = 0.5;  // beside the time over which an optimal smoother of places averages
+constexpr double kSizeKernel = 0.7;   // the same for sizes
+constexpr double kStraying = 1;       // speed_noise for each unit of acceleration noise
 
 /// Predicted rows at the ends are cut.
 void trim(Tracklet& rows) {
@@ -94,11 +98,6 @@ std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
             [](const TrackRow& a, const TrackRow& b) { return a.frame != b.frame ? a.frame < b.frame : a.id < b.id; });
   return rows;
 }
-
-static double envj(const char* n, double d) { const char* s = std::getenv(n); return s ? std::atof(s) : d; }
-const double kPlaceKernel = envj("J_PK", 0.5);  // beside the time over which an optimal smoother averages
-const double kSizeKernel = envj("J_SK", 0.7);
-const double kStraying = envj("J_SN", 0.6);
 
 }  // namespace
 

@@ -127,5 +127,24 @@ TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
   }
 }
 
+TEST(Join, AGapIsFilledWhereTheCameraWouldHaveStood) {
+  TrackletLog log;
+  const auto view_from_scene = [](int k) {  // the camera pans to the right, and then back
+    return geometry::Similarity2::about({0, 0}, 1, 0, {k < 40 ? -8.0 * k : -320 + 8.0 * (k - 40), 0});
+  };
+  for (int k = 0; k < 80; ++k) {
+    std::vector<Track<2>> tracks;
+    if (k < 30 || k > 50) tracks.push_back(walker(k < 30 ? 1 : 2, 400 + (view_from_scene(k) * Vector<2>(2.0 * k, 0)).x(), 200));
+    log.add(k, timestamp_from_seconds(k / 25.0), tracks, {}, view_from_scene(k));
+  }
+  int filled = 0;
+  for (const TrackRow& row : join(log)) {
+    EXPECT_EQ(row.id, 1);
+    EXPECT_NEAR(row.x, 400 + 2.0 * row.frame + view_from_scene(row.frame).shift.x(), 3) << row.frame;
+    filled += !row.observed();
+  }
+  EXPECT_EQ(filled, 21);
+}
+
 }  // namespace
 }  // namespace marey::track

@@ -22,8 +22,7 @@ Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& s
   return target.size ? target.size->centre_in(box, target.filter.position(), sizes) : box.centre();
 }
 
-void Reidentification::match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now,
-                             const Limits& limits) {
+void Reidentification::match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits) {
   taken_.assign(seen.size(), 0);
   for (const Target& target : targets) {
     if (target.observation) taken_[*target.observation] = 1;

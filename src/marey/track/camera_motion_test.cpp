@@ -1,0 +1,111 @@
+#include "marey/track/camera_motion.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace marey::track {
+namespace {
+
+constexpr double kStep = 0.04;   // s
+constexpr double kNoise = 0.03;  // of a person's height
+
+/// People who stand in the scene, and what is seen of them through `view_from_scene`.
+class Stand {
+ public:
+  Stand(int people, unsigned seed) : random_(seed) {
+    std::uniform_real_distribution<double> x(100, 1180), y(200, 600), size(60, 140);
+    for (int i = 0; i < people; ++i) people_.push_back({{x(random_), y(random_)}, size(random_)});
+  }
+
+  void show(CameraMotion& camera, const geometry::Similarity2& view_from_scene, int strangers = 0) {
+    camera.predict(kStep);
+    std::vector<Sighting> expected, seen;
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> x(0, 1280), y(0, 720);
+    for (const Sighting& person : people_) {
+      const double noise = kNoise * person.size;
+      expected.push_back(
+          {camera.view_from_scene() * person.place, camera.view_from_scene().scale() * person.size, 2 * noise * noise});
+      const Vector<2> off(noise * normal(random_), noise * normal(random_));
+      seen.push_back({view_from_scene * person.place + off, view_from_scene.scale() * person.size});
+    }
+    for (int i = 0; i < strangers; ++i) seen.push_back({{x(random_), y(random_)}, 90});
+    camera.correct(expected, seen);
+  }
+
+  /// How far the camera is off for the worst of them, px.
+  double error(const CameraMotion& camera, const geometry::Similarity2& view_from_scene) const {
+    double most = 0;
+    for (const Sighting& person : people_)
+      most = std::max(most, (camera.view_from_scene() * person.place - view_from_scene * person.place).norm());
+    return most;
+  }
+
+ private:
+  std::mt19937 random_;
+  std::vector<Sighting> people_;
+};
+
+TEST(CameraMotion, FollowsAPanThatBeginsSlowly) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Stand stand(10, seed);
+    CameraMotion camera;
+    geometry::Similarity2 truth;
+    for (int frame = 0; frame < 150; ++frame) {
+      truth.shift += Vector<2>(std::min(6.0, 0.05 * frame), 1);  // px
+      stand.show(camera, truth, 3);
+    }
+    EXPECT_LT(stand.error(camera, truth), 12) << "seed " << seed << ": of 700 px";
+  }
+}
+
+TEST(CameraMotion, FollowsZoomAndRoll) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Stand stand(12, seed);
+    CameraMotion camera;
+    geometry::Similarity2 truth;
+    for (int frame = 0; frame < 100; ++frame) {
+      truth = geometry::Similarity2::about({640, 360}, 1.004, 0.001, {2, 0}) * truth;
+      stand.show(camera, truth, 2);
+    }
+    EXPECT_NEAR(camera.view_from_scene().scale() / truth.scale(), 1, 0.04) << "seed " << seed;
+    EXPECT_LT(stand.error(camera, truth), 30) << "seed " << seed;
+  }
+}
+
+TEST(CameraMotion, FollowsAJolt) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Stand stand(10, seed);
+    CameraMotion camera;
+    geometry::Similarity2 truth;
+    for (int frame = 0; frame < 60; ++frame) {
+      if (frame == 50) truth.shift += Vector<2>(25, -15);
+      stand.show(camera, truth);
+    }
+    EXPECT_LT(stand.error(camera, truth), 8) << "seed " << seed;
+  }
+}
+
+TEST(CameraMotion, LeavesACameraWhereItStands) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Stand stand(10, seed);
+    CameraMotion camera;
+    for (int frame = 0; frame < 500; ++frame) stand.show(camera, {}, 3);
+    EXPECT_LT(stand.error(camera, {}), 8) << "seed " << seed << ": after 20 s";
+  }
+}
+
+TEST(CameraMotion, NeedsThreePeople) {
+  CameraMotion camera;
+  const std::vector<Sighting> expected = {{{100, 100}, 80, 4}, {{300, 100}, 80, 4}};
+  const std::vector<Sighting> seen = {{{120, 100}, 80}, {{320, 100}, 80}};
+  camera.predict(kStep);
+  camera.correct(expected, seen);
+  EXPECT_EQ(camera.view_from_scene().shift, Vector<2>(0, 0));
+  camera.correct({}, {});
+  EXPECT_EQ(camera.view_from_scene().turn, (Matrix<2>::Identity()));
+}
+
+}  // namespace
+}  // namespace marey::track
