@@ -99,6 +99,8 @@ void add_detector(Command& match, simulate::match::MatchDetectorOptions& detecto
   match.number("--missed", detector.missed, "share", closed(0, 1), "of people in plain view that a camera's detector misses");
   match.number("--size-noise", detector.size_noise, "share", closed(0, 1),
                "standard deviation of a box's width and height, of them");
+  match.number("--foot-error", detector.foot_error, "m", closed(0, 5),
+               "standard deviation on the ground, by which boxes end beside the feet for half a second or so, each camera its own way");
   match.number("--false-alarms", detector.false_alarms, "a frame", closed(0, 100), "boxes of nobody");
 }
 

@@ -29,6 +29,7 @@ MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const Match
       motion_(scene.seed, scene.options.pitch),
       detector_(detector),
       random_((scene.seed * 64 + index) * 2654435761u + 41) {
+  if (detector.foot_error > 0) feet_.emplace(detector.foot_error, (scene.seed * 64 + index) * 2654435761u + 43);
   if (!film) return;
   film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
   has_ball_ = film->ball;
@@ -40,6 +41,7 @@ double MatchCamera::time() const {
 }
 
 void MatchCamera::advance() {
+  if (feet_ && frame_ >= 0) feet_->advance(1 / *rig_camera_.rate_hz);
   ++frame_;
   match_time_ = scene_.match_time(time() + rig_camera_.offset_s.value_or(0));
   motion_.advance(match_time_);
@@ -48,7 +50,13 @@ void MatchCamera::advance() {
 }
 
 std::vector<LabelledBox> MatchCamera::detect() {
-  return detect_match(seen_, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
+  std::vector<SeenPerson> moved = seen_;
+  for (SeenPerson& person : moved) {
+    if (!feet_) break;
+    const auto& stance = stances_[static_cast<std::size_t>(person.person)];
+    person = with_foot_moved(person, view_, stance.place, feet_->of(person.person));
+  }
+  return detect_match(moved, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
                       random_);
 }
 
