@@ -1,7 +1,8 @@
 // A football match seen by six cameras that are known by homographies alone, each off by smooth errors, whose boxes end beside the
 // feet for half a second at a time: what is followed live against the whole recording, and what is learned of the cameras against
 // the truth.
-//   feet_that_err [--seeds N] [--first SEED] [--seconds S] [--rate HZ] [--foot-error M] [--edges SHARE] [--least M] [--most M] [--length M] [--width M] [--only WAY]
+//   feet_that_err [--seeds N] [--first SEED] [--seconds S] [--rate HZ] [--foot-error M] [--along SHARE] [--edges SHARE] [--least M]
+//   [--most M] [--length M] [--width M] [--sides] [--only WAY]
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -27,9 +28,9 @@
 namespace marey::sweep {
 namespace {
 
-constexpr double kFarthest = 1.5;             // m from the truth, where a track counts
-constexpr double kAlone = 4, kNear = 2;       // m: who is alone within the one is whatever is seen within the other
-constexpr double kLag = 0.1;                  // s
+constexpr double kFarthest = 1.5;        // m from the truth, where a track counts
+constexpr double kAlone = 4, kNear = 2;  // m: who is alone within the one is whatever is seen within the other
+constexpr double kLag = 0.1;             // s
 
 struct Scene {
   pipeline::MatchFilesOptions files;
@@ -154,8 +155,10 @@ void print_learned(const std::string& folder) {
     one.camera = CameraId{camera};
     noise += fmt::format(" {:.2f}", std::sqrt(agreement.corrected(one).covariance(0, 0)));
   }
-  fmt::print("noise{}; lasting disagreement of each camera: learned {:.3f} m, true {:.3f} m (single frames {:.3f}; uncorrected {:.3f}, {:.3f})\n",
-             noise, agreement.disagreement(), after.lasting, after.whole, before.lasting, before.whole);
+  fmt::print(
+      "noise{}; lasting disagreement of each camera: learned {:.3f} m, true {:.3f} m (single frames {:.3f}; uncorrected {:.3f}, "
+      "{:.3f})\n",
+      noise, agreement.disagreement().value_or(0), after.lasting, after.whole, before.lasting, before.whole);
 }
 
 void run(Scene scene, int first, int seeds, const std::string& only) {
@@ -193,13 +196,17 @@ int main(int count, char** words) {
   app.add_option("--seconds", scene.files.seconds)->capture_default_str();
   app.add_option("--rate", scene.files.cameras.rate_hz, "Hz")->capture_default_str();
   app.add_option("--foot-error", scene.files.detector.foot_error, "m")->capture_default_str();
+  app.add_option("--along", scene.files.detector.foot_along, "share of its variance along the view")->capture_default_str();
   app.add_option("--edges", edges, "noise of each edge of a box, of its height or width")->capture_default_str();
   app.add_option("--least", scene.least, "m, that a camera is off, at least")->capture_default_str();
   app.add_option("--most", scene.most, "m, at most; 0: cameras are exact")->capture_default_str();
+  bool sides = false;
+  app.add_flag("--sides", sides, "cameras behind both touchlines in place of round the pitch");
   app.add_option("--length", scene.files.cameras.pitch.length, "of the pitch, m")->capture_default_str();
   app.add_option("--width", scene.files.cameras.pitch.width, "m")->capture_default_str();
   app.add_option("--only", only, "live, offline, learned");
   CLI11_PARSE(app, count, words);
+  if (sides) scene.files.cameras.stand = marey::simulate::match::MatchStand::sides;
   scene.files.detector.size_noise = edges * std::sqrt(2.0);
   marey::sweep::run(scene, first, seeds, only);
 }

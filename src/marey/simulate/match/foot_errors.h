@@ -17,7 +17,7 @@ namespace marey::simulate::match {
 
 class FootErrors {
  public:
-  static constexpr double kSlowShare = 0.6;                 ///< of the variance
+  static constexpr double kSlowShare = 0.6;                ///< of the variance
   static constexpr double kSlow_s = 0.5, kQuick_s = 0.06;  ///< time constants
 
   /// `sigma`: standard deviation per axis, m. Errors are stationary from the beginning on.

@@ -38,8 +38,7 @@ std::vector<Vector<2>> found_errors(double foot_error) {
   cameras.cameras = 1;
   cameras.distorted = false;
   const MatchScene scene(cameras, 3);
-  const MatchDetectorOptions detector{
-      .missed = 0, .size_noise = 0, .false_alarms = 0, .hidden_found = 1, .foot_error = foot_error};
+  const MatchDetectorOptions detector{.missed = 0, .size_noise = 0, .false_alarms = 0, .hidden_found = 1, .foot_error = foot_error};
   MatchCamera camera(scene, 0, detector, {});
   MatchTruth truth(scene);
   const GroundView view = *scene.rig.cameras[0].ground_view(scene.rig.ground);

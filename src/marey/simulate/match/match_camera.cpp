@@ -1,6 +1,7 @@
 #include "marey/simulate/match/match_camera.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace marey::simulate::match {
@@ -53,8 +54,12 @@ std::vector<LabelledBox> MatchCamera::detect() {
   std::vector<SeenPerson> moved = seen_;
   for (SeenPerson& person : moved) {
     if (!feet_) break;
-    const auto& stance = stances_[static_cast<std::size_t>(person.person)];
-    person = with_foot_moved(person, view_, stance.place, feet_->of(person.person));
+    const Vector<2>& place = stances_[static_cast<std::size_t>(person.person)].place;
+    const Vector<2> along = (place - view_.camera()->centre().head<2>()).normalized(), across(-along.y(), along.x());
+    const Vector<2> error = feet_->of(person.person);
+    const double share = detector_.foot_along;
+    person = with_foot_moved(person, view_, place,
+                             std::sqrt(2 * share) * error.x() * along + std::sqrt(2 * (1 - share)) * error.y() * across);
   }
   return detect_match(moved, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
                       random_);

@@ -56,7 +56,7 @@ void GroundRun::learn() {
   std::vector<GroundInstant> all(std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
   kept_.clear();
   if (learn_.agreement) agreement_ = GroundAgreement::learn(all, views_->cameras());
-  if (agreement_.learned()) options_.disagreement = agreement_.disagreement();
+  options_.disagreement = agreement_.disagreement().value_or(options_.disagreement);
   for (GroundInstant& instant : all) {
     correct(instant);
     kept_.push_back(std::move(instant));
@@ -76,7 +76,7 @@ void GroundRun::learn() {
 bool GroundRun::is_plain() const {
   if (kept_.size() < 2) return true;
   const double between = seconds(kept_.back().time - kept_.front().time) / static_cast<double>(kept_.size() - 1);
-  return between <= kOften && (!agreement_.learned() || agreement_.disagreement() <= kAgreeing);
+  return between <= kOften && (!agreement_.learned() || options_.disagreement <= kAgreeing);
 }
 
 /// From what a quick tracker makes of what was kept.
