@@ -172,6 +172,9 @@ void run(Scene scene, int first, int seeds, const std::string& only) {
     };
     row("live", live(scene.files.cameras.pitch));
     row("offline", offline(scene.files.cameras.pitch));
+    pipeline::PeopleOnGroundOptions quick = offline(scene.files.cameras.pitch);
+    quick.tracker.associate = track::ground::GroundAssociation::gnn;
+    row("offline, gnn", quick);
     pipeline::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
     plain.learn.agreement = false;
     row("offline, cameras not learned", plain);

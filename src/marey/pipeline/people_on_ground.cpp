@@ -12,6 +12,7 @@
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
+#include "marey/pipeline/camera_contradictions.h"
 #include "marey/pipeline/ground_offsets.h"
 #include "marey/pipeline/live_teams.h"
 #include "marey/pipeline/nobody_found.h"
@@ -145,6 +146,10 @@ class GroundStage final : public PeopleOnGround {
     if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
     if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
+    if (run_ && options_.learn.agreement) {
+      for (std::string& sentence : contradicting_cameras(rig_, run_->compared())) summary.warnings.push_back(std::move(sentence));
+      for (std::string& sentence : uncompared_cameras(rig_, run_->compared())) summary.notes.push_back(std::move(sentence));
+    }
     for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
     for (const Summary::Camera& camera : summary.cameras) {
       if (camera.frames > 0) continue;

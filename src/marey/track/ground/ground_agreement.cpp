@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/LU>
+#include "marey/track/ground/ground_lasting.h"
 
 namespace marey::track::ground {
 namespace {
@@ -16,22 +16,18 @@ constexpr std::size_t kMostInstants = 400;  // that are looked at, evenly over t
 constexpr std::size_t kFewestPairs = 300;
 constexpr double kClearly = 1.6;                     // times the nearest's distance: so much farther the second nearest must be
 constexpr double kFirstGate = 2.2;                   // m
-constexpr double kLastGate = 1.0;                    // m
+constexpr double kLastGate = 1.0;                    // m, of fields; what lasts is measured within the first
 constexpr double kCell = 1;                          // m
 constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of what is seen, but
 constexpr double kNarrowest = 2.5;                   // m at least
 constexpr double kPriorPairs = 12;                   // with which a field holds to 0
 constexpr int kRounds = 12;
-constexpr double kWorthIt = 0.97;  // of the distances of pairs held out, that must be left by fields that are kept
-constexpr double kLeastRemains = 0.05, kMostRemains = 0.6;  // m: what lasts, as no noise that could be averaged away
-constexpr double kLag = 0.1;                                // s, after which an error that is still there lasts
-constexpr double kLatest = 0.6;                             // s, likewise, at low rates
-constexpr double kStill = 1, kSpeed = 6;                    // m and m/s: how far who is seen goes meanwhile, with errors
-constexpr std::size_t kFewestLinks = 100, kFewestRatios = 30;
-constexpr double kMostNoise = 3;
-constexpr double kFew = 0.01;               // of the places lie beyond the grid on each side: some are near the horizon
-constexpr double kChiSquareMedian = 1.386;  // of two degrees
-constexpr double kSquareMedian = 0.4549;    // of one
+constexpr double kWorthIt = 0.97;         // of the distances of pairs held out, that must be left by fields that are kept
+constexpr double kLag = 0.1;              // s, after which an error that is still there lasts
+constexpr double kLatest = 0.6;           // s, likewise, at low rates
+constexpr double kStill = 1, kSpeed = 6;  // m and m/s: how far who is seen goes meanwhile, with errors
+constexpr double kMostByChance = 0.2;     // of links
+constexpr double kFew = 0.01;             // of the places lie beyond the grid on each side: some are near the horizon
 
 struct Seen {
   Vector<2> place;  // m, as the camera has it
@@ -127,15 +123,15 @@ class Agreeing {
     return found;
   }
 
-  /// Pairs of one instant that are plainly the same people's a little later.
-  std::vector<Link> links(double gate) const {
+  /// Pairs of one instant that are plainly the same people's a little later; or half of the recording later, where nobody's are.
+  std::vector<Link> links(double gate, bool by_chance) const {
     std::vector<Link> found;
     for (std::size_t k = 0; k < shots_.size(); ++k) {
       if (all_.between[k] == 0) continue;
       std::vector<Pair> now, later;
       pair_up(shots_[k], gate, now);
-      pair_up(all_.later[k], gate, later);
-      link_up(now, later, kStill + kSpeed * all_.between[k], found);
+      pair_up(by_chance ? shots_[(k + shots_.size() / 2) % shots_.size()] : all_.later[k], gate, later);
+      link_up(now, later, std::min(kStill + kSpeed * all_.between[k], gate), found);
     }
     return found;
   }
@@ -291,40 +287,17 @@ std::optional<double> best_part(Agreeing& agreeing) {
   return best;
 }
 
-double variance_by_median(std::vector<double>& squares) {
-  return quantile(squares, 0.5) / kSquareMedian;
-}
-
-/// Differences of two cameras about one person, of the later instant against the earlier: their sum and their difference tell what
-/// lasts from what does not, whatever either is.
-struct Lasting {
-  std::optional<double> deviation;  ///< m, per axis and camera
-  std::vector<double> noise;        ///< by camera: what standard deviations are to be multiplied by
-};
-
-Lasting lasting_of(const Agreeing& agreeing, int cameras) {
-  const std::vector<Link> links = agreeing.links(kFirstGate);
-  std::vector<double> sums, changes;  // squares, m²
-  std::vector<std::vector<double>> ratios(static_cast<std::size_t>(cameras));
-  for (const Link& link : links) {
-    const Vector<2> first = agreeing.difference(link.first), second = agreeing.difference(link.second);
-    const Vector<2> sum = second + first, change = second - first;
-    for (int axis = 0; axis < 2; ++axis) sums.push_back(sum[axis] * sum[axis]), changes.push_back(change[axis] * change[axis]);
-    const Matrix<2> S =
-        link.first.of_a->covariance + link.first.of_b->covariance + link.second.of_a->covariance + link.second.of_b->covariance;
-    const double ratio = change.dot(S.inverse() * change);
-    ratios[static_cast<std::size_t>(link.first.a)].push_back(ratio);
-    ratios[static_cast<std::size_t>(link.first.b)].push_back(ratio);
+/// Nothing lasts of whom chance alone links: as many as are linked to people of another time.
+LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
+  std::vector<LinkedDifferences> differences;
+  const std::vector<Link> links = agreeing.links(kFirstGate, false);
+  for (const auto& [first, second] : links) {
+    differences.push_back({first.a, first.b, agreeing.difference(first), agreeing.difference(second),
+                           first.of_a->covariance + first.of_b->covariance + second.of_a->covariance + second.of_b->covariance});
   }
-  Lasting lasting;
-  for (std::vector<double>& of : ratios) {
-    lasting.noise.push_back(
-        of.size() < kFewestRatios ? 1.0 : std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), 1.0, kMostNoise));
-  }
-  if (links.size() < kFewestLinks) return lasting;
-  // Sums have twice the variance and twice the covariance of a difference of two cameras, changes twice and minus twice.
-  const double variance = (variance_by_median(sums) - variance_by_median(changes)) / 8;
-  lasting.deviation = std::clamp(std::sqrt(std::max(0.0, variance)), kLeastRemains, kMostRemains);
+  LastingDisagreement lasting = lasting_disagreement(differences, cameras);
+  const auto by_chance = static_cast<double>(agreeing.links(kFirstGate, true).size());
+  if (by_chance > kMostByChance * static_cast<double>(links.size())) lasting.deviation.reset();
   return lasting;
 }
 
@@ -341,7 +314,7 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
   } else {
     agreeing.forget();
   }
-  const Lasting lasting = lasting_of(agreeing, cameras);
+  const LastingDisagreement lasting = lasting_of(agreeing, cameras);
   agreement.noise_ = lasting.noise;
   agreement.disagreement_ = lasting.deviation;
   return agreement;
