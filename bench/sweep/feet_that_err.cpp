@@ -172,9 +172,6 @@ void run(Scene scene, int first, int seeds, const std::string& only) {
     };
     row("live", live(scene.files.cameras.pitch));
     row("offline", offline(scene.files.cameras.pitch));
-    pipeline::PeopleOnGroundOptions quick = offline(scene.files.cameras.pitch);
-    quick.tracker.associate = track::ground::GroundAssociation::gnn;
-    row("offline, gnn", quick);
     pipeline::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
     plain.learn.agreement = false;
     row("offline, cameras not learned", plain);
@@ -207,7 +204,7 @@ int main(int count, char** words) {
   app.add_flag("--sides", sides, "cameras behind both touchlines in place of round the pitch");
   app.add_option("--length", scene.files.cameras.pitch.length, "of the pitch, m")->capture_default_str();
   app.add_option("--width", scene.files.cameras.pitch.width, "m")->capture_default_str();
-  app.add_option("--only", only, "live, offline, learned");
+  app.add_option("--only", only, "what is compared");
   CLI11_PARSE(app, count, words);
   if (sides) scene.files.cameras.stand = marey::simulate::match::MatchStand::sides;
   scene.files.detector.size_noise = edges * std::sqrt(2.0);

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "marey/track/ground/ground_lasting.h"
 
 namespace marey::track::ground {
@@ -28,6 +30,11 @@ constexpr double kLatest = 0.6;           // s, likewise, at low rates
 constexpr double kStill = 1, kSpeed = 6;  // m and m/s: how far who is seen goes meanwhile, with errors
 constexpr double kMostByChance = 0.2;     // of links
 constexpr double kFew = 0.01;             // of the places lie beyond the grid on each side: some are near the horizon
+
+constexpr double kChiSquareMedian = 1.386;  // of two degrees
+constexpr std::size_t kFewestRatios = 30;
+constexpr double kLeastNoise = 0.5, kMostNoise = 3;
+constexpr double kOwnErrors = 0.42;  // of a deviation, that is taken to last where it cannot be measured: gait, height, clothes
 
 struct Seen {
   Vector<2> place;  // m, as the camera has it
@@ -287,7 +294,29 @@ std::optional<double> best_part(Agreeing& agreeing) {
   return best;
 }
 
-/// Nothing lasts of whom chance alone links: as many as are linked to people of another time.
+/// From single instants: by camera what its deviations are to be multiplied by, and of all errors the share that is taken to last.
+LastingDisagreement of_single_instants(const Agreeing& agreeing, int cameras) {
+  std::vector<double> squares;
+  std::vector<std::vector<double>> ratios(static_cast<std::size_t>(cameras));
+  for (const Pair& pair : agreeing.pairs({}, kLastGate)) {
+    const Vector<2> apart = agreeing.difference(pair);
+    const Matrix<2> S = pair.of_a->covariance + pair.of_b->covariance;
+    const double ratio = apart.dot(S.inverse() * apart);
+    squares.push_back(apart.squaredNorm());
+    ratios[static_cast<std::size_t>(pair.a)].push_back(ratio);
+    ratios[static_cast<std::size_t>(pair.b)].push_back(ratio);
+  }
+  LastingDisagreement found;
+  for (std::vector<double>& of : ratios) {
+    const bool enough = of.size() >= kFewestRatios;
+    found.noise.push_back(enough ? std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), kLeastNoise, kMostNoise) : 1.0);
+  }
+  found.deviation = kOwnErrors * std::sqrt(quantile(squares, 0.5) / kChiSquareMedian / 2);  // of two cameras
+  return found;
+}
+
+/// Where people cannot be linked (too few, or a crowd at a low rate, in which as many are linked to people of another time) a share
+/// of all errors is taken to last.
 LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
   std::vector<LinkedDifferences> differences;
   const std::vector<Link> links = agreeing.links(kFirstGate, false);
@@ -295,10 +324,10 @@ LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
     differences.push_back({first.a, first.b, agreeing.difference(first), agreeing.difference(second),
                            first.of_a->covariance + first.of_b->covariance + second.of_a->covariance + second.of_b->covariance});
   }
-  LastingDisagreement lasting = lasting_disagreement(differences, cameras);
+  const LastingDisagreement lasting = lasting_disagreement(differences, cameras);
   const auto by_chance = static_cast<double>(agreeing.links(kFirstGate, true).size());
-  if (by_chance > kMostByChance * static_cast<double>(links.size())) lasting.deviation.reset();
-  return lasting;
+  const bool linked = lasting.deviation && by_chance <= kMostByChance * static_cast<double>(links.size());
+  return linked ? lasting : of_single_instants(agreeing, cameras);
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ class GroundAgreement {
   /// The observation without what its camera is wrong, as uncertain as such observations are.
   Observation<2> corrected(Observation<2> seen) const;
   /// Standard deviation per axis and camera of what lasts of the disagreement, m: what is still there a tenth of a second later, or
-  /// at the next instant at low rates. Nothing where too few people were seen by two cameras at two instants.
+  /// at the next instant at low rates; a share of all errors where too few people can be told again then. Nothing where nothing was
+  /// learned.
   std::optional<double> disagreement() const { return disagreement_; }
 
  private:

@@ -11,11 +11,11 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr std::size_t kFewestLinks = 100, kFewestRatios = 30;
+constexpr std::size_t kFewestLinks = 100, kFewestChanges = 30;
 constexpr double kLeastLasting = 0.05, kMostLasting = 0.6;  // m
-constexpr double kMostNoise = 3;
-constexpr double kChiSquareMedian = 1.386;  // of two degrees
-constexpr double kSquareMedian = 0.4549;    // of one
+constexpr double kNoisiest = 3;
+constexpr double kTwoSquaresMedian = 1.386;  // of two degrees
+constexpr double kOneSquareMedian = 0.4549;  // of one
 
 double middle_of(std::vector<double>& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
@@ -29,7 +29,7 @@ struct Squares {
 
   /// The covariance of the differences at the two instants, m². Sums have twice their variance and twice this, changes twice and
   /// minus twice.
-  double covariance() { return (middle_of(sums) - middle_of(changes)) / kSquareMedian / 4; }
+  double covariance() { return (middle_of(sums) - middle_of(changes)) / kOneSquareMedian / 4; }
 };
 
 /// By axes of the link's own uncertainty, the greater first: along it errors are of one size, where those of north and east would
@@ -82,8 +82,8 @@ LastingDisagreement lasting_disagreement(std::span<const LinkedDifferences> link
   }
   LastingDisagreement lasting;
   for (std::vector<double>& of : ratios) {
-    const bool enough = of.size() >= kFewestRatios;
-    lasting.noise.push_back(enough ? std::clamp(std::sqrt(middle_of(of) / kChiSquareMedian), 1.0, kMostNoise) : 1.0);
+    const bool enough = of.size() >= kFewestChanges;
+    lasting.noise.push_back(enough ? std::clamp(std::sqrt(middle_of(of) / kTwoSquaresMedian), 1.0, kNoisiest) : 1.0);
   }
   if (links.size() >= kFewestLinks)
     lasting.deviation = std::clamp(std::sqrt(lasting_variance(by_cameras)), kLeastLasting, kMostLasting);
