@@ -168,7 +168,8 @@ TEST(TrackGround, TheWholeRecordingIsNoWorseThanLiveWhereFeetErr) {
       PeopleOnGroundOptions options = over_pitch();
       options.live = as_live;
       if (!as_live) options.tracker.associate = track::ground::GroundAssociation::mht, options.learn.association = true;
-      track_ground(rig, to(folder / "out.csv"), options);
+      for (const std::string& warning : track_ground(rig, to(folder / "out.csv"), options).warnings)
+        EXPECT_EQ(warning.find("look"), std::string::npos) << warning << ": no camera contradicts the others";
       const MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
       (as_live ? live : offline) += *judgement.evaluation.scores.identity.f1 / 3;
     }

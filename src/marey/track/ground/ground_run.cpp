@@ -59,7 +59,8 @@ void GroundRun::learn() {
   kept_.clear();
   if (learn_.agreement) {
     agreement_ = GroundAgreement::learn(all, views_->cameras());
-    compared_ = compare_cameras(all, agreement_, views_->cameras());
+    compared_ =
+        compare_cameras(all, {}, views_->cameras());  // as they are: what is learned may hide that a camera is off by metres
   }
   if (const auto lasting = agreement_.disagreement()) options_.disagreement = kOfTwo * *lasting;
   for (GroundInstant& instant : all) {
