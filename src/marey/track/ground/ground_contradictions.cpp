@@ -10,7 +10,7 @@ namespace marey::track::ground {
 namespace {
 
 constexpr std::size_t kMostCompared = 200;  // instants, evenly over the recording
-constexpr double kMeeting = 1;            // m
+constexpr double kMeeting = 1;              // m
 constexpr double kWatchedCell = 3;          // m, of the ground that a camera is known to see
 constexpr int kWatched = 3;                 // people in it, over all instants: so many are not false alarms
 constexpr int kFewestLooks = 100;           // of people of the one where the other looks
