@@ -61,15 +61,16 @@ void run(const SimulateMatch& command) {
 void add_cameras(Command& match, SimulateMatch& options) {
   simulate::match::MatchCamerasOptions& cameras = options.files.cameras;
   using simulate::match::MatchStand;
-  constexpr std::array<std::pair<const char*, MatchStand>, 4> kStands{{{"round", MatchStand::round},
+  constexpr std::array<std::pair<const char*, MatchStand>, 5> kStands{{{"round", MatchStand::round},
                                                                        {"football", MatchStand::football},
                                                                        {"corners", MatchStand::corners},
-                                                                       {"apart", MatchStand::apart}}};
+                                                                       {"apart", MatchStand::apart},
+                                                                       {"sides", MatchStand::sides}}};
   match.choice("--stand", cameras.stand, kStands,
                "where the cameras are: evenly round the pitch; two on one low stand beside it; two high behind opposite corners; "
                "two low beside "
                "one touchline, apart");
-  match.whole("--cameras", cameras.cameras, "N", 1, 64, "how many round the pitch");
+  match.whole("--cameras", cameras.cameras, "N", 1, 64, "how many round the pitch or at its sides");
   match.wholes("--size", options.size, "px", 64, 8192,
                "of the pictures: width and height (default: 1920 1080 round the pitch, else 3072 1728)");
   match.number("--rate", cameras.rate_hz, "Hz", closed(0.1, 1000), "frames a second");
@@ -99,6 +100,10 @@ void add_detector(Command& match, simulate::match::MatchDetectorOptions& detecto
   match.number("--missed", detector.missed, "share", closed(0, 1), "of people in plain view that a camera's detector misses");
   match.number("--size-noise", detector.size_noise, "share", closed(0, 1),
                "standard deviation of a box's width and height, of them");
+  match.number(
+      "--foot-error", detector.foot_error, "m", closed(0, 5),
+      "standard deviation on the ground, by which boxes end beside the feet for half a second or so, each camera its own way");
+  match.number("--foot-along", detector.foot_along, "share", closed(0, 1), "of that error's variance, along the view");
   match.number("--false-alarms", detector.false_alarms, "a frame", closed(0, 100), "boxes of nobody");
 }
 

@@ -12,6 +12,7 @@
 #include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
+#include "marey/pipeline/camera_contradictions.h"
 #include "marey/pipeline/ground_offsets.h"
 #include "marey/pipeline/live_teams.h"
 #include "marey/pipeline/nobody_found.h"
@@ -26,6 +27,7 @@ using track::ground::ObservationMatch;
 
 constexpr std::size_t kMostCameras = 64;
 constexpr double kPatientFrames = 1.6;  // at few frames a second, a newcomer may be missed in one
+constexpr double kLongEnough = 10;      // s, in which cameras that share ground share people
 constexpr double kSure = 0.9;           // that a track which was lost is rightly joined: else the join is counted as doubtful
 
 std::vector<double> offsets_of(const Rig& rig) {
@@ -145,6 +147,13 @@ class GroundStage final : public PeopleOnGround {
     if (!options_.live) summary.figures["doubtful_joins"] = static_cast<double>(doubtful_joins_);
     for (const GroundCamera& camera : cameras_) camera.report(summary);
     if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
+    if (run_ && options_.learn.agreement) {
+      for (std::string& sentence : contradicting_cameras(rig_, run_->compared())) summary.warnings.push_back(std::move(sentence));
+      const bool is_long = !moments_.empty() && seconds(moments_.back().time - moments_.front().time) >= kLongEnough;
+      for (std::string& sentence : uncompared_cameras(rig_, run_->compared())) {
+        if (is_long) summary.notes.push_back(std::move(sentence));
+      }
+    }
     for (std::string& sentence : contradicted_offsets(rig_, paths_)) summary.warnings.push_back(std::move(sentence));
     for (const Summary::Camera& camera : summary.cameras) {
       if (camera.frames > 0) continue;

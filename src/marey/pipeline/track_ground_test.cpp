@@ -1,9 +1,11 @@
 #include "marey/pipeline/track_ground.h"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,6 +15,7 @@
 #include "marey/format/tracks/mot.h"
 #include "marey/pipeline/judge_match.h"
 #include "marey/pipeline/match_files.h"
+#include "marey/simulate/match/match_homographies.h"
 
 #include "support/files.h"
 
@@ -144,6 +147,64 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
     for (const CameraMask cameras : track.cameras()) seen_by[number(track.id())] |= cameras;
   }
   EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{1, 3}, {2, 1}})) << "who walks is seen by both";
+}
+
+/// A match of 20 s, cameras behind both touchlines, boxes that end beside the feet for a while, each camera known by a homography
+/// that is off by half a metre.
+Rig feet_that_err(const std::string& folder, std::uint64_t seed) {
+  MatchFilesOptions options = match(seed, 20);
+  options.cameras.stand = simulate::match::MatchStand::sides;
+  options.detector.foot_error = 0.25, options.detector.foot_along = 1, options.detector.size_noise = 0.01;
+  const Rig exact = simulate(folder, options);
+  return simulate::match::known_by_homographies(exact, {}, 0.25, 0.6, seed);
+}
+
+TEST(TrackGround, TheWholeRecordingIsNoWorseThanLiveWhereFeetErr) {
+  double live = 0, offline = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const test::TemporaryFolder folder;
+    const Rig rig = feet_that_err(folder.path(), seed);
+    for (const bool as_live : {true, false}) {
+      PeopleOnGroundOptions options = over_pitch();
+      options.live = as_live;
+      if (!as_live) options.tracker.associate = track::ground::GroundAssociation::mht, options.learn.association = true;
+      for (const std::string& warning : track_ground(rig, to(folder / "out.csv"), options).warnings)
+        EXPECT_EQ(warning.find("look"), std::string::npos) << warning << ": no camera contradicts the others";
+      const MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+      (as_live ? live : offline) += *judgement.evaluation.scores.identity.f1 / 3;
+    }
+  }
+  EXPECT_GT(offline, live - 0.005);
+  EXPECT_GT(offline, 0.95);
+}
+
+/// What the cameras were warned of, with one of them changed.
+std::vector<std::string> warnings_with(const std::function<void(RigCamera&)>& change) {
+  const test::TemporaryFolder folder;
+  MatchFilesOptions options = match(3, 10, 4);
+  options.cameras.rate_hz = 5;
+  Rig rig = simulate::match::known_by_homographies(simulate(folder.path(), options), {}, 0.05, 0.1, 3);
+  change(rig.cameras[1]);
+  return track_ground(rig, to(folder / "out.csv"), over_pitch()).warnings;
+}
+
+TEST(TrackGround, ACameraThatContradictsTheOthersIsNamed) {
+  const auto moved = [](RigCamera& camera, const Matrix<3>& by) { *camera.ground_from_image = by * *camera.ground_from_image; };
+  EXPECT_EQ(warnings_with([](RigCamera&) {}), std::vector<std::string>());
+  const auto mirrored = warnings_with([&](RigCamera& camera) {
+    Matrix<3> by = Matrix<3>::Identity();
+    by(0, 0) = -1, by(0, 2) = geometry::PitchSize{}.length;
+    moved(camera, by);
+  });
+  ASSERT_EQ(mirrored.size(), 1u);
+  EXPECT_NE(mirrored[0].find("camera \"cam2\": its people are not where other cameras"), std::string::npos) << mirrored[0];
+  const auto off = warnings_with([&](RigCamera& camera) {
+    Matrix<3> by = Matrix<3>::Identity();
+    by(0, 2) = 2.1, by(1, 2) = 2.2;
+    moved(camera, by);
+  });
+  ASSERT_EQ(off.size(), 1u);
+  EXPECT_NE(off[0].find("camera \"cam2\": its people are not where other cameras"), std::string::npos) << off[0];
 }
 
 TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {

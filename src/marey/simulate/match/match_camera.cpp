@@ -1,6 +1,7 @@
 #include "marey/simulate/match/match_camera.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace marey::simulate::match {
@@ -29,6 +30,7 @@ MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const Match
       motion_(scene.seed, scene.options.pitch),
       detector_(detector),
       random_((scene.seed * 64 + index) * 2654435761u + 41) {
+  if (detector.foot_error > 0) feet_.emplace(detector.foot_error, (scene.seed * 64 + index) * 2654435761u + 43);
   if (!film) return;
   film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
   has_ball_ = film->ball;
@@ -40,6 +42,7 @@ double MatchCamera::time() const {
 }
 
 void MatchCamera::advance() {
+  if (feet_ && frame_ >= 0) feet_->advance(1 / *rig_camera_.rate_hz);
   ++frame_;
   match_time_ = scene_.match_time(time() + rig_camera_.offset_s.value_or(0));
   motion_.advance(match_time_);
@@ -48,7 +51,17 @@ void MatchCamera::advance() {
 }
 
 std::vector<LabelledBox> MatchCamera::detect() {
-  return detect_match(seen_, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
+  std::vector<SeenPerson> moved = seen_;
+  for (SeenPerson& person : moved) {
+    if (!feet_) break;
+    const Vector<2>& place = stances_[static_cast<std::size_t>(person.person)].place;
+    const Vector<2> along = (place - view_.camera()->centre().head<2>()).normalized(), across(-along.y(), along.x());
+    const Vector<2> error = feet_->of(person.person);
+    const double share = detector_.foot_along;
+    person = with_foot_moved(person, view_, place,
+                             std::sqrt(2 * share) * error.x() * along + std::sqrt(2 * (1 - share)) * error.y() * across);
+  }
+  return detect_match(moved, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
                       random_);
 }
 

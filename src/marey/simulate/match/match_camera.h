@@ -9,6 +9,7 @@
 #include "marey/core/instant.h"
 #include "marey/core/picture.h"
 #include "marey/core/rig.h"
+#include "marey/simulate/match/foot_errors.h"
 #include "marey/simulate/match/match_cameras.h"
 #include "marey/simulate/match/match_film.h"
 #include "marey/simulate/match/match_motion.h"
@@ -76,6 +77,7 @@ class MatchCamera {
   MatchMotion motion_;
   MatchDetectorOptions detector_;
   Random random_;
+  std::optional<FootErrors> feet_;
   std::optional<MatchFilm> film_;
   double exposure_s_ = 0;
   bool has_ball_ = false;

@@ -36,6 +36,9 @@ class Builder {
       case MatchStand::apart:
         football();
         break;
+      case MatchStand::sides:
+        sides();
+        break;
     }
     rig_.calibration.emplace().method = "simulated: the exact truth";
     return std::move(rig_);
@@ -81,6 +84,18 @@ class Builder {
     }
   }
 
+  void sides() {
+    const double length = options_.pitch.length, width = options_.pitch.width;
+    for (int i = 0; i < options_.cameras; ++i) {
+      const bool far = i >= (options_.cameras + 1) / 2;
+      const int first = far ? (options_.cameras + 1) / 2 : 0;
+      const int along = far ? options_.cameras - first : (options_.cameras + 1) / 2;
+      const Vector<2> at = Vector<2>(length * (i - first + 0.5) / along, far ? width + kBehind : -kBehind) + jitter(1);
+      const Vector<2> aim = Vector<2>(at.x(), width * (far ? 0.6 : 0.4)) + jitter(1);
+      add(fmt::format("cam{}", i + 1), {1920, 1080}, 0.8, {at.x(), at.y(), 12 + random_.uniform(-1, 1)}, {aim.x(), aim.y(), 0});
+    }
+  }
+
   void football() {
     // As football's own user counts: y grows towards the cameras, so that the world's y is −y.
     Matrix<3> ground_from_world = Matrix<3>::Identity();
@@ -118,7 +133,8 @@ class Builder {
 }  // namespace
 
 Rig match_cameras(const MatchCamerasOptions& options, std::uint64_t seed) {
-  if (options.stand == MatchStand::round && (options.cameras < 1 || options.cameras > kMostCameras))
+  const bool counted = options.stand == MatchStand::round || options.stand == MatchStand::sides;
+  if (counted && (options.cameras < 1 || options.cameras > kMostCameras))
     throw Error("{} cameras round a match; 1 to {} are possible", options.cameras, kMostCameras);
   if (!(options.rate_hz > 0) || !std::isfinite(options.rate_hz))
     throw Error("a rate of {} frames a second; it must be positive", options.rate_hz);

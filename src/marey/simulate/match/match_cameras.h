@@ -18,12 +18,14 @@ enum class MatchStand {
              ///< overlap
   corners,   ///< two behind opposite corners, 15 m up
   apart,     ///< as `football`, but each stands at its own quarter of the touchline
+  sides,     ///< half of them behind each touchline, 12 m up, each looking at its own part of the pitch: few places are seen by
+             ///< more than two or three
 };
 
 struct MatchCamerasOptions {
   MatchStand stand = MatchStand::round;
-  int cameras = 6;               ///< 1 to 64, of `round`; the others have two
-  std::optional<cv::Size> size;  ///< px; nothing: 1920 × 1080 round the pitch, 3072 × 1728 of the others
+  int cameras = 6;               ///< 1 to 64, of `round` and `sides`; the others have two
+  std::optional<cv::Size> size;  ///< px; nothing: 1920 × 1080 of these, 3072 × 1728 of the others
   double rate_hz = 25;           ///< frames a second
   double offset_s = 0;           ///< cameras were started up to this much before or after the first
   bool distorted = true;         ///< lenses with Brown's distortion, as cheap cameras have; else pinholes

@@ -154,6 +154,17 @@ std::vector<SeenPerson> people_in_view(const GroundView& view, std::span<const p
   return seen;
 }
 
+SeenPerson with_foot_moved(const SeenPerson& seen, const GroundView& view, const Vector<2>& place, const Vector<2>& by) {
+  const auto from = sight(view, {place.x(), place.y(), 0}), to = sight(view, {place.x() + by.x(), place.y() + by.y(), 0});
+  if (!from || !to) return seen;
+  const Vector<2> moved = to->at - from->at;
+  SeenPerson result = seen;
+  const bool cut = seen.shown.bottom() < seen.whole.bottom();
+  result.shown.left += moved.x();
+  if (!cut) result.shown.height = std::max(1.0, seen.shown.height + moved.y());
+  return result;
+}
+
 std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const GroundView& view, const Matrix<3>& world_from_pitch,
                                       const geometry::PitchSize& pitch, std::int32_t frame, const MatchDetectorOptions& options,
                                       Random& random) {

@@ -40,13 +40,20 @@ std::vector<SeenPerson> people_in_view(const GroundView& view, std::span<const p
 /// A person of whom less is to be seen is hardly ever detected.
 inline constexpr double kHiddenShare = 0.35;
 
-/// How a detector errs, from frame to frame independently.
+/// How a detector errs, from frame to frame independently but for `foot_error`.
 struct MatchDetectorOptions {
   double missed = 0.1;         ///< share of people in plain view that are not detected, in [0, 1]
   double size_noise = 0.05;    ///< standard deviation of widths and heights, as a share of them; each edge errs on its own
   double false_alarms = 0.5;   ///< a frame, on average; boxes of people where there is none
   double hidden_found = 0.05;  ///< of people who are hidden, the share that is detected all the same
+  double foot_error = 0;       ///< m on the ground, standard deviation per axis, by which boxes end beside the feet for a while
+                               ///< (foot_errors.h); unlike the rest it is no frame's own
+  double foot_along = 0.5;  ///< share of its variance along the view, in [0, 1]: a box that ends too low or high errs there alone
 };
+
+/// `seen` as if each had stood `by` m from its `place`, both in the world: the bottom of its box and its sides move, its top stays.
+/// A box that the picture's border cuts at the bottom keeps that.
+SeenPerson with_foot_moved(const SeenPerson& seen, const GroundView& view, const Vector<2>& place, const Vector<2>& by);
 
 /// What such a detector says of one frame, from left to right; `margin` m round the pitch is where it sees people who are not
 /// there.

@@ -17,7 +17,7 @@ std::array<people::Stance, kMatchPeople> stances_of(const MatchMotion& motion, c
 }
 
 TEST(MatchCameras, EveryStandSeesThePitch) {
-  for (const MatchStand stand : {MatchStand::round, MatchStand::football, MatchStand::corners}) {
+  for (const MatchStand stand : {MatchStand::round, MatchStand::football, MatchStand::corners, MatchStand::sides}) {
     MatchCamerasOptions options;
     options.stand = stand;
     const Rig rig = match_cameras(options, 1);

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
+#include <utility>
 
 #include <Eigen/LU>
+
+#include "marey/track/ground/ground_lasting.h"
 
 namespace marey::track::ground {
 namespace {
@@ -16,18 +18,23 @@ constexpr std::size_t kMostInstants = 400;  // that are looked at, evenly over t
 constexpr std::size_t kFewestPairs = 300;
 constexpr double kClearly = 1.6;                     // times the nearest's distance: so much farther the second nearest must be
 constexpr double kFirstGate = 2.2;                   // m
-constexpr double kLastGate = 1.0;                    // m
+constexpr double kLastGate = 1.0;                    // m, of fields; what lasts is measured within the first
 constexpr double kCell = 1;                          // m
 constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of what is seen, but
 constexpr double kNarrowest = 2.5;                   // m at least
 constexpr double kPriorPairs = 12;                   // with which a field holds to 0
 constexpr int kRounds = 12;
-constexpr double kWorthIt = 0.97;  // of the distances of pairs held out, that must be left by fields that are kept
-constexpr double kLeastRemains = 0.05, kMostRemains = 0.4;  // m: what fields leave, as no noise that could be averaged away
-constexpr double kOwnErrors = 0.6;          // of a deviation: a person's own errors, of height, gait and clothes, last
-constexpr double kNeighbourhood = 4;        // m, within which that is the same
-constexpr double kFew = 0.01;               // of the places lie beyond the grid on each side: some are near the horizon
+constexpr double kWorthIt = 0.97;         // of the distances of pairs held out, that must be left by fields that are kept
+constexpr double kLag = 0.1;              // s, after which an error that is still there lasts
+constexpr double kLatest = 0.6;           // s, likewise, at low rates
+constexpr double kStill = 1, kSpeed = 6;  // m and m/s: how far who is seen goes meanwhile, with errors
+constexpr double kMostByChance = 0.2;     // of links
+constexpr double kFew = 0.01;             // of the places lie beyond the grid on each side: some are near the horizon
+
 constexpr double kChiSquareMedian = 1.386;  // of two degrees
+constexpr std::size_t kFewestRatios = 30;
+constexpr double kLeastNoise = 0.5, kMostNoise = 3;
+constexpr double kOwnErrors = 0.42;  // of a deviation, that is taken to last where it cannot be measured: gait, height, clothes
 
 struct Seen {
   Vector<2> place;  // m, as the camera has it
@@ -43,16 +50,38 @@ struct Pair {
   const Seen* of_b = nullptr;
 };
 
-std::vector<Shot> shots_of(std::span<const GroundInstant> instants, int cameras) {
-  std::vector<Shot> shots;
+/// One pair, and the same people's a little later.
+struct Link {
+  Pair first, second;
+};
+
+Shot shot_of(const GroundInstant& instant, int cameras) {
+  Shot shot(static_cast<std::size_t>(cameras));
+  for (const CameraObservations& view : instant.cameras) {
+    for (const Observation<2>& one : view.seen) {
+      if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, one.covariance});
+    }
+  }
+  return shot;
+}
+
+/// An instant, and a little later where there is one.
+struct Shots {
+  std::vector<Shot> first, later;
+  std::vector<double> between;  // s; 0 where nothing is later
+};
+
+Shots shots_of(std::span<const GroundInstant> instants, int cameras) {
+  Shots shots;
   const std::size_t step = std::max<std::size_t>(1, instants.size() / kMostInstants);
   for (std::size_t k = 0; k < instants.size(); k += step) {
-    Shot& shot = shots.emplace_back(static_cast<std::size_t>(cameras));
-    for (const CameraObservations& view : instants[k].cameras) {
-      for (const Observation<2>& one : view.seen) {
-        if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, one.covariance});
-      }
-    }
+    shots.first.push_back(shot_of(instants[k], cameras));
+    std::size_t next = k + 1;
+    const auto after = [&](std::size_t i) { return seconds(instants[i].time - instants[k].time); };
+    while (next < instants.size() && after(next) < 0.9 * kLag) ++next;
+    const bool is_near = next < instants.size() && after(next) <= kLatest;
+    shots.later.push_back(is_near ? shot_of(instants[next], cameras) : Shot(static_cast<std::size_t>(cameras)));
+    shots.between.push_back(is_near ? after(next) : 0);
   }
   return shots;
 }
@@ -66,9 +95,9 @@ double quantile(std::vector<double>& values, double share) {
 
 class Agreeing {
  public:
-  Agreeing(const std::vector<Shot>& shots, int cameras) : shots_(shots), cameras_(static_cast<std::size_t>(cameras)) {
+  Agreeing(const Shots& shots, int cameras) : shots_(shots.first), all_(shots), cameras_(static_cast<std::size_t>(cameras)) {
     std::array<std::vector<double>, 2> all;
-    for (const Shot& shot : shots) {
+    for (const Shot& shot : shots_) {
       for (const std::vector<Seen>& camera : shot) {
         for (const Seen& one : camera) all[0].push_back(one.place.x()), all[1].push_back(one.place.y());
       }
@@ -96,10 +125,20 @@ class Agreeing {
     std::vector<Pair> found;
     for (std::size_t k = 0; k < shots_.size(); ++k) {
       if (odd && (k * kBlocks / shots_.size() % 2 == 1) != *odd) continue;
-      const std::vector<std::vector<Vector<2>>> places = corrected(shots_[k]);
-      for (std::size_t a = 0; a < cameras_; ++a) {
-        for (std::size_t b = a + 1; b < cameras_; ++b) pair_up(shots_[k], places, a, b, gate, found);
-      }
+      pair_up(shots_[k], gate, found);
+    }
+    return found;
+  }
+
+  /// Pairs of one instant that are plainly the same people's a little later; or half of the recording later, where nobody's are.
+  std::vector<Link> links(double gate, bool by_chance) const {
+    std::vector<Link> found;
+    for (std::size_t k = 0; k < shots_.size(); ++k) {
+      if (all_.between[k] == 0) continue;
+      std::vector<Pair> now, later;
+      pair_up(shots_[k], gate, now);
+      pair_up(by_chance ? shots_[(k + shots_.size() / 2) % shots_.size()] : all_.later[k], gate, later);
+      link_up(now, later, std::min(kStill + kSpeed * all_.between[k], gate), found);
     }
     return found;
   }
@@ -149,6 +188,44 @@ class Agreeing {
     return found;
   }
 
+  void pair_up(const Shot& shot, double gate, std::vector<Pair>& found) const {
+    const std::vector<std::vector<Vector<2>>> places = corrected(shot);
+    for (std::size_t a = 0; a < cameras_; ++a) {
+      for (std::size_t b = a + 1; b < cameras_; ++b) pair_up(shot, places, a, b, gate, found);
+    }
+  }
+
+  /// Where the two cameras of a pair together have it.
+  Vector<2> middle(const Pair& pair) const { return (placed(pair.a, *pair.of_a) + placed(pair.b, *pair.of_b)) / 2; }
+
+  /// Pairs of the same cameras that are each other's nearest, and plainly so. Pairs come by cameras.
+  void link_up(const std::vector<Pair>& now, const std::vector<Pair>& later, double reach, std::vector<Link>& found) const {
+    const auto of = [](const std::vector<Pair>& pairs, std::size_t from) {
+      std::size_t to = from;
+      while (to < pairs.size() && pairs[to].a == pairs[from].a && pairs[to].b == pairs[from].b) ++to;
+      return std::span(pairs).subspan(from, to - from);
+    };
+    const auto middles = [this](std::span<const Pair> pairs) {
+      std::vector<Vector<2>> all;
+      for (const Pair& pair : pairs) all.push_back(middle(pair));
+      return all;
+    };
+    for (std::size_t i = 0, j = 0; i < now.size() && j < later.size();) {
+      const auto of_now = of(now, i), of_later = of(later, j);
+      const std::pair first(now[i].a, now[i].b), second(later[j].a, later[j].b);
+      if (first <= second) i += of_now.size();
+      if (second <= first) j += of_later.size();
+      if (first != second) continue;
+      const std::vector<Vector<2>> from = middles(of_now), to = middles(of_later);
+      for (std::size_t m = 0; m < from.size(); ++m) {
+        const Nearest there = nearest(from[m], to, reach);
+        if (!there.is_plain(reach)) continue;
+        const Nearest back = nearest(to[there.index], from, reach);
+        if (back.index == m && back.is_plain(reach)) found.push_back({of_now[m], of_later[there.index]});
+      }
+    }
+  }
+
   void pair_up(const Shot& shot, const std::vector<std::vector<Vector<2>>>& places, std::size_t a, std::size_t b, double gate,
                std::vector<Pair>& found) const {
     for (std::size_t i = 0; i < places[a].size(); ++i) {
@@ -186,6 +263,7 @@ class Agreeing {
   }
 
   const std::vector<Shot>& shots_;
+  const Shots& all_;
   std::size_t cameras_;
   GroundGrid grid_;
   double extent_ = 1;
@@ -216,63 +294,40 @@ std::optional<double> best_part(Agreeing& agreeing) {
   return best;
 }
 
-/// Standard deviation per axis and camera of what is the same for pairs of two cameras in one neighbourhood: variances of means
-/// beyond what noise makes of so many.
-double remaining(const Agreeing& agreeing, const std::vector<Pair>& pairs) {
-  struct Sum {
-    Vector<2> mean = Vector<2>::Zero();
-    double squares = 0;
-    int count = 0;
-  };
-  std::map<std::array<int, 4>, Sum> sums;
-  for (const Pair& pair : pairs) {
-    const Vector<2> apart = agreeing.difference(pair);
-    const Vector<2> at = pair.of_a->place / kNeighbourhood;
-    Sum& sum = sums[{pair.a, pair.b, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))}];
-    sum.mean += apart;
-    sum.squares += apart.squaredNorm();
-    ++sum.count;
-  }
-  double variance = 0, weights = 0;
-  for (const auto& [where, sum] : sums) {
-    constexpr int fewest = 6;
-    if (sum.count < fewest) continue;
-    const double n = sum.count;
-    const double mean = (sum.mean / n).squaredNorm();
-    const double of_mean = std::max(0.0, sum.squares / n - mean) / (n - 1);
-    variance += n * (mean - of_mean);
-    weights += n;
-  }
-  // Of differences of two cameras in two axes.
-  return weights > 0 ? std::clamp(std::sqrt(std::max(0.0, variance / weights / 4)), kLeastRemains, kMostRemains) : kMostRemains;
-}
-
-/// By camera: what its standard deviations are to be multiplied by.
-std::vector<double> noise_of(const Agreeing& agreeing, const std::vector<Pair>& pairs, int cameras) {
+/// From single instants: by camera what its deviations are to be multiplied by, and of all errors the share that is taken to last.
+LastingDisagreement of_single_instants(const Agreeing& agreeing, int cameras) {
+  std::vector<double> squares;
   std::vector<std::vector<double>> ratios(static_cast<std::size_t>(cameras));
-  for (const Pair& pair : pairs) {
+  for (const Pair& pair : agreeing.pairs({}, kLastGate)) {
     const Vector<2> apart = agreeing.difference(pair);
     const Matrix<2> S = pair.of_a->covariance + pair.of_b->covariance;
     const double ratio = apart.dot(S.inverse() * apart);
+    squares.push_back(apart.squaredNorm());
     ratios[static_cast<std::size_t>(pair.a)].push_back(ratio);
     ratios[static_cast<std::size_t>(pair.b)].push_back(ratio);
   }
-  std::vector<double> noise;
+  LastingDisagreement found;
   for (std::vector<double>& of : ratios) {
-    constexpr std::size_t fewest = 30;
-    noise.push_back(of.size() < fewest ? 1.0 : std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), 0.5, 3.0));
+    const bool enough = of.size() >= kFewestRatios;
+    found.noise.push_back(enough ? std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), kLeastNoise, kMostNoise) : 1.0);
   }
-  return noise;
+  found.deviation = kOwnErrors * std::sqrt(quantile(squares, 0.5) / kChiSquareMedian / 2);  // of two cameras
+  return found;
 }
 
-/// Standard deviation per axis of an observation in the middle, m.
-double typical_deviation(const std::vector<Pair>& pairs, const std::vector<double>& noise) {
-  std::vector<double> deviations;
-  for (const Pair& pair : pairs) {
-    deviations.push_back(noise[static_cast<std::size_t>(pair.a)] * std::sqrt(pair.of_a->covariance.trace() / 2));
-    deviations.push_back(noise[static_cast<std::size_t>(pair.b)] * std::sqrt(pair.of_b->covariance.trace() / 2));
+/// Where people cannot be linked (too few, or a crowd at a low rate, in which as many are linked to people of another time) a share
+/// of all errors is taken to last.
+LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
+  std::vector<LinkedDifferences> differences;
+  const std::vector<Link> links = agreeing.links(kFirstGate, false);
+  for (const auto& [first, second] : links) {
+    differences.push_back({first.a, first.b, agreeing.difference(first), agreeing.difference(second),
+                           first.of_a->covariance + first.of_b->covariance + second.of_a->covariance + second.of_b->covariance});
   }
-  return quantile(deviations, 0.5);
+  const LastingDisagreement lasting = lasting_disagreement(differences, cameras);
+  const auto by_chance = static_cast<double>(agreeing.links(kFirstGate, true).size());
+  const bool linked = lasting.deviation && by_chance <= kMostByChance * static_cast<double>(links.size());
+  return linked ? lasting : of_single_instants(agreeing, cameras);
 }
 
 }  // namespace
@@ -280,7 +335,7 @@ double typical_deviation(const std::vector<Pair>& pairs, const std::vector<doubl
 GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, int cameras) {
   GroundAgreement agreement;
   if (cameras < 2 || instants.empty()) return agreement;
-  const std::vector<Shot> shots = shots_of(instants, cameras);
+  const Shots shots = shots_of(instants, cameras);
   Agreeing agreeing(shots, cameras);
   if (agreeing.pairs({}, kFirstGate).size() < kFewestPairs) return agreement;
   if (const std::optional<double> part = best_part(agreeing)) {
@@ -288,9 +343,9 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
   } else {
     agreeing.forget();
   }
-  const std::vector<Pair> pairs = agreeing.pairs({}, kLastGate);
-  agreement.noise_ = noise_of(agreeing, pairs, cameras);
-  agreement.disagreement_ = std::max(remaining(agreeing, pairs), kOwnErrors * typical_deviation(pairs, agreement.noise_));
+  const LastingDisagreement lasting = lasting_of(agreeing, cameras);
+  agreement.noise_ = lasting.noise;
+  agreement.disagreement_ = lasting.deviation;
   return agreement;
 }
 

@@ -6,11 +6,15 @@
 // smooth errors that make all such pairs agree best are found by turns: pair, take half of each difference over into either
 // camera's field, pair again with a smaller gate, from one shift of the whole picture down to a field (iterated closest points,
 // Besl & McKay 1992, with smooth displacements). Fields shrink to zero where nothing was seen. They are kept only if they explain
-// pairs of stretches of time that they were not learned from. What then remains tells how far each camera's covariances are to be
-// believed. Where all cameras err alike nothing can be seen of it here.
-// Cost: pairs of cameras times observations² for each of some hundred instants, a dozen times.
+// pairs of stretches of time that they were not learned from. What then remains is of two kinds. What is still there a tenth of a
+// second later, of gait, posture, the detector's habit or the calibration, no filter may average away: the covariance of two
+// cameras' difference about one person at the two instants, from medians of their sum and difference, so that neither wrong pairs
+// nor the gate's edge bias it. The rest is noise, and tells how far each camera's covariances are to be believed. Where all cameras
+// err alike nothing can be seen of it here. Cost: pairs of cameras times observations² for each of some hundred instants, a dozen
+// times.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,13 +36,15 @@ class GroundAgreement {
   bool learned() const { return !noise_.empty(); }
   /// The observation without what its camera is wrong, as uncertain as such observations are.
   Observation<2> corrected(Observation<2> seen) const;
-  /// Standard deviation per axis of what remains of the disagreement, m.
-  double disagreement() const { return disagreement_; }
+  /// Standard deviation per axis and camera of what lasts of the disagreement, m: what is still there a tenth of a second later, or
+  /// at the next instant at low rates; a share of all errors where too few people can be told again then. Nothing where nothing was
+  /// learned.
+  std::optional<double> disagreement() const { return disagreement_; }
 
  private:
   std::vector<GroundField> bias_;  // by camera, m; none where they were not worth it
   std::vector<double> noise_;      // by camera: factor on standard deviations
-  double disagreement_ = 0;
+  std::optional<double> disagreement_;
 };
 
 }  // namespace marey::track::ground

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -11,12 +12,13 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr double kCalmer = 0.75;               // of the tracker's accelerations, that the smoother takes: it has pushes beside
-constexpr double kSlowest = 1, kFastest = 20;  // s in which velocities settle
-constexpr double kAgreeing = 0.15;             // m, of disagreement that is left: what gnn takes
-constexpr double kOften = 0.2;                 // s between instants, likewise
-constexpr double kCalm = 0.25;                 // of the tracker's accelerations: walkers, of whom more is learned than it knows
-constexpr double kHaste = 1.5;                 // of people's speed: of those of whom nothing is known yet
+constexpr double kCalmer = 0.75;                // of the tracker's accelerations, that the smoother takes: it has pushes beside
+constexpr double kSlowest = 1, kFastest = 20;   // s in which velocities settle
+constexpr double kOfTwo = std::numbers::sqrt2;  // a target that one camera has placed is seen by another: both err
+constexpr double kAgreeing = 0.15;              // m, of disagreement that is left: what gnn takes
+constexpr double kOften = 0.2;                  // s between instants, likewise
+constexpr double kCalm = 0.25;                  // of the tracker's accelerations: walkers, of whom more is learned than it knows
+constexpr double kHaste = 1.5;                  // of people's speed: of those of whom nothing is known yet
 
 /// A quick one, for what is learned from and expected meanwhile.
 GroundTrackerOptions ahead(GroundTrackerOptions options) {
@@ -55,8 +57,12 @@ GroundRecorder::Joined GroundRun::finish(const InSight& in_sight) {
 void GroundRun::learn() {
   std::vector<GroundInstant> all(std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
   kept_.clear();
-  if (learn_.agreement) agreement_ = GroundAgreement::learn(all, views_->cameras());
-  if (agreement_.learned()) options_.disagreement = agreement_.disagreement();
+  if (learn_.agreement) {
+    agreement_ = GroundAgreement::learn(all, views_->cameras());
+    compared_ =
+        compare_cameras(all, {}, views_->cameras());  // as they are: what is learned may hide that a camera is off by metres
+  }
+  if (const auto lasting = agreement_.disagreement()) options_.disagreement = kOfTwo * *lasting;
   for (GroundInstant& instant : all) {
     correct(instant);
     kept_.push_back(std::move(instant));
@@ -76,7 +82,7 @@ void GroundRun::learn() {
 bool GroundRun::is_plain() const {
   if (kept_.size() < 2) return true;
   const double between = seconds(kept_.back().time - kept_.front().time) / static_cast<double>(kept_.size() - 1);
-  return between <= kOften && (!agreement_.learned() || agreement_.disagreement() <= kAgreeing);
+  return between <= kOften && (!agreement_.learned() || agreement_.disagreement().value_or(options_.disagreement) <= kAgreeing);
 }
 
 /// From what a quick tracker makes of what was kept.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/ground_contradictions.h"
 #include "marey/track/ground/ground_instant.h"
 #include "marey/track/ground/ground_recorder.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -44,6 +45,8 @@ class GroundRun {
   void step(std::int32_t frame, Timestamp now, std::span<const CameraObservations> views);
   /// Everybody, once all was seen. Nothing may follow.
   GroundRecorder::Joined finish(const InSight& in_sight);
+  /// Cameras that could be compared, once there was enough to learn from them; none where agreement is not learned.
+  const std::vector<ComparedCameras>& compared() const { return compared_; }
 
  private:
   bool learning() const { return !learned_; }
@@ -61,6 +64,7 @@ class GroundRun {
   OnDecided on_decided_;
   std::unique_ptr<GroundTracker> tracker_;
   GroundAgreement agreement_;
+  std::vector<ComparedCameras> compared_;
   bool learned_ = false;
   std::size_t kept_observations_ = 0;
   std::deque<GroundInstant> kept_;  // to learn from; later those that are not decided yet
