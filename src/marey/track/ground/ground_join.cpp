@@ -235,7 +235,7 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
     all += kind.seconds + 0.1;
   }
   const double newcomer = std::log(std::max(common / all, 1e-12));  // of some colour that was not seen yet
-  const double team = teams_ ? teams_->same(*a, *b) : 0;
+  const double team = teams_ ? teams_->same_for_long(*a, *b) : 0;
   return std::clamp(colour_log_normal(*a, *b) - newcomer + team, surest_apart, surest_same);
 }
 

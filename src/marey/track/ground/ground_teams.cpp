@@ -13,13 +13,13 @@ namespace {
 constexpr std::size_t kFewestColours = 300;
 constexpr std::size_t kMostColours = 20000;
 constexpr int kTeamRounds = 20;
-constexpr double kUnlikeBoth = 9;           // squared deviations: a keeper, a referee
-constexpr double kLeastApart = 4.5;         // deviations; two halves of one round cloud are 2.7 apart, of an even one 3.5
-constexpr double kLeastTeam = 0.2;          // of what is seen
-constexpr double kLeastOfBoth = 0.75;       // likewise, both together
-constexpr double kLeastSpread = 4;          // squared L*a*b*: what compression leaves uncertain
-constexpr double kAnybody = 0.02;           // likelihood of a colour that is neither's, of that of a shirt in the middle of its own
-constexpr double kLeastAgreement = 0.0067;  // however plain a shirt, it may have been read off somebody else
+constexpr double kUnlikeBoth = 9;      // squared deviations: a keeper, a referee
+constexpr double kLeastApart = 4.5;    // deviations; two halves of one round cloud are 2.7 apart, of an even one 3.5
+constexpr double kLeastTeam = 0.2;     // of what is seen
+constexpr double kLeastOfBoth = 0.75;  // likewise, both together
+constexpr double kLeastSpread = 4;     // squared L*a*b*: what compression leaves uncertain
+constexpr double kAnybody = 0.001;     // likelihood of a colour that is neither's, of that of a shirt in the middle of its own
+constexpr double kLeastSame = -5, kLeastSameForLong = -9;  // however plain shirts are; unswept
 
 Vector<3> point_in_lab(const Appearance& colour) {
   return {colour.lightness, colour.a, colour.b};
@@ -105,12 +105,20 @@ double GroundTeams::log_odds(const Appearance& colour) const {
   return std::log(likelihood(point, variance, 1) / likelihood(point, variance, 0));
 }
 
-double GroundTeams::same(const Appearance& known, const Appearance& seen) const {
+/// The probability that both are of one team.
+double GroundTeams::agreement(const Appearance& known, const Appearance& seen) const {
   const double known_odds = std::exp(log_odds(known)), seen_odds = std::exp(log_odds(seen));
   const double second = known_odds / (1 + known_odds);  // the probability that it is of the second team
   const double given = seen_odds / (1 + seen_odds);
-  const double agree = second * given + (1 - second) * (1 - given);
-  return std::log(2 * std::clamp(agree, kLeastAgreement / 2, 1.0));
+  return second * given + (1 - second) * (1 - given);
+}
+
+double GroundTeams::same(const Appearance& known, const Appearance& seen) const {
+  return std::max(std::log(2 * agreement(known, seen)), kLeastSame);
+}
+
+double GroundTeams::same_for_long(const Appearance& known, const Appearance& seen) const {
+  return std::max(std::log(2 * agreement(known, seen)), kLeastSameForLong);
 }
 
 }  // namespace marey::track::ground
