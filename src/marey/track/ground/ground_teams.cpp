@@ -18,8 +18,9 @@ constexpr double kLeastApart = 4.5;    // deviations; two halves of one round cl
 constexpr double kLeastTeam = 0.2;     // of what is seen
 constexpr double kLeastOfBoth = 0.75;  // likewise, both together
 constexpr double kLeastSpread = 4;     // squared L*a*b*: what compression leaves uncertain
-constexpr double kAnybody = 0.001;     // likelihood of a colour that is neither's, of that of a shirt in the middle of its own
-constexpr double kLeastSame = -5, kLeastSameForLong = -9;  // however plain shirts are; unswept
+constexpr double kAnybody = 0.02;      // likelihood of a colour that is neither's, of that of a shirt in the middle of its own,
+constexpr double kAnybodyForLong =
+    0.001;  // and of one that was seen for a while; with this at every sight blue ones were lost in groups
 
 Vector<3> point_in_lab(const Appearance& colour) {
   return {colour.lightness, colour.a, colour.b};
@@ -96,29 +97,33 @@ std::optional<GroundTeams> GroundTeams::learn(std::span<const Appearance> seen) 
 double GroundTeams::likelihood(const Vector<3>& colour, double variance, int team) const {
   const Vector<3> off = colour - means_[static_cast<std::size_t>(team)];
   const Matrix<3> spread = precision_.inverse() + variance * Matrix<3>::Identity();
-  return std::exp(-0.5 * squared_distance(off, spread.inverse())) + kAnybody;
+  return std::exp(-0.5 * squared_distance(off, spread.inverse()));
 }
 
 double GroundTeams::log_odds(const Appearance& colour) const {
+  return log_odds(colour, kAnybody);
+}
+
+double GroundTeams::log_odds(const Appearance& colour, double anybody) const {
   const double variance = static_cast<double>(colour.deviation) * colour.deviation / 4;
   const Vector<3> point = point_in_lab(colour);
-  return std::log(likelihood(point, variance, 1) / likelihood(point, variance, 0));
+  return std::log((likelihood(point, variance, 1) + anybody) / (likelihood(point, variance, 0) + anybody));
 }
 
 /// The probability that both are of one team.
-double GroundTeams::agreement(const Appearance& known, const Appearance& seen) const {
-  const double known_odds = std::exp(log_odds(known)), seen_odds = std::exp(log_odds(seen));
+double GroundTeams::agreement(const Appearance& known, const Appearance& seen, double anybody) const {
+  const double known_odds = std::exp(log_odds(known, anybody)), seen_odds = std::exp(log_odds(seen, anybody));
   const double second = known_odds / (1 + known_odds);  // the probability that it is of the second team
   const double given = seen_odds / (1 + seen_odds);
   return second * given + (1 - second) * (1 - given);
 }
 
 double GroundTeams::same(const Appearance& known, const Appearance& seen) const {
-  return std::max(std::log(2 * agreement(known, seen)), kLeastSame);
+  return std::log(2 * agreement(known, seen, kAnybody));
 }
 
 double GroundTeams::same_for_long(const Appearance& known, const Appearance& seen) const {
-  return std::max(std::log(2 * agreement(known, seen)), kLeastSameForLong);
+  return std::log(2 * agreement(known, seen, kAnybodyForLong));
 }
 
 }  // namespace marey::track::ground

@@ -26,17 +26,18 @@ class GroundTeams {
   double log_odds(const Appearance& colour) const;
 
   /// Logarithm of how much likelier somebody known by the one colour is seen in the other than anybody is: at most log 2, which
-  /// teams of equal number allow, and no less than −5: what was seen once may have been read off somebody else.
+  /// teams of equal number allow, and hardly less than −3: what was seen once may have been read off somebody else.
   double same(const Appearance& known, const Appearance& seen) const;
 
-  /// The same of two colours that were seen for a while each: no less than −9.
+  /// The same of two colours that were seen for a while each: hardly less than −6.
   double same_for_long(const Appearance& known, const Appearance& seen) const;
 
   /// Between the means, in deviations of one shirt's colour.
   double apart() const { return apart_; }
 
  private:
-  double agreement(const Appearance& known, const Appearance& seen) const;
+  double agreement(const Appearance& known, const Appearance& seen, double anybody) const;
+  double log_odds(const Appearance& colour, double anybody) const;
   double likelihood(const Vector<3>& colour, double variance, int team) const;
 
   std::array<Vector<3>, 2> means_;
